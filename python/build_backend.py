@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Makes the wheel (PEP 517): CMake builds the module for the Python that runs this, and the package is zipped."""
+
 import base64
 import hashlib
 import os
@@ -24,9 +25,11 @@ def info():
 
 
 def metadata():
-    return (f"Metadata-Version: 2.1\nName: dermis\nVersion: {version()}\n"
-            "Summary: Calibrated force from resistive tactile arrays\n"
-            "License: Apache-2.0\nRequires-Python: >=3.9\nRequires-Dist: numpy\n")
+    return (
+        f"Metadata-Version: 2.1\nName: dermis\nVersion: {version()}\n"
+        "Summary: Calibrated force from resistive tactile arrays\n"
+        "License: Apache-2.0\nRequires-Python: >=3.9\nRequires-Dist: numpy\n"
+    )
 
 
 def configure(*options):
@@ -37,8 +40,13 @@ def configure(*options):
 
 
 def build_package():
-    configure("-DCMAKE_BUILD_TYPE=Release", "-DDERMIS_UNITY_BUILD=ON", "-DDERMIS_BUILD_PYTHON=ON",
-              "-DDERMIS_BUILD_TESTS=OFF", f"-DPython3_EXECUTABLE={sys.executable}")
+    configure(
+        "-DCMAKE_BUILD_TYPE=Release",
+        "-DDERMIS_UNITY_BUILD=ON",
+        "-DDERMIS_BUILD_PYTHON=ON",
+        "-DDERMIS_BUILD_TESTS=OFF",
+        f"-DPython3_EXECUTABLE={sys.executable}",
+    )
     subprocess.run(["cmake", "--build", BUILD, "--target", "dermis_python"], check=True)
     return BUILD / "python" / "dermis"
 

@@ -3,6 +3,7 @@
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """The accuracy tables of docs/accuracy.md, measured with the release binary: prints them and writes
 build/release/bench/accuracy.json (rows as those of the benchmarks). Standard library only; about two minutes."""
+
 import csv
 import json
 import math
@@ -46,14 +47,33 @@ def simulate(folder, array, scene, seed, physics=None):
 def calibrate(folder, array, recording):
     model = folder / "model.safetensors"
     start = time.monotonic()
-    dermis("calibrate", "--array", array, "--frames", recording / "frames.csv", "--loads", recording / "loads.csv",
-           "--out", model)
+    dermis(
+        "calibrate",
+        "--array",
+        array,
+        "--frames",
+        recording / "frames.csv",
+        "--loads",
+        recording / "loads.csv",
+        "--out",
+        model,
+    )
     return model, time.monotonic() - start
 
 
 def evaluate(model, recording):
-    return json.loads(dermis("evaluate", "--json", "--model", model, "--frames", recording / "frames.csv", "--loads",
-                             recording / "loads.csv"))
+    return json.loads(
+        dermis(
+            "evaluate",
+            "--json",
+            "--model",
+            model,
+            "--frames",
+            recording / "frames.csv",
+            "--loads",
+            recording / "loads.csv",
+        )
+    )
 
 
 def report(work, result):
@@ -63,8 +83,16 @@ def report(work, result):
         shares = [100 * result[f"{key}_relative_error"] for key in ("median", "p95", "p99", "max")]
         ghost = f"{result['ghost_p99_n']:13.3f}" if result["ghost_p99_n"] is not None else f"{'-':>13}"
         print(f"  {result['name']:20}" + "".join(f"{share:10.2f}" for share in shares) + ghost)
-        row(work, result["name"], shares[0], "% median error", p95=shares[1], p99=shares[2], max=shares[3],
-            ghost_p99_n=result["ghost_p99_n"])
+        row(
+            work,
+            result["name"],
+            shares[0],
+            "% median error",
+            p95=shares[1],
+            p99=shares[2],
+            max=shares[3],
+            ghost_p99_n=result["ghost_p99_n"],
+        )
     report_coverage(work, result)
 
 
@@ -72,20 +100,29 @@ def report_coverage(work, result):
     """How often the true force is within the 68 % and 95 % intervals of dermis."""
     dermis_result = result["estimators"][0]
     cover_68, cover_95 = (100 * dermis_result[f"coverage_{share}"] for share in (68, 95))
-    print(f"  68 % intervals cover {cover_68:.1f} %, 95 % intervals {cover_95:.1f} % of "
-          f"{dermis_result['coverage_taxels']} taxels")
+    print(
+        f"  68 % intervals cover {cover_68:.1f} %, 95 % intervals {cover_95:.1f} % of "
+        f"{dermis_result['coverage_taxels']} taxels"
+    )
     for breakdown in ("by_force", "by_contacts"):
         bins = [(b, b["estimators"]["dermis"]) for b in result[breakdown]]
-        print(f"    {breakdown}: " + ", ".join(
-            f"{b['from']:g}-{b['to']:g}: {100 * of['coverage_68']:.0f} / {100 * of['coverage_95']:.0f}"
-            for b, of in bins if of["coverage_68"] is not None))
+        print(
+            f"    {breakdown}: "
+            + ", ".join(
+                f"{b['from']:g}-{b['to']:g}: {100 * of['coverage_68']:.0f} / {100 * of['coverage_95']:.0f}"
+                for b, of in bins
+                if of["coverage_68"] is not None
+            )
+        )
     row(f"{work}: 68 % interval", "dermis", cover_68, "% covered")
     row(f"{work}: 95 % interval", "dermis", cover_95, "% covered")
     bound = result.get("cramer_rao_bound")
     if bound:
         share, deviation = 100 * bound["median_relative_bound"], 100 * bound["median_relative_deviation"]
-        print(f"  Cramer-Rao bound of the ADC noise {share:.2f} %, dermis {deviation:.2f} % (median of "
-              f"{bound['taxels']} taxels)")
+        print(
+            f"  Cramer-Rao bound of the ADC noise {share:.2f} %, dermis {deviation:.2f} % (median of "
+            f"{bound['taxels']} taxels)"
+        )
         row(f"{work}: Cramer-Rao bound of the ADC noise", "bound", share, "% median", dermis=deviation)
 
 
@@ -94,12 +131,17 @@ def row(work, engine, median, unit, **more):
 
 
 def single_presses(folder):
-    cases = [("16x16, 20 ohm / 200 ohm", (16, 16), {}),
-             ("12x10, 10 ohm / 470 ohm", (12, 10), {"drive_ohm": 10, "load_ohm": 470}),
-             ("8x8, 30 ohm / 330 ohm", (8, 8), {"drive_ohm": 30, "load_ohm": 330}),
-             ("32x32, 20 ohm / 200 ohm", (32, 32), {}),
-             ("16x16 transimpedance, 25 ohm / 150 ohm", (16, 16),
-              {"circuit": "transimpedance", "drive_ohm": 25, "load_ohm": 150})]
+    cases = [
+        ("16x16, 20 ohm / 200 ohm", (16, 16), {}),
+        ("12x10, 10 ohm / 470 ohm", (12, 10), {"drive_ohm": 10, "load_ohm": 470}),
+        ("8x8, 30 ohm / 330 ohm", (8, 8), {"drive_ohm": 30, "load_ohm": 330}),
+        ("32x32, 20 ohm / 200 ohm", (32, 32), {}),
+        (
+            "16x16 transimpedance, 25 ohm / 150 ohm",
+            (16, 16),
+            {"circuit": "transimpedance", "drive_ohm": 25, "load_ohm": 150},
+        ),
+    ]
     for name, size, readout in cases:
         array = array_toml(folder, size, **readout)
         model, seconds = calibrate(folder, array, simulate(folder, array, "calibration", 1))
@@ -157,8 +199,21 @@ def memory_of_the_material(folder):
 def touches_up_and_down(folder, array, physics):
     """A multitouch scene of which every taxel's force is known, then unloaded frames."""
     recording = folder / "touches"
-    dermis("simulate", "--array", array, "--scene", "multitouch", "--frames", 600, "--seed", 11, "--physics", physics,
-           "--out", recording)
+    dermis(
+        "simulate",
+        "--array",
+        array,
+        "--scene",
+        "multitouch",
+        "--frames",
+        600,
+        "--seed",
+        11,
+        "--physics",
+        physics,
+        "--out",
+        recording,
+    )
     idle = simulate(folder, array, "idle", 9, physics)
     frames = (recording / "frames.csv").read_text().splitlines()
     last = float(frames[-1].split(",")[0])
@@ -174,13 +229,22 @@ def touches_up_and_down(folder, array, physics):
 def true_law(folder):
     """The error with the true law of the material behind the same inversion, from the test that holds it."""
     result = folder / "test.json"
-    subprocess.run([ROOT / "build/release/tests/calibration_test", f"--gtest_output=json:{result}",
-                    "--gtest_filter=Calibrate.reaches_the_noise_floor*"], check=True, capture_output=True)
+    subprocess.run(
+        [
+            ROOT / "build/release/tests/calibration_test",
+            f"--gtest_output=json:{result}",
+            "--gtest_filter=Calibrate.reaches_the_noise_floor*",
+        ],
+        check=True,
+        capture_output=True,
+    )
     test = json.loads(result.read_text())["testsuites"][0]["testsuite"][0]
     shares = [100 * float(test[f"true_law_{key}"]) for key in ("median", "p95", "p99")]
     work = "16x16, 20 ohm / 200 ohm: multitouch after single presses"
-    print(f"\n{work}, with the true law of the material\n  median {shares[0]:.2f} %, p95 {shares[1]:.2f} %, "
-          f"p99 {shares[2]:.2f} %")
+    print(
+        f"\n{work}, with the true law of the material\n  median {shares[0]:.2f} %, p95 {shares[1]:.2f} %, "
+        f"p99 {shares[2]:.2f} %"
+    )
     row(work, "true law", shares[0], "% median error", p95=shares[1], p99=shares[2])
 
 
@@ -193,8 +257,10 @@ def mean_of_last_five_seconds(path):
 def real_weights(folder):
     """Leave one press out on the real hand: trained on the other 53, with one unloaded frame."""
     index = [press for press in csv.DictReader((DSA / "presses.csv").open()) if press["outlier"] == "0"]
-    presses = [(mean_of_last_five_seconds(DSA / "presses" / f"{press['press']}.csv"),
-                float(press["weight_g"]) * 9.80665e-3) for press in index]
+    presses = [
+        (mean_of_last_five_seconds(DSA / "presses" / f"{press['press']}.csv"), float(press["weight_g"]) * 9.80665e-3)
+        for press in index
+    ]
     header = (DSA / "presses" / f"{index[0]['press']}.csv").read_text().split("\n", 1)[0]
     array = folder / "dsa.toml"
     array.write_text('[array]\nrows = 13\ncols = 6\n[readout]\ncircuit = "none"\nadc_bits = 12\n')
@@ -222,10 +288,21 @@ def real_weights(folder):
 
 def total_sigma(folder, model):
     """Standard deviation of the total force of the one frame of held_out, were the errors of taxels independent."""
-    dermis("run", "--model", model, "--in", folder / "held_out/frames.csv", "--out", folder / "forces.csv", "--sigma",
-           folder / "sigma.csv")
-    forces, sigmas = ([float(cell) for cell in list(csv.reader((folder / name).open()))[1][2:]]
-                      for name in ("forces.csv", "sigma.csv"))
+    dermis(
+        "run",
+        "--model",
+        model,
+        "--in",
+        folder / "held_out/frames.csv",
+        "--out",
+        folder / "forces.csv",
+        "--sigma",
+        folder / "sigma.csv",
+    )
+    forces, sigmas = (
+        [float(cell) for cell in list(csv.reader((folder / name).open()))[1][2:]]
+        for name in ("forces.csv", "sigma.csv")
+    )
     return math.sqrt(sum(sigma**2 for newtons, sigma in zip(forces, sigmas) if newtons > 0 and math.isfinite(sigma)))
 
 

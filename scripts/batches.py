@@ -8,6 +8,7 @@
 
 Two sources of a batch have no name in common that their unnamed namespaces declare, but the same names for the same
 things of other namespaces, so nobody needs to keep names apart."""
+
 import re
 import sys
 from pathlib import Path
@@ -17,8 +18,10 @@ MOST_TOGETHER = 10
 ALONE = re.compile(r"HWY_TARGET_INCLUDE|#include <asm/")
 NOISE = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|^\s*#[^\n]*', re.MULTILINE | re.DOTALL)
 ALIAS = r"\b(?:namespace|using)\s+\w+\s*=[^;]+;|\busing\s+(?:\w+::)+\w+;"
-TOKEN = re.compile(ALIAS + r"|namespace\s*\{|[{}()]|\b(?:struct|class|enum class|enum)\s+\w+"
-                   r"|(?<!::)(?<!public )\b(?!noexcept|static_assert)[A-Za-z_]\w*(?=\s*[({=;\[])")
+TOKEN = re.compile(
+    ALIAS + r"|namespace\s*\{|[{}()]|\b(?:struct|class|enum class|enum)\s+\w+"
+    r"|(?<!::)(?<!public )\b(?!noexcept|static_assert)[A-Za-z_]\w*(?=\s*[({=;\[])"
+)
 
 
 def stays_alone(text):
@@ -27,7 +30,9 @@ def stays_alone(text):
 
 def alias_of(token):
     """The name that an alias gives and what it stands for: who says the same twice says it once."""
-    name, _, meaning = token.rstrip(";").partition("=") if "=" in token else (token.rstrip(";").split("::")[-1], "", token)
+    name, _, meaning = (
+        token.rstrip(";").partition("=") if "=" in token else (token.rstrip(";").split("::")[-1], "", token)
+    )
     return name.split()[-1], "".join(meaning.split())
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Every relative link in the project's Markdown leads to a file, and every #anchor to a heading."""
+
 import re
 import sys
 from pathlib import Path

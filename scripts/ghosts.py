@@ -6,6 +6,7 @@
 A contact: readings above 50 counts. Remote: at least three taxels from it; shared: in a row or column of the contact.
 The ratio: mean of the shared remote taxels over the mean of the other remote taxels. Run it after `make build`.
 """
+
 import csv
 import pathlib
 import statistics
@@ -65,13 +66,16 @@ load_ohm = {load_ohm}
 adc_bits = 12
 adc_reference_v = "supply"
 """)
-    rows = (frame[row * COLS:(row + 1) * COLS] for frame in frames for row in range(ROWS))
+    rows = (frame[row * COLS : (row + 1) * COLS] for frame in frames for row in range(ROWS))
     readings.write_text("".join(",".join(repr(v * scale / FULL_SCALE_COUNTS) for v in row) + "\n" for row in rows))
-    subprocess.run([DERMIS, "circuit", "invert", "--array", array, "--readings", readings, "--out", out, "--force"],
-                   stderr=subprocess.DEVNULL, check=False)
+    subprocess.run(
+        [DERMIS, "circuit", "invert", "--array", array, "--readings", readings, "--out", out, "--force"],
+        stderr=subprocess.DEVNULL,
+        check=False,
+    )
     values = [float(value) for line in out.read_text().split() for value in line.split(",")]
     size = ROWS * COLS
-    return [values[k * size:(k + 1) * size] for k in range(len(frames))]
+    return [values[k * size : (k + 1) * size] for k in range(len(frames))]
 
 
 def main():
@@ -79,18 +83,21 @@ def main():
     for name in ("ghosting_m1", "ghosting_m5"):
         frames = [frame for frame in read_frames(RECORDINGS / f"{name}.csv") if max(frame) > CONTACT_COUNTS]
         frames = [frame for frame in frames if remote_taxels(frame)[0]]
-        frames = frames[::max(1, len(frames) // FRAMES)]
+        frames = frames[:: max(1, len(frames) // FRAMES)]
         with tempfile.TemporaryDirectory() as folder:
             for scale in SCALES:
                 for idle_rows, idle_columns in CIRCUITS:
                     for drive_ohm, load_ohm in RESISTANCES:
-                        inverted = invert(pathlib.Path(folder), frames, idle_rows, idle_columns, drive_ohm, load_ohm,
-                                          scale)
+                        inverted = invert(
+                            pathlib.Path(folder), frames, idle_rows, idle_columns, drive_ohm, load_ohm, scale
+                        )
                         solved = [k for k, values in enumerate(inverted) if values[0] == values[0]]
                         chosen = [frames[k] for k in solved]
-                        print(f"{name}  {idle_rows:>8}  {idle_columns:>11}  {drive_ohm:5d}  {load_ohm:6d}  {scale:5.2f}"
-                              f"  {len(solved) / len(frames):6.0%}  {ratio(chosen, chosen):6.1f}"
-                              f"  {ratio([inverted[k] for k in solved], chosen):8.1f}")
+                        print(
+                            f"{name}  {idle_rows:>8}  {idle_columns:>11}  {drive_ohm:5d}  {load_ohm:6d}  {scale:5.2f}"
+                            f"  {len(solved) / len(frames):6.0%}  {ratio(chosen, chosen):6.1f}"
+                            f"  {ratio([inverted[k] for k in solved], chosen):8.1f}"
+                        )
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ It calibrates `dermis` on single presses, one at a time, and asks `dermis run --
 touches and frames with one to four contacts. It prints the mean of the untouched sums, the bias of the touched ones, and
 how often the truth lies within one and two standard deviations. Run it after `make build`.
 """
+
 import argparse
 import csv
 import subprocess
@@ -79,7 +80,8 @@ class Instrument:
         path.write_text(
             f"[array]\nrows = {size}\ncols = {size}\ntaxel_area_mm2 = 38.48\n"
             f'[readout]\ncircuit = "divider"\ndrive_ohm = {self.drive_ohm}\nload_ohm = {self.load_ohm}\n'
-            f'adc_bits = {self.bits}\nadc_reference_v = "supply"\nsupply_v = 5.0\n')
+            f'adc_bits = {self.bits}\nadc_reference_v = "supply"\nsupply_v = 5.0\n'
+        )
 
 
 def single_presses(size, random):
@@ -145,19 +147,37 @@ class World:
         newtons = single_presses(size, random)
         write_frames(folder / "calibration.csv", self.counts(newtons))
         write_loads(folder / "loads.csv", newtons)
-        dermis(binary, "calibrate", "--array", folder / "array.toml", "--frames", folder / "calibration.csv", "--loads",
-               folder / "loads.csv", "--out", folder / "model.safetensors")
+        dermis(
+            binary,
+            "calibrate",
+            "--array",
+            folder / "array.toml",
+            "--frames",
+            folder / "calibration.csv",
+            "--loads",
+            folder / "loads.csv",
+            "--out",
+            folder / "model.safetensors",
+        )
 
     def counts(self, newtons):
         pieces = numpy.array_split(newtons, len(newtons) // 100 + 1)
-        return numpy.concatenate(
-            [self.instrument.counts(self.rubber.siemens(piece), self.random) for piece in pieces])
+        return numpy.concatenate([self.instrument.counts(self.rubber.siemens(piece), self.random) for piece in pieces])
 
     def totals(self, newtons):
         """Sums and their standard deviations [frames] [N], as `dermis run --totals` writes them."""
         write_frames(self.folder / "frames.csv", self.counts(newtons))
-        dermis(self.binary, "run", "--model", self.folder / "model.safetensors", "--in", self.folder / "frames.csv",
-               "--totals", self.folder / "totals.csv", "--force")
+        dermis(
+            self.binary,
+            "run",
+            "--model",
+            self.folder / "model.safetensors",
+            "--in",
+            self.folder / "frames.csv",
+            "--totals",
+            self.folder / "totals.csv",
+            "--force",
+        )
         with open(self.folder / "totals.csv", encoding="ascii") as file:
             rows = list(csv.DictReader(file))
         return (numpy.array([float(row[column]) for row in rows]) for column in ("total_n", "sigma_total_n"))
@@ -175,9 +195,11 @@ class Figures:
     sigma_newtons: float
 
     def __str__(self):
-        return (f"untouched {self.untouched_newtons:+.4f} N, within 2 sigma {100 * self.untouched_within_2:.1f} %; touched "
-                f"bias {100 * self.bias:+.3f} %, within 1 and 2 sigma {100 * self.within_1:.0f} / "
-                f"{100 * self.within_2:.0f} %, sigma {self.sigma_newtons:.3f} N")
+        return (
+            f"untouched {self.untouched_newtons:+.4f} N, within 2 sigma {100 * self.untouched_within_2:.1f} %; touched "
+            f"bias {100 * self.bias:+.3f} %, within 1 and 2 sigma {100 * self.within_1:.0f} / "
+            f"{100 * self.within_2:.0f} %, sigma {self.sigma_newtons:.3f} N"
+        )
 
 
 def judge(binary, size, seed):
@@ -189,8 +211,14 @@ def judge(binary, size, seed):
         total, sigma = world.totals(newtons)
     truth = newtons.sum(axis=(1, 2))
     error = total - truth
-    return Figures(idle.mean(), numpy.mean(abs(idle) <= 2 * idle_sigma), error.sum() / truth.sum(),
-                   numpy.mean(abs(error) <= sigma), numpy.mean(abs(error) <= 2 * sigma), sigma.mean())
+    return Figures(
+        idle.mean(),
+        numpy.mean(abs(idle) <= 2 * idle_sigma),
+        error.sum() / truth.sum(),
+        numpy.mean(abs(error) <= sigma),
+        numpy.mean(abs(error) <= 2 * sigma),
+        sigma.mean(),
+    )
 
 
 def main():

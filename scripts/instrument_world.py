@@ -10,6 +10,7 @@ and what calibrate and doctor say.
 
 usage: scripts/instrument_world.py BINARY [--faults a,b] [--modes a,b] [--seeds 1,2] [--presses single|pairs|proofs]
 """
+
 import argparse
 import csv
 import pathlib
@@ -25,7 +26,7 @@ ROWS = COLS = 10
 DRIVE_OHM, LOAD_OHM, CONTACT_OHM = 30.0, 220.0, 60.0
 FULL, VOLTS = 4095, 5.0
 SUPPLY_OHM = 12.0  # takes 5 % of a row of four firm taxels
-TOUCHES = 24       # at once, at work
+TOUCHES = 24  # at once, at work
 FAULTS = ("none", "settling", "sag", "offset", "curve", "multiplexer", "esp32")
 FORCES = (0.7, 1.5, 3.0, 6.0, 12.0, 20.0)
 
@@ -100,8 +101,10 @@ def description(world, mode):
     if world.fault == "multiplexer" and mode == "fitted":
         drive = '"fit"'
     extra = world.told() if mode == "told" else FITTED.get(world.fault, "") if mode == "fitted" else ""
-    return (f"[array]\nrows = {ROWS}\ncols = {COLS}\n\n[readout]\ncircuit = \"divider\"\ndrive_ohm = {drive}\n"
-            f"load_ohm = {LOAD_OHM}\nadc_bits = 12\nadc_reference_v = {VOLTS}\nsupply_v = {VOLTS}\n{extra}")
+    return (
+        f'[array]\nrows = {ROWS}\ncols = {COLS}\n\n[readout]\ncircuit = "divider"\ndrive_ohm = {drive}\n'
+        f"load_ohm = {LOAD_OHM}\nadc_bits = 12\nadc_reference_v = {VOLTS}\nsupply_v = {VOLTS}\n{extra}"
+    )
 
 
 def single(force, taxel):
@@ -137,7 +140,7 @@ def calibration(world, presses):
             row, col = world.random.integers(ROWS), world.random.integers(COLS - 3)
             shares = world.random.dirichlet(numpy.full(4, 20.0)) * 20.0
             field = numpy.zeros(ROWS * COLS)
-            field[row * COLS + col:row * COLS + col + 4] = shares
+            field[row * COLS + col : row * COLS + col + 4] = shares
             hold(field, [f"force,r{row}c{col}:r{row}c{col + 3},20"])
     return frames, loads
 
@@ -162,7 +165,7 @@ def read_table(path):
     with open(path, encoding="ascii") as file:
         rows = list(csv.reader(file))
     first = rows[0].index("r0c0")
-    return numpy.array([[float(cell or "nan") for cell in row[first:first + ROWS * COLS]] for row in rows[1:]])
+    return numpy.array([[float(cell or "nan") for cell in row[first : first + ROWS * COLS]] for row in rows[1:]])
 
 
 def run(*command):
@@ -178,15 +181,35 @@ def judge(binary, fault, mode, seed, presses, folder):
     (folder / "array.toml").write_text(description(world, mode))
     write_frames(folder / "frames.csv", as_counts(frames))
     (folder / "loads.csv").write_text("frame,kind,where,value\n" + "\n".join(loads) + "\n")
-    code, said = run(binary, "calibrate", "--array", folder / "array.toml", "--frames", folder / "frames.csv",
-                     "--loads", folder / "loads.csv", "--out", folder / "model")
+    code, said = run(
+        binary,
+        "calibrate",
+        "--array",
+        folder / "array.toml",
+        "--frames",
+        folder / "frames.csv",
+        "--loads",
+        folder / "loads.csv",
+        "--out",
+        folder / "model",
+    )
     (folder / "calibrate.txt").write_text(said)
     if code != 0:
         return None, said
     fields, touched = work(world)
     write_frames(folder / "work.csv", as_counts(touched))
-    code, output = run(binary, "run", "--model", folder / "model", "--in", folder / "work.csv", "--out",
-                       folder / "forces.csv", "--sigma", folder / "sigma.csv")
+    code, output = run(
+        binary,
+        "run",
+        "--model",
+        folder / "model",
+        "--in",
+        folder / "work.csv",
+        "--out",
+        folder / "forces.csv",
+        "--sigma",
+        folder / "sigma.csv",
+    )
     if code != 0:
         return None, output
     _, doctor = run(binary, "doctor", "--model", folder / "model", "--in", folder / "work.csv")
@@ -195,9 +218,12 @@ def judge(binary, fault, mode, seed, presses, folder):
     is_touched = (fields >= 1.0) & numpy.isfinite(forces)
     error = (forces - fields)[is_touched]
     sigmas = numpy.abs(error) / sigma[is_touched]
-    figures = {"median": 100 * numpy.median(numpy.abs(error / fields[is_touched])),
-               "bias": 100 * numpy.median(error / fields[is_touched]),
-               "within 1": 100 * numpy.mean(sigmas < 1), "within 2": 100 * numpy.mean(sigmas < 2)}
+    figures = {
+        "median": 100 * numpy.median(numpy.abs(error / fields[is_touched])),
+        "bias": 100 * numpy.median(error / fields[is_touched]),
+        "within 1": 100 * numpy.mean(sigmas < 1),
+        "within 2": 100 * numpy.mean(sigmas < 2),
+    }
     words = r"settl|supply_ohm|sags|offset_counts|bent|drive_ohm|driver|tell nothing|add up"
     named = [line.strip() for line in (said + doctor).splitlines() if re.search(words, line)]
     return figures, "\n".join(named)
@@ -222,8 +248,11 @@ def main():
                     if figures is None:
                         print(f"{fault:12}{mode:9}{seed:>5}  failed: {named.strip()}")
                         continue
-                    print(f"{fault:12}{mode:9}{seed:>5}{figures['median']:10.2f}{figures['bias']:8.2f}"
-                          f"{figures['within 1']:9.0f}{figures['within 2']:9.0f}", flush=True)
+                    print(
+                        f"{fault:12}{mode:9}{seed:>5}{figures['median']:10.2f}{figures['bias']:8.2f}"
+                        f"{figures['within 1']:9.0f}{figures['within 2']:9.0f}",
+                        flush=True,
+                    )
                     for line in named.splitlines():
                         print(f"    {line[:180]}")
 

@@ -5,6 +5,7 @@
 
 A class may have more if the comment above it says why, after the words "Many members:". Exit status 1 if one does not.
 Static members do not count, nor do those of base classes. Exit status 77 where there is no universal-ctags."""
+
 import json
 import re
 import subprocess
@@ -21,7 +22,10 @@ SKIPPED = 77
 
 def has_ctags():
     try:
-        return "Universal Ctags" in subprocess.run(["ctags", "--version"], check=False, capture_output=True, text=True).stdout
+        return (
+            "Universal Ctags"
+            in subprocess.run(["ctags", "--version"], check=False, capture_output=True, text=True).stdout
+        )
     except FileNotFoundError:
         return False
 
@@ -48,7 +52,9 @@ def reason(path, name):
 def large_classes(root, most):
     """(members, class, file, reason or None), the most first; and how many classes there are."""
     counts = Counter(members(root))
-    large = [(count, name, path, reason(root / path, name)) for (path, name), count in counts.most_common() if count > most]
+    large = [
+        (count, name, path, reason(root / path, name)) for (path, name), count in counts.most_common() if count > most
+    ]
     return large, len(counts)
 
 

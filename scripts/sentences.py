@@ -16,6 +16,7 @@ of formulas and tables are left out. A comment beside code is a label, not a sen
 words ("///< Each line [ohm]"). Prints the sentences with over 25 words and those that begin with "What" or "Of". Fails where the
 first are over 1 % or the second over 40.
 """
+
 import argparse
 import io
 import re
@@ -32,7 +33,9 @@ CODE_SUFFIXES = (".cpp", ".hpp", ".h", ".ts", ".py", ".pyi")
 COMMENT_LIMIT, COMMENT_LONG_SHARE, COMMENT_OBLIQUE, LABEL_WORDS = 25, 0.01, 40, 6
 OBLIQUE = re.compile(r"(What|Of)\b")
 TEXT_OR_COMMENT = re.compile(
-    r'''R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|(?<!\w)'(?:\\.|[^'\\\n])*'|`(?:\\.|[^`\\])*`|(//[^\n]*|/\*.*?\*/)''', re.DOTALL)
+    r"""R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|(?<!\w)'(?:\\.|[^'\\\n])*'|`(?:\\.|[^`\\])*`|(//[^\n]*|/\*.*?\*/)""",
+    re.DOTALL,
+)
 MARKS = re.compile(r"^\s*(?:///?<?|/\*\*?<?|\*/|\*|#)|\*/$")
 FORMULA = re.compile(r" {3,}\S|.*\S {3,}\S")  # or a row of a table
 NO_COMMENT = re.compile(r"\s*(SPDX-|NOLINT|clang-format|biome-|eslint-|@ts-|!/|type: |pylint|ruff|noqa|namespace |\})")
@@ -45,7 +48,9 @@ IMAGE = re.compile(r"!\[[^\]]*\]\([^)]*\)")
 LINK = re.compile(r"\[([^\]]*)\]\([^)]*\)")
 CODE = re.compile(r"(`+)(?!`).+?(?<!`)\1(?!`)|\$[^$]+\$")
 SENTENCE_END = re.compile(r"([.!?])['\")\]*_]*\s+(?=\S)")
-ABBREVIATION = re.compile(r"(\b(e\.g|i\.e|eqs?|figs?|vs|cf|approx|ca|al|resp|nos?|pp|incl|min|max)\.|\.\.\.?)$", re.IGNORECASE)
+ABBREVIATION = re.compile(
+    r"(\b(e\.g|i\.e|eqs?|figs?|vs|cf|approx|ca|al|resp|nos?|pp|incl|min|max)\.|\.\.\.?)$", re.IGNORECASE
+)
 WORD = re.compile(r"\w")
 
 
@@ -75,7 +80,7 @@ def paragraphs(text):
             continue
         if item:
             content_indent = item.end()
-            row = row[item.end():]
+            row = row[item.end() :]
         first = first if rows else number
         rows.append(row.strip())
 
@@ -87,7 +92,7 @@ def sentences(text):
         begin = 0
         for end in [*SENTENCE_END.finditer(plain), None]:
             stop = end.end() if end else len(plain)
-            if end and ABBREVIATION.search(plain[begin:end.start(1) + 1]):
+            if end and ABBREVIATION.search(plain[begin : end.start(1) + 1]):
                 continue
             sentence, begin = plain[begin:stop].strip(), stop
             words = sum(1 for word in sentence.split() if WORD.search(word))
@@ -103,13 +108,13 @@ def remarks(path):
         for token in tokenize.generate_tokens(io.StringIO(text).readline):
             is_docstring = token.type == tokenize.STRING and before in (tokenize.NEWLINE, tokenize.INDENT, tokenize.NL)
             if token.type == tokenize.COMMENT or is_docstring:
-                yield from rows_of(token.start[0], token.line[:token.start[1]], token.string.strip("\"'"))
+                yield from rows_of(token.start[0], token.line[: token.start[1]], token.string.strip("\"'"))
             before = token.type
         return
     for match in TEXT_OR_COMMENT.finditer(text):
         if match.group(2):
             row_begin = text.rfind("\n", 0, match.start()) + 1
-            yield from rows_of(text.count("\n", 0, row_begin) + 1, text[row_begin:match.start()], match.group(2))
+            yield from rows_of(text.count("\n", 0, row_begin) + 1, text[row_begin : match.start()], match.group(2))
 
 
 def rows_of(first, before, text):
@@ -137,8 +142,12 @@ def comments(path):
 
 def judge_comments(files, over):
     """Prints the sentences that are long or oblique; whether they are few enough."""
-    found = [(path, first + line - 1, sentence, words)
-             for path in files for first, text in comments(path) for line, sentence, words in sentences(text)]
+    found = [
+        (path, first + line - 1, sentence, words)
+        for path in files
+        for first, text in comments(path)
+        for line, sentence, words in sentences(text)
+    ]
     long = [one for one in found if one[3] > COMMENT_LIMIT]
     oblique = [one for one in found if OBLIQUE.match(one[2])]
     for path, line, sentence, words in found:
@@ -151,7 +160,9 @@ def judge_comments(files, over):
 def summary(name, lengths):
     mean = sum(lengths) / max(len(lengths), 1)
     over = [sum(1 for length in lengths if length > limit) for limit in (LONG, LIMIT)]
-    print(f"{name:32} {len(lengths):5} sentences, mean {mean:4.1f} words, {over[0]:3} over {LONG}, {over[1]:3} over {LIMIT}")
+    print(
+        f"{name:32} {len(lengths):5} sentences, mean {mean:4.1f} words, {over[0]:3} over {LONG}, {over[1]:3} over {LIMIT}"
+    )
     return mean <= MEAN and over[0] <= LONG_SHARE * len(lengths) and over[1] == 0
 
 
@@ -162,10 +173,16 @@ def main():
     parser.add_argument("files", nargs="*", type=Path)
     options = parser.parse_args()
     if options.comments:
-        code = options.files or sorted(path for folder in CODE_FOLDERS for path in (ROOT / folder).rglob("*")
-                                       if path.suffix in CODE_SUFFIXES and "node_modules" not in path.parts)
+        code = options.files or sorted(
+            path
+            for folder in CODE_FOLDERS
+            for path in (ROOT / folder).rglob("*")
+            if path.suffix in CODE_SUFFIXES and "node_modules" not in path.parts
+        )
         return 0 if judge_comments([path.resolve() for path in code], options.over) else 1
-    pages = options.files or sorted(page for pattern in PAGES for page in ROOT.glob(pattern) if "node_modules" not in page.parts)
+    pages = options.files or sorted(
+        page for pattern in PAGES for page in ROOT.glob(pattern) if "node_modules" not in page.parts
+    )
     everything = []
     for page in pages:
         found = list(sentences(page.read_text()))
@@ -174,7 +191,9 @@ def main():
             if options.over and words > options.over:
                 print(f"{page}:{line}: {words} words: {sentence}")
         if found:
-            summary(str(page.relative_to(ROOT) if page.is_relative_to(ROOT) else page), [words for _, _, words in found])
+            summary(
+                str(page.relative_to(ROOT) if page.is_relative_to(ROOT) else page), [words for _, _, words in found]
+            )
     return 0 if summary("all", everything) else 1
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """A simulated suit behind `dermis serve`, and viewers that are not ours: for scripts that measure."""
+
 import json
 import os
 import socket
@@ -18,17 +19,33 @@ def make_model(binary, folder):
     array = ROOT / "examples/chest/array.toml"
     subprocess.run([binary, "simulate", "--array", array, "--scene", "calibration", "--out", folder], check=True)
     model = folder / "chest.safetensors"
-    subprocess.run([binary, "calibrate", "--array", array, "--frames", folder / "frames.csv", "--loads",
-                    folder / "loads.csv", "--out", model], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(
+        [
+            binary,
+            "calibrate",
+            "--array",
+            array,
+            "--frames",
+            folder / "frames.csv",
+            "--loads",
+            folder / "loads.csv",
+            "--out",
+            model,
+        ],
+        check=True,
+        stdout=subprocess.DEVNULL,
+    )
     return model
 
 
 def write_suit(path, model, arrays, rate):
     tables = []
     for k in range(arrays):
-        tables.append(f'[[array]]\nname = "array{k}"\nfrom = "sim:contacts?rate={rate:g}&seed={k + 1}"\n'
-                      f'model = "{model}"\n'
-                      f"base_from_array = {{translation_mm = [{170 * (k % 8)}, {170 * (k // 8)}, 0]}}\n")
+        tables.append(
+            f'[[array]]\nname = "array{k}"\nfrom = "sim:contacts?rate={rate:g}&seed={k + 1}"\n'
+            f'model = "{model}"\n'
+            f"base_from_array = {{translation_mm = [{170 * (k % 8)}, {170 * (k // 8)}, 0]}}\n"
+        )
     path.write_text("\n".join(tables))
 
 

@@ -23,7 +23,8 @@ client.on("error", (error) => failures.push(String(error)));
 client.on("status", ({ level, message }) => level > 0 && failures.push(message));
 client.on("advertise", (channels) => {
   for (const channel of channels) {
-    const reads = channel.topic === "/statistics" ? new MessageReader(parse(channel.schema, { ros2: true })) : undefined;
+    const reads =
+      channel.topic === "/statistics" ? new MessageReader(parse(channel.schema, { ros2: true })) : undefined;
     topics.set(client.subscribe(channel.id), { topic: channel.topic, messages: 0, bytes: 0, reads });
   }
 });

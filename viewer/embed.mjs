@@ -29,7 +29,8 @@ function contentType(file) {
 
 function arrayOf(bytes, index) {
   const lines = [];
-  for (let begin = 0; begin < bytes.length; begin += 32) lines.push(`    ${bytes.subarray(begin, begin + 32).join(",")},`);
+  for (let begin = 0; begin < bytes.length; begin += 32)
+    lines.push(`    ${bytes.subarray(begin, begin + 32).join(",")},`);
   return `constexpr std::array<std::uint8_t, ${bytes.length}> kFile${index}{\n${lines.join("\n")}\n};\n`;
 }
 

@@ -2,8 +2,9 @@
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """A calibration step by step, as in a notebook: describe the array, label what pressed, calibrate, judge.
 
-    calibrate_array.py folder        array.toml, frames.csv, loads.csv, test.csv and test_loads.csv are in it
+calibrate_array.py folder        array.toml, frames.csv, loads.csv, test.csv and test_loads.csv are in it
 """
+
 import argparse
 from pathlib import Path
 
@@ -23,7 +24,9 @@ def main(folder: str) -> None:
     # What is learned.
     model, report = dermis.calibrate(array, recording, loads)
     print(report.choice)
-    print(f"loads of {report.lightest_newtons:.2f} to {report.heaviest_newtons:.2f} N, fit {report.median_fit_error:.2%}")
+    print(
+        f"loads of {report.lightest_newtons:.2f} to {report.heaviest_newtons:.2f} N, fit {report.median_fit_error:.2%}"
+    )
     model.write(place / "model.safetensors", force=True)  # that of an earlier run is replaced
 
     # How good it is on frames that it has not seen, beside plain tables.

@@ -6,6 +6,7 @@
 
 joints.csv: time_s, then one column a joint. Each frame gets the angles between the two lines around it.
 """
+
 import argparse
 import csv
 import os

@@ -2,8 +2,9 @@
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Forces of a live array in the terminal, without further packages.
 
-    live_view.py sim:contacts?rate=100 chest.safetensors
+live_view.py sim:contacts?rate=100 chest.safetensors
 """
+
 import argparse
 import time
 
@@ -40,7 +41,9 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("uri", help="of a device, the simulator or a recording")
     parser.add_argument("model", help="model file of dermis calibrate")
-    parser.add_argument("seconds", type=float, nargs="?", default=float("inf"), help="how long; without it until Ctrl-C")
+    parser.add_argument(
+        "seconds", type=float, nargs="?", default=float("inf"), help="how long; without it until Ctrl-C"
+    )
     options = parser.parse_args()
     try:
         main(options.uri, options.model, options.seconds)

@@ -10,6 +10,7 @@
 Arrays are (rows, cols), row-major; row = driven line, col = sensed line. Units are SI; temperatures are in Celsius, times
 in nanoseconds. The stub __init__.pyi says of every argument and result what it is; docs/python.md shows how they go together.
 """
+
 import enum as _enum
 
 import numpy as _numpy  # noqa: F401  _dermis needs it: where it is missing, this line says so
@@ -110,7 +111,37 @@ def evaluate(model, frames, loads):
 
 
 __all__ = [
-    "ArrayDescription", "BadInput", "CalibrationReport", "Contact", "ContactTracker", "Error", "Failed", "ForceFrame",
-    "Forces", "FrameStatus", "Load", "Model", "Pipeline", "RawFrame", "Recogniser", "Recognition", "Recording",
-    "Server", "Source", "Suit", "SuitArray", "TaxelStatus", "Threat", "ThreatMonitor", "__version__", "calibrate", "circuit", "evaluate", "open", "read_array", "read_loads", "read_model", "serve",
+    "ArrayDescription",
+    "BadInput",
+    "CalibrationReport",
+    "Contact",
+    "ContactTracker",
+    "Error",
+    "Failed",
+    "ForceFrame",
+    "Forces",
+    "FrameStatus",
+    "Load",
+    "Model",
+    "Pipeline",
+    "RawFrame",
+    "Recogniser",
+    "Recognition",
+    "Recording",
+    "Server",
+    "Source",
+    "Suit",
+    "SuitArray",
+    "TaxelStatus",
+    "Threat",
+    "ThreatMonitor",
+    "__version__",
+    "calibrate",
+    "circuit",
+    "evaluate",
+    "open",
+    "read_array",
+    "read_loads",
+    "read_model",
+    "serve",
 ]

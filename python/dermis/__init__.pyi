@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Shapes are (rows, cols), row-major. A path is a str or an os.PathLike."""
+
 import enum
 import os
 from collections.abc import AsyncIterator, Callable, Iterable, Iterator, Sequence

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Models and pipelines can be copied and pickled: to other processes, too."""
+
 import copyreg
 import os
 import tempfile

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """How objects show themselves: one line for repr(), a heat map in notebooks."""
+
 import numpy
 
 from dermis import FrameStatus, _dermis  # type: ignore[attr-defined]  # _dermis has no stub
@@ -61,8 +62,10 @@ def _of_load(load):
 
 
 def _of_report(report):
-    return (f"<dermis.CalibrationReport of {report.frames} frames, {report.lightest_newtons:.3g} to "
-            f"{report.heaviest_newtons:.3g} N, fit {report.median_fit_error:.2%}>")
+    return (
+        f"<dermis.CalibrationReport of {report.frames} frames, {report.lightest_newtons:.3g} to "
+        f"{report.heaviest_newtons:.3g} N, fit {report.median_fit_error:.2%}>"
+    )
 
 
 def _counts_png(self):
@@ -85,13 +88,23 @@ def _forces_png(self):
 def show_well():
     """Gives the classes of the module their __repr__ and pictures."""
     lines = {
-        _dermis.Recording: _of_recording, _dermis.RawFrame: _of_raw, _dermis.ForceFrame: _of_force,
-        _dermis.Forces: _of_forces, _dermis.Source: _of_source, _dermis.Load: _of_load,
+        _dermis.Recording: _of_recording,
+        _dermis.RawFrame: _of_raw,
+        _dermis.ForceFrame: _of_force,
+        _dermis.Forces: _of_forces,
+        _dermis.Source: _of_source,
+        _dermis.Load: _of_load,
         _dermis.CalibrationReport: _of_report,
-        _dermis.Pipeline: lambda pipeline: f"<dermis.Pipeline of '{pipeline.model.array.name}' {_size(pipeline.model.array)}>",
+        _dermis.Pipeline: lambda pipeline: (
+            f"<dermis.Pipeline of '{pipeline.model.array.name}' {_size(pipeline.model.array)}>"
+        ),
         _dermis.Server: lambda server: f"<dermis.Server at {server.url}>",
     }
     for kind, line in lines.items():
         kind.__repr__ = line
-    for kind, picture in ((_dermis.RawFrame, _counts_png), (_dermis.ForceFrame, _force_png), (_dermis.Forces, _forces_png)):
+    for kind, picture in (
+        (_dermis.RawFrame, _counts_png),
+        (_dermis.ForceFrame, _force_png),
+        (_dermis.Forces, _forces_png),
+    ):
         kind._repr_png_ = picture

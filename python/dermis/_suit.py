@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """The arrays of a suit.toml at work."""
+
 from dermis import _dermis  # type: ignore[attr-defined]  # it has no stub
 
 

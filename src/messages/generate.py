@@ -50,8 +50,21 @@ MEMBER = re.compile(r"^([\w/]+)(\[\])? (\w+)(?: *#.*)?$", re.MULTILINE)
 
 # Values of type_description_interfaces/FieldType, from which type hashes are made.
 NESTED_TYPE = 1
-TYPE_IDS = {"int8": 2, "uint8": 3, "int16": 4, "uint16": 5, "int32": 6, "uint32": 7, "int64": 8, "uint64": 9,
-            "float32": 10, "float64": 11, "bool": 15, "byte": 16, "string": 17}
+TYPE_IDS = {
+    "int8": 2,
+    "uint8": 3,
+    "int16": 4,
+    "uint16": 5,
+    "int32": 6,
+    "uint32": 7,
+    "int64": 8,
+    "uint64": 9,
+    "float32": 10,
+    "float64": 11,
+    "bool": 15,
+    "byte": 16,
+    "string": 17,
+}
 SEQUENCE = 144  # more than the type of its elements
 
 
@@ -85,15 +98,22 @@ def described(message, texts):
     for used, sequence, name in MEMBER.findall(texts[message]):
         type_id = TYPE_IDS.get(used, NESTED_TYPE) + (SEQUENCE if sequence else 0)
         nested = full_name(used) if used not in TYPE_IDS else ""
-        fields.append({"name": name, "type": {"type_id": type_id, "capacity": 0, "string_capacity": 0, "nested_type_name": nested}})
+        fields.append(
+            {
+                "name": name,
+                "type": {"type_id": type_id, "capacity": 0, "string_capacity": 0, "nested_type_name": nested},
+            }
+        )
     return {"type_name": full_name(message), "fields": fields}
 
 
 def type_hash(message, texts):
     """RIHS01 of REP 2016."""
     others = sorted(with_dependencies(message, texts)[1:], key=full_name)
-    description = {"type_description": described(message, texts),
-                   "referenced_type_descriptions": [described(other, texts) for other in others]}
+    description = {
+        "type_description": described(message, texts),
+        "referenced_type_descriptions": [described(other, texts) for other in others],
+    }
     return "RIHS01_" + hashlib.sha256(json.dumps(description).encode()).hexdigest()
 
 
@@ -111,17 +131,19 @@ def assertions(message, enumeration, texts):
     constants = [(name.lower(), value) for name, value in CONSTANT.findall(texts[message])]
     enumerators = [(f"{enumeration}::{SPELLED_OUT.get(name, name)}", value) for name, value in constants]
     cases = [name for name, _ in enumerators] + UNNAMED.get(enumeration, [])
-    return "\n".join([
-        f"// {message}.msg",
-        *(f"static_assert({name} == {enumeration}{{{value}}});" for name, value in enumerators),
-        f"[[maybe_unused]] constexpr void assert_all_are_there({enumeration} value) {{",
-        "  switch (value) {",
-        *(f"    case {case}:" for case in cases),
-        "      break;",
-        "  }",
-        "}",
-        "",
-    ])
+    return "\n".join(
+        [
+            f"// {message}.msg",
+            *(f"static_assert({name} == {enumeration}{{{value}}});" for name, value in enumerators),
+            f"[[maybe_unused]] constexpr void assert_all_are_there({enumeration} value) {{",
+            "  switch (value) {",
+            *(f"    case {case}:" for case in cases),
+            "      break;",
+            "  }",
+            "}",
+            "",
+        ]
+    )
 
 
 def source(texts):

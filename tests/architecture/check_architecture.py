@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Holds the rules of ARCHITECTURE.md against the sources. Usage: check_architecture.py ROOT"""
+
 import re
 import sys
 from pathlib import Path
@@ -96,7 +97,7 @@ def header_violations(root):
             if bracket == "<" and not STANDARD_HEADER.fullmatch(name):
                 yield f"{place}: a public header must not include <{name}>"
             if bracket == '"' and not name.startswith("dermis/"):
-                yield f"{place}: a public header must not include the private \"{name}\""
+                yield f'{place}: a public header must not include the private "{name}"'
         header = path.relative_to(include / "dermis")
         test = root / "tests" / header.parent / f"{header.stem}_test.cpp"
         if not test.exists():
@@ -122,8 +123,11 @@ def permission_violations(root, allowed):
     """Each permission of the table is used; a module may be linked for others to have it."""
     used = {module: {module} for module in allowed}
     for path, module in sources(root):
-        used.get(module, set()).update(name.split("/")[1] if name.startswith("dermis/") else name.split("/")[0]
-                                       for _, name in INCLUDE.findall(path.read_text()) if "/" in name)
+        used.get(module, set()).update(
+            name.split("/")[1] if name.startswith("dermis/") else name.split("/")[0]
+            for _, name in INCLUDE.findall(path.read_text())
+            if "/" in name
+        )
     for module, names in sorted(allowed.items()):
         for name in sorted(names - used[module]):
             yield f"ARCHITECTURE.md: {module} makes no use of {name}"

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """The rules are worth something only if they find what breaks them."""
+
 import tempfile
 import unittest
 from pathlib import Path
@@ -41,7 +42,10 @@ class Rules(unittest.TestCase):
         self.write("CHANGELOG.md", "# Changelog\n\n## [1.2.3] - 2026-01-01\n")
         self.write("include/dermis/core/frames.hpp", HEADER + "#include <vector>\n")
         self.write("include/dermis/fusion/force.hpp", HEADER + '#include "dermis/core/frames.hpp"\n')
-        self.write("src/fusion/force.cpp", SPDX + '#include "dermis/core/frames.hpp"\n#include "fusion/table.hpp"\n#include <tbb/tbb.h>\n')
+        self.write(
+            "src/fusion/force.cpp",
+            SPDX + '#include "dermis/core/frames.hpp"\n#include "fusion/table.hpp"\n#include <tbb/tbb.h>\n',
+        )
         self.write("src/fusion/table.hpp", HEADER)
         self.write("src/fusion/fit/fit.cpp", SPDX + '#include "fusion/table.hpp"\n#include "fusion/tables/knots.hpp"\n')
         self.write("apps/dermis/main.cpp", SPDX + '#include "dermis/fusion/force.hpp"\n')
@@ -110,7 +114,10 @@ class Rules(unittest.TestCase):
         self.expect("apps makes no use of fusion")
 
     def test_a_text_of_the_library_that_names_an_option(self):
-        self.write("src/fusion/force.cpp", SPDX + 'auto text = "give the rate, --rate";  // "--rate" in a comment is none\nx--y;\n')
+        self.write(
+            "src/fusion/force.cpp",
+            SPDX + 'auto text = "give the rate, --rate";  // "--rate" in a comment is none\nx--y;\n',
+        )
         self.expect("src/fusion/force.cpp:3: a text of the library names an option")
 
     def test_a_private_header_in_a_public_one(self):

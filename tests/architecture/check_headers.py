@@ -5,6 +5,7 @@
 
 Without --all, those that have changed since the merge base with origin/main; where there is no such branch, since the
 last commit of twelve hours ago; where git knows neither, all."""
+
 import concurrent.futures
 import os
 import subprocess
@@ -28,8 +29,9 @@ def changed_since_base():
 
 def errors_of(header, compiler, folders):
     include = f'#include "{header}"\n'
-    result = subprocess.run([compiler, *(f"-I{folder}" for folder in folders), *FLAGS], input=include * 2,
-                            capture_output=True, text=True)
+    result = subprocess.run(
+        [compiler, *(f"-I{folder}" for folder in folders), *FLAGS], input=include * 2, capture_output=True, text=True
+    )
     return result.stderr if result.returncode else ""
 
 
@@ -37,10 +39,17 @@ def main():
     arguments = sys.argv[1:]
     changed = None if "--all" in arguments else changed_since_base()
     compiler, *folders = [argument for argument in arguments if argument != "--all"]
-    headers = sorted(str(path.relative_to(INCLUDE)) for path in INCLUDE.rglob("*.hpp")
-                     if changed is None or str(path.relative_to(ROOT)) in changed)
+    headers = sorted(
+        str(path.relative_to(INCLUDE))
+        for path in INCLUDE.rglob("*.hpp")
+        if changed is None or str(path.relative_to(ROOT)) in changed
+    )
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        errors = [error for error in pool.map(lambda header: errors_of(header, compiler, [INCLUDE, *folders]), headers) if error]
+        errors = [
+            error
+            for error in pool.map(lambda header: errors_of(header, compiler, [INCLUDE, *folders]), headers)
+            if error
+        ]
     print(*errors, f"{len(headers)} headers compiled alone, {len(errors)} do not", sep="\n")
     return 1 if errors else 0
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Holds the shared libraries of a program that runs forces to a list. Usage: check_links.py PROGRAM"""
+
 import re
 import subprocess
 import sys

@@ -4,6 +4,7 @@
 
 A target of the Makefile installs groups, and reaches the files that its recipe names, and those which these name.
 What they need is in one of its groups. What they can do without is in any group. Nothing is installed for nobody."""
+
 import functools
 import re
 import sys
@@ -12,36 +13,83 @@ from pathlib import Path
 
 # Packages, and the names of what they bring: for cmake to find, commands, modules of Python.
 BRINGS = {
-    "python3": "Python3 python3", "cmake": "cmake ctest", "ccache": "ccache", "nodejs": "node", "npm": "npm",
-    "build-essential": "c++ nm dpkg-architecture dpkg-buildpackage", "pkg-config": "PkgConfig",
-    "libeigen3-dev": "Eigen3", "libhwy-dev": "HWY", "libtbb-dev": "TBB", "libtomlplusplus-dev": "tomlplusplus",
-    "libcli11-dev": "CLI11", "libfmt-dev": "fmt", "nlohmann-json3-dev": "nlohmann_json", "libboost-dev": "Boost",
-    "liblz4-dev": "liblz4", "libzstd-dev": "libzstd", "zlib1g-dev": "ZLIB", "libdeflate-dev": "libdeflate",
-    "libbz2-dev": "BZip2", "libexpat1-dev": "EXPAT", "libpng-dev": "PNG", "libhdf5-dev": "hdf5-serial",
-    "pybind11-dev": "pybind11", "libfastrtps-dev": "fastrtps", "python3-numpy": "numpy",
-    "libgtest-dev": "GTest", "libbenchmark-dev": "benchmark", "ngspice": "ngspice", "python3-h5py": "h5py",
-    "abigail-tools": "abidiff", "chromium": "chromium", "cyclonedds-dev": "CycloneDDS", "cyclonedds-tools": "idlc",
-    "universal-ctags": "ctags", "clang-format-16": "clang-format-16", "clang-tidy-16": "clang-tidy-16",
-    "libtorch-dev": "torch torch_cpu c10 torch/csrc/api/include/torch/torch.h", "libfann-dev": "floatfann floatfann.h",
-    "libopenblas-dev": "openblas openblas_config.h", "lintian": "lintian", "mmdebstrap": "mmdebstrap",
+    "python3": "Python3 python3",
+    "cmake": "cmake ctest",
+    "ccache": "ccache",
+    "nodejs": "node",
+    "npm": "npm",
+    "build-essential": "c++ nm dpkg-architecture dpkg-buildpackage",
+    "pkg-config": "PkgConfig",
+    "libeigen3-dev": "Eigen3",
+    "libhwy-dev": "HWY",
+    "libtbb-dev": "TBB",
+    "libtomlplusplus-dev": "tomlplusplus",
+    "libcli11-dev": "CLI11",
+    "libfmt-dev": "fmt",
+    "nlohmann-json3-dev": "nlohmann_json",
+    "libboost-dev": "Boost",
+    "liblz4-dev": "liblz4",
+    "libzstd-dev": "libzstd",
+    "zlib1g-dev": "ZLIB",
+    "libdeflate-dev": "libdeflate",
+    "libbz2-dev": "BZip2",
+    "libexpat1-dev": "EXPAT",
+    "libpng-dev": "PNG",
+    "libhdf5-dev": "hdf5-serial",
+    "pybind11-dev": "pybind11",
+    "libfastrtps-dev": "fastrtps",
+    "python3-numpy": "numpy",
+    "libgtest-dev": "GTest",
+    "libbenchmark-dev": "benchmark",
+    "ngspice": "ngspice",
+    "python3-h5py": "h5py",
+    "abigail-tools": "abidiff",
+    "chromium": "chromium",
+    "cyclonedds-dev": "CycloneDDS",
+    "cyclonedds-tools": "idlc",
+    "universal-ctags": "ctags",
+    "clang-format-16": "clang-format-16",
+    "clang-tidy-16": "clang-tidy-16",
+    "libtorch-dev": "torch torch_cpu c10 torch/csrc/api/include/torch/torch.h",
+    "libfann-dev": "floatfann floatfann.h",
+    "libopenblas-dev": "openblas openblas_config.h",
+    "lintian": "lintian",
+    "mmdebstrap": "mmdebstrap",
     "debhelper": "dh dh_compress dh_installsystemd dh_shlibdeps dh_strip",
-    "systemd": "systemd-analyze", "systemd-container": "systemd-nspawn", "groff-base": "groff", "mandoc": "mandoc",
-    "zsh": "zsh", "mkdocs": "mkdocs", "doxygen": "doxygen",
+    "systemd": "systemd-analyze",
+    "systemd-container": "systemd-nspawn",
+    "groff-base": "groff",
+    "mandoc": "mandoc",
+    "zsh": "zsh",
+    "mkdocs": "mkdocs",
+    "doxygen": "doxygen",
 }
 PACKAGE_OF = {name: package for package, names in BRINGS.items() for name in names.split()}
 # What has no name of its own: a text, and the packages that are needed where it stands.
 TRACES = {
-    "LANGUAGES CXX": "build-essential", "Interpreter Development.Module": "python3-dev", "npm ci": "ca-certificates",
-    "cmake --preset": "ninja-build", "cmake --preset asan": "clang-16 libclang-rt-16-dev",
-    "cmake --preset lint": "cyclonedds-dev cyclonedds-tools", "#include <clang/": "libclang-16-dev llvm-16-dev",
-    '"mypy.stubtest"': "mypy", '"-m", "venv"': "python3-venv", "python3 -m venv": "python3-venv", "dh $@ --with python3": "dh-python",
-    '"name": "material"': "mkdocs-material", "--target dermis_python": "python3-numpy",
-    "#!/usr/bin/python3": "python3", '"--zstd"': "zstd", "build/release/tests/": "libgtest-dev libbenchmark-dev",
+    "LANGUAGES CXX": "build-essential",
+    "Interpreter Development.Module": "python3-dev",
+    "npm ci": "ca-certificates",
+    "cmake --preset": "ninja-build",
+    "cmake --preset asan": "clang-16 libclang-rt-16-dev",
+    "cmake --preset lint": "cyclonedds-dev cyclonedds-tools",
+    "#include <clang/": "libclang-16-dev llvm-16-dev",
+    '"mypy.stubtest"': "mypy",
+    '"-m", "venv"': "python3-venv",
+    "python3 -m venv": "python3-venv",
+    "dh $@ --with python3": "dh-python",
+    '"name": "material"': "mkdocs-material",
+    "--target dermis_python": "python3-numpy",
+    "#!/usr/bin/python3": "python3",
+    '"--zstd"': "zstd",
+    "build/release/tests/": "libgtest-dev libbenchmark-dev",
 }
 # What a bare Debian has, with make, git and sudo, and what bash is made of.
-BARE = set("""apt-config apt-get bash case cat cd cmp command cp date declare dirname do done dpkg-query echo env esac
+BARE = set(
+    """apt-config apt-get bash case cat cd cmp command cp date declare dirname do done dpkg-query echo env esac
 exec exit export fi find flock for git grep id if install ldd local ls make mkdir mktemp mount nproc printf return rm
-sed set sh sudo tail tar then touch trap umount while xargs""".split())
+sed set sh sudo tail tar then touch trap umount while xargs""".split()
+)
 # Our own package, what ROS 2 brings to a launch file, and what tests/requirements.txt names.
 MODULES_OF_OTHERS = {"dermis", "launch", "rosbags", "safetensors"}
 
@@ -57,11 +105,15 @@ STARTED = re.compile(r'(?:subprocess\.\w+|spawn|execFileSync)\(\[?\s*"([\w.+-]+)
 TRIED = re.compile(r'shutil\.which\("([\w.+-]+)"\)')
 QUOTED = re.compile(r'"(?:/usr/bin/)?([\w.+-]+)[" ]')
 # Arrays and texts.
-NO_COMMANDS = re.compile(r"""\w+\+?=\([^)]*\)|(?<=[=\s])"(?:[^"$\n]|\$(?!\())*"|'[^'\n]*'|<<END$.*?^END$""",
-                         re.MULTILINE | re.DOTALL)
+NO_COMMANDS = re.compile(
+    r"""\w+\+?=\([^)]*\)|(?<=[=\s])"(?:[^"$\n]|\$(?!\())*"|'[^'\n]*'|<<END$.*?^END$""", re.MULTILINE | re.DOTALL
+)
 FUNCTION = re.compile(r"^([\w-]+)\(\)", re.MULTILINE)
-COMMAND = re.compile(r"(?:^\s*|\$\(|[|&;{]\s+|\b(?:if|then|do|else|while|exec)\s+)(?:!\s+)?(?:\w+=[^\s(]*\s+)*"
-                     r"([a-z][\w.+-]*)(?=[\s;]|$|\)(?!\s))", re.MULTILINE)
+COMMAND = re.compile(
+    r"(?:^\s*|\$\(|[|&;{]\s+|\b(?:if|then|do|else|while|exec)\s+)(?:!\s+)?(?:\w+=[^\s(]*\s+)*"
+    r"([a-z][\w.+-]*)(?=[\s;]|$|\)(?!\s))",
+    re.MULTILINE,
+)
 
 
 def groups_of(setup):

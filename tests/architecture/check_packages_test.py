@@ -3,6 +3,7 @@
 """A package that a group of scripts/setup lacks is named, and one that nothing uses.
 
 Usage: check_packages_test.py ROOT"""
+
 import re
 import sys
 import unittest
@@ -42,8 +43,11 @@ class Packages(unittest.TestCase):
         self.named("scripts/site uses doxygen of doxygen, which is in no group of make site", makefile=makefile)
 
     def test_what_no_package_brings_is_named(self):
-        for use, text in {"jq": "#!/bin/bash\njq . file\n", "yaml": "#!/usr/bin/python3\nimport yaml\n",
-                          "xz": '#!/usr/bin/python3\nsubprocess.run(["xz", "-d"])\n'}.items():
+        for use, text in {
+            "jq": "#!/bin/bash\njq . file\n",
+            "yaml": "#!/usr/bin/python3\nimport yaml\n",
+            "xz": '#!/usr/bin/python3\nsubprocess.run(["xz", "-d"])\n',
+        }.items():
             self.named(f"scripts/new uses {use} of a package that is not in the table", changed={"scripts/new": text})
 
     def test_a_tool_of_the_tests_that_the_build_requires_is_named(self):

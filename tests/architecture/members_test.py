@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """scripts/members.py finds the classes that it is for."""
+
 import sys
 import tempfile
 import unittest
@@ -20,7 +21,9 @@ class LargeClasses(unittest.TestCase):
             return members.large_classes(Path(folder), members.MOST)[0]
 
     def test_a_class_of_sixteen_members_is_named(self):
-        self.assertEqual(self.large(f"/// Much.\nstruct Large {{\n{MEMBERS}}};\n"), [(16, "Large", "src/one.hpp", None)])
+        self.assertEqual(
+            self.large(f"/// Much.\nstruct Large {{\n{MEMBERS}}};\n"), [(16, "Large", "src/one.hpp", None)]
+        )
 
     def test_its_comment_gives_the_reason(self):
         text = f"/// Much. Many members: as the\n/// formula has.\nstruct Large {{\n{MEMBERS}}};\n"

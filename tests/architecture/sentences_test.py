@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """scripts/sentences.py --comments reads the comments that it is for."""
+
 import sys
 import tempfile
 import unittest
@@ -15,15 +16,20 @@ class Comments(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / name
             path.write_text(text)
-            return [(first + line - 1, sentence) for first, prose in sentences.comments(path)
-                    for line, sentence, _ in sentences.sentences(prose)]
+            return [
+                (first + line - 1, sentence)
+                for first, prose in sentences.comments(path)
+                for line, sentence, _ in sentences.sentences(prose)
+            ]
 
     def test_rows_below_each_other_are_one_comment(self):
-        text = "/// The force of\n/// a taxel. It is in newtons.\nfloat force = 0;  // no \"//\" here\n"
+        text = '/// The force of\n/// a taxel. It is in newtons.\nfloat force = 0;  // no "//" here\n'
         self.assertEqual(self.read("one.hpp", text), [(1, "The force of a taxel."), (1, "It is in newtons.")])
 
     def test_a_label_beside_code_is_no_sentence(self):
-        self.assertEqual(self.read("one.hpp", "float ohm;  ///< Of each line [ohm]\nfloat volts;  ///< Of each line.\n"), [])
+        self.assertEqual(
+            self.read("one.hpp", "float ohm;  ///< Of each line [ohm]\nfloat volts;  ///< Of each line.\n"), []
+        )
 
     def test_a_sentence_beside_code_counts(self):
         text = "float ohm;  ///< The line has this resistance from end\n            ///< to end.\n/// The next one.\nfloat volts;\n"
@@ -31,15 +37,19 @@ class Comments(unittest.TestCase):
         self.assertEqual(self.read("one.hpp", text), expected)
 
     def test_texts_are_no_comments(self):
-        self.assertEqual(self.read("one.cpp", 'auto url = "http://one.two three."; char quote = \'"\';  // Just one.\n'), [])
+        self.assertEqual(
+            self.read("one.cpp", 'auto url = "http://one.two three."; char quote = \'"\';  // Just one.\n'), []
+        )
 
     def test_formulas_and_tables_are_left_out(self):
         text = "/// The law is\n///\n///   F = a + b z\n///\n/// for every taxel.\n"
         self.assertEqual(self.read("one.hpp", text), [(1, "The law is"), (5, "for every taxel.")])
 
     def test_comments_of_typescript_are_read(self):
-        self.assertEqual(self.read("one.ts", "/**\n * Draws the map.\n * Once a frame.\n */\nconst a = `// no comment`;\n"),
-                         [(2, "Draws the map."), (2, "Once a frame.")])
+        self.assertEqual(
+            self.read("one.ts", "/**\n * Draws the map.\n * Once a frame.\n */\nconst a = `// no comment`;\n"),
+            [(2, "Draws the map."), (2, "Once a frame.")],
+        )
 
     def test_docstrings_and_comments_of_python_are_read(self):
         text = 'def read():\n    """Reads a file.\n\n    Once only."""\n\n    # The rest follows.\n    return "no docstring here."\n'

@@ -4,6 +4,7 @@
 
 Its library has the interface's types and no others, so that its ABI fits a page. libdermis_c has the same types, as it is
 compiled against the same header, and programs_test.py holds its symbols to those of the header."""
+
 import re
 import sys
 from pathlib import Path

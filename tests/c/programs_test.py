@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Programs of C99 get the forces of the command line, linked to libdermis_c or loading it."""
+
 import csv
 import re
 import struct
@@ -43,8 +44,18 @@ class Programs(unittest.TestCase):
         for scene, more in (("calibration", ()), ("multitouch", ("--frames", 50))):
             run(DERMIS, "simulate", "--array", folder / "array.toml", "--scene", scene, "--out", folder / scene, *more)
         cls.model, cls.frames = folder / "pad.safetensors", folder / "multitouch/frames.csv"
-        run(DERMIS, "calibrate", "--array", folder / "array.toml", "--frames", folder / "calibration/frames.csv",
-            "--loads", folder / "calibration/loads.csv", "--out", cls.model)
+        run(
+            DERMIS,
+            "calibrate",
+            "--array",
+            folder / "array.toml",
+            "--frames",
+            folder / "calibration/frames.csv",
+            "--loads",
+            folder / "calibration/loads.csv",
+            "--out",
+            cls.model,
+        )
 
     @classmethod
     def tearDownClass(cls):
@@ -54,7 +65,9 @@ class Programs(unittest.TestCase):
         run(DERMIS, "run", "--model", self.model, "--in", self.frames, "--out", self.folder / "forces.csv")
         with open(self.folder / "forces.csv") as file:
             expected = [[bits(cell) for cell in row[2:]] for row in list(csv.reader(file))[1:]]
-        printed = [[bits(cell) for cell in line.split(",")] for line in run(FORCES, self.model, self.frames).splitlines()]
+        printed = [
+            [bits(cell) for cell in line.split(",")] for line in run(FORCES, self.model, self.frames).splitlines()
+        ]
         self.assertEqual(len(printed), 50)
         self.assertEqual(printed, expected)
 

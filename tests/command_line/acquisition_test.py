@@ -2,6 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Devices, real ones as far as a computer has them: pseudo-terminals, sockets, and the emulated device on the other
 side. Contents are compared, never times."""
+
 import contextlib
 import fcntl
 import glob
@@ -20,7 +21,18 @@ import support
 from support import SmallArray, dermis, error_lines, files_limited_to
 
 PATIENCE = 120  # [s], for a loaded computer
-PROTOCOLS = ["3dvitac", "csv", "dermis", "flexitac", "m1616", "pressure-mat", "stag", "tactileglove", "wiresens", "wuji"]
+PROTOCOLS = [
+    "3dvitac",
+    "csv",
+    "dermis",
+    "flexitac",
+    "m1616",
+    "pressure-mat",
+    "stag",
+    "tactileglove",
+    "wiresens",
+    "wuji",
+]
 SHAPES = {"m1616": (16, 16), "pressure-mat": (56, 28), "wuji": (24, 32), "tactileglove": (8, 8)}
 MOST_COUNTS = {"flexitac": 255, "pressure-mat": 207, "3dvitac": 1023, "stag": 1023}
 
@@ -44,7 +56,7 @@ def table(path):
     """The taxels of a frames.csv or forces.csv, as text."""
     lines = [line.split(",") for line in path.read_text().splitlines()]
     first = lines[0].index("r0c0")
-    return [line[first:first + len(lines[0]) - first] for line in lines[1:]]
+    return [line[first : first + len(lines[0]) - first] for line in lines[1:]]
 
 
 class FramesOfAnyShape:
@@ -78,7 +90,7 @@ class Terminal:
 
     def send(self, data):
         while data:
-            data = data[os.write(self.master, data):]
+            data = data[os.write(self.master, data) :]
 
     def is_open_elsewhere(self):
         name, own = os.ttyname(self.slave), f"/proc/{os.getpid()}/"
@@ -122,10 +134,25 @@ class Devices(SmallArray):
 
     def encoded(self, protocol, rows, cols, count, **options):
         """Frames and the bytes of a device that sends them."""
-        frames = FramesOfAnyShape.write(self.work / f"{protocol}.csv", rows, cols, count,
-                                        MOST_COUNTS.get(protocol, 4095), **options)
-        result = subprocess.run([support.BINARY, "emulate", "--protocol", protocol, "--in", str(frames), "--rate", "1e6",
-                                 "--to", "stdout:"], capture_output=True, timeout=PATIENCE)
+        frames = FramesOfAnyShape.write(
+            self.work / f"{protocol}.csv", rows, cols, count, MOST_COUNTS.get(protocol, 4095), **options
+        )
+        result = subprocess.run(
+            [
+                support.BINARY,
+                "emulate",
+                "--protocol",
+                protocol,
+                "--in",
+                str(frames),
+                "--rate",
+                "1e6",
+                "--to",
+                "stdout:",
+            ],
+            capture_output=True,
+            timeout=PATIENCE,
+        )
         self.assertEqual(result.returncode, 0, result.stderr)
         return table(frames), result.stdout
 
@@ -158,8 +185,15 @@ class Emulation(Devices):
         recording = self.work / f"{protocol}.mcap"
         device = self.start("emulate", "--protocol", protocol, "--in", frames, "--rate", 200)
         name = device.stdout.readline().strip()
-        result = dermis("record", "--from", f"serial://{name}?protocol={protocol}&rows={rows}&cols={cols}", "--frames",
-                        60, "--out", recording)
+        result = dermis(
+            "record",
+            "--from",
+            f"serial://{name}?protocol={protocol}&rows={rows}&cols={cols}",
+            "--frames",
+            60,
+            "--out",
+            recording,
+        )
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(finish(device)[0], 0)
         self.assert_recorded(recording, table(frames))
@@ -177,18 +211,25 @@ class Emulation(Devices):
     def test_standard_input(self):
         frames, data = self.encoded("dermis", 6, 10, 60)
         recording = self.work / "stdin.mcap"
-        result = subprocess.run([support.BINARY, "record", "--from", "stdin:?protocol=auto", "--out", str(recording)],
-                                input=data, capture_output=True, timeout=PATIENCE)
+        result = subprocess.run(
+            [support.BINARY, "record", "--from", "stdin:?protocol=auto", "--out", str(recording)],
+            input=data,
+            capture_output=True,
+            timeout=PATIENCE,
+        )
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assert_recorded(recording, frames)
-
 
     def test_a_wrong_output_is_told_before_the_device_speaks(self):
         missing = self.work / "missing" / "r.mcap"
         for out, word, status in [(self.work / "r.foo", "format of frames", 2), (missing, "No such file", 1)]:
             with self.subTest(out.name):
-                with subprocess.Popen([support.BINARY, "record", "--from", "stdin:?protocol=dermis", "--out", out],
-                                      stdin=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as silent:
+                with subprocess.Popen(
+                    [support.BINARY, "record", "--from", "stdin:?protocol=dermis", "--out", out],
+                    stdin=subprocess.PIPE,
+                    stderr=subprocess.PIPE,
+                    text=True,
+                ) as silent:
                     self.addCleanup(silent.kill)
                     self.assertEqual(silent.wait(PATIENCE), status)
                     lines = silent.stderr.read().splitlines()
@@ -342,13 +383,14 @@ class Refused(Devices):
         times = [f"{20 * k}," for k in range(40)]
         separators = ["rows of 10 readings", "print an empty line between frames, or whole frames in one line"]
         for text, query, words in [
-                (line * 40, "", ["120 readings", "rows=12&cols=10"]),
-                ("".join(time + line for time in times), "", ["a time and 120 readings", "rows=12&cols=10"]),
-                (row * 120, "", ["10 readings", "print an empty line between frames"]),
-                (row * 120, "?rows=12&cols=10", separators),
-                ("ready\n" + row * 120, "?rows=12&cols=10", separators),
-                ("\n" + row * 120, "?rows=12&cols=10", separators),
-                ("[" + line[:-1] + "]\n", "", ["json", "120 readings", "rows=12&cols=10"])]:
+            (line * 40, "", ["120 readings", "rows=12&cols=10"]),
+            ("".join(time + line for time in times), "", ["a time and 120 readings", "rows=12&cols=10"]),
+            (row * 120, "", ["10 readings", "print an empty line between frames"]),
+            (row * 120, "?rows=12&cols=10", separators),
+            ("ready\n" + row * 120, "?rows=12&cols=10", separators),
+            ("\n" + row * 120, "?rows=12&cols=10", separators),
+            ("[" + line[:-1] + "]\n", "", ["json", "120 readings", "rows=12&cols=10"]),
+        ]:
             path = self.work / "bytes"
             path.write_text(text * 5 if text.startswith("[") else text)
             with self.subTest(text=text[:30], query=query):
@@ -382,8 +424,9 @@ class Refused(Devices):
         self.refuse(self.record("serial:///dev/null?protocol=csv&rows=9&cols=9", "--array", self.array), ["9x9", "4x5"])
 
     def test_forces_without_a_place(self):
-        self.refuse(["record", "--from", "sim:idle?frames=3", "--model", self.model, "--out", self.work / "r.csv"],
-                    [".mcap"])
+        self.refuse(
+            ["record", "--from", "sim:idle?frames=3", "--model", self.model, "--out", self.work / "r.csv"], [".mcap"]
+        )
 
     def test_what_was_there_stays_where_nothing_comes(self):
         recording = self.written("r.mcap", "what was there")
@@ -395,8 +438,16 @@ class Refused(Devices):
         for kilobytes in range(90, 116):
             with self.subTest(kilobytes):
                 recording = self.work / f"{kilobytes}.mcap"
-                result = dermis("record", "--from", "sim:multitouch?rows=16&cols=16&rate=500", "--seconds", 60, "--out",
-                                recording, **files_limited_to(1024 * kilobytes))
+                result = dermis(
+                    "record",
+                    "--from",
+                    "sim:multitouch?rows=16&cols=16&rate=500",
+                    "--seconds",
+                    60,
+                    "--out",
+                    recording,
+                    **files_limited_to(1024 * kilobytes),
+                )
                 self.assertEqual(result.returncode, 1)
                 self.assertIn(recording.name, result.stderr.splitlines()[-1])
                 self.succeed("info", recording)  # which it fails of what is not complete
@@ -408,12 +459,21 @@ class MovingContacts(Devices):
         self.succeed("simulate", "--array", self.array, "--scene", "contacts", "--frames", 300, "--out", self.work)
         live = self.work / "live.csv"
         recording = self.work / "r.mcap"
-        result = dermis("record", "--from", f"sim:contacts?rate=200&frames=300&array={self.array}", "--frames", 500,
-                        "--out", recording)
+        result = dermis(
+            "record",
+            "--from",
+            f"sim:contacts?rate=200&frames=300&array={self.array}",
+            "--frames",
+            500,
+            "--out",
+            recording,
+        )
         self.assertEqual(result.returncode, 0, result.stderr)
         self.succeed("replay", recording, "--speed", 0, "--out", live)
-        exact = [[float(cell) for cell in line.split(",")] for line in
-                 (self.work / "frames.csv").read_text().splitlines()[1:]]
+        exact = [
+            [float(cell) for cell in line.split(",")]
+            for line in (self.work / "frames.csv").read_text().splitlines()[1:]
+        ]
         lines = [[float(cell) for cell in line.split(",")] for line in live.read_text().splitlines()[1:]]
         compared = 0
         for line in lines:
@@ -463,8 +523,9 @@ class Replay(Devices):
         frames = self.contacts / "frames.csv"
         live, replayed = self.work / "live.csv", self.work / "replayed.csv"
         for out, command in ((live, ["run", "--model", self.model]), (self.work / "r.mcap", ["record"])):
-            device = self.start("emulate", "--protocol", "dermis", "--in", frames, "--rate", 500, "--to",
-                           "tcp-listen://127.0.0.1:0")
+            device = self.start(
+                "emulate", "--protocol", "dermis", "--in", frames, "--rate", 500, "--to", "tcp-listen://127.0.0.1:0"
+            )
             place = device.stdout.readline().strip()
             option = "--in" if command[0] == "run" else "--from"
             result = dermis(*command, option, f"tcp://{place}?protocol=dermis&reconnect_s=0", "--out", out)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """`dermis check` and `dermis recalibrate` on a sheet that has aged in the simulator."""
+
 import shutil
 
 import support
@@ -12,8 +13,21 @@ class Ageing(SmallArray):
         """Weights of 5, 15 and 5 N on four taxels of a sheet with that gain, twice."""
         physics = self.written("physics.toml", f"[rubber]\ngain = {gain}\n")
         out = self.work / name
-        self.succeed("simulate", "--array", self.array, "--scene", "two_weights", "--rate", 10, "--seed", 3,
-                     "--physics", physics, "--out", out)
+        self.succeed(
+            "simulate",
+            "--array",
+            self.array,
+            "--scene",
+            "two_weights",
+            "--rate",
+            10,
+            "--seed",
+            3,
+            "--physics",
+            physics,
+            "--out",
+            out,
+        )
         return out
 
     def weigh(self, folder, weight=15):
@@ -50,8 +64,17 @@ class Ageing(SmallArray):
         aged = self.weights(0.9, "aged")
         fresh = self.work / "new.safetensors"
         before = self.model.read_bytes()
-        self.succeed("recalibrate", "--model", self.model, "--frames", aged / "frames.csv", "--loads",
-                     aged / "loads.csv", "--out", fresh)
+        self.succeed(
+            "recalibrate",
+            "--model",
+            self.model,
+            "--frames",
+            aged / "frames.csv",
+            "--loads",
+            aged / "loads.csv",
+            "--out",
+            fresh,
+        )
         self.assertEqual(self.model.read_bytes(), before)
         self.assertTrue(fresh.exists())
 
@@ -63,10 +86,23 @@ class Ageing(SmallArray):
         self.refuse(check, ["--weight"])
         self.refuse((*check, "--weight", 1e5), [frames, "no press"], status=1)
         unloaded = self.written("unloaded.csv", "frame,kind,where,value\n0,force,all,0\n")
-        self.refuse(("recalibrate", "--model", self.model, "--frames", frames, "--loads", unloaded, "--out",
-                     self.work / "new.safetensors"), [unloaded, "a known weight is needed"])
-        self.refuse(("recalibrate", "--model", self.array, "--frames", frames, "--loads", unloaded),
-                    [self.array, "is no model"])
+        self.refuse(
+            (
+                "recalibrate",
+                "--model",
+                self.model,
+                "--frames",
+                frames,
+                "--loads",
+                unloaded,
+                "--out",
+                self.work / "new.safetensors",
+            ),
+            [unloaded, "a known weight is needed"],
+        )
+        self.refuse(
+            ("recalibrate", "--model", self.array, "--frames", frames, "--loads", unloaded), [self.array, "is no model"]
+        )
 
 
 if __name__ == "__main__":

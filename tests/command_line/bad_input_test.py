@@ -2,6 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Every bad input: status 2 (1 where the input was right and the work failed), one line that names the place, and no
 output file."""
+
 import os
 import re
 
@@ -24,8 +25,13 @@ class Usage(SmallArray):
         self.refuse(["run", "--model=m", "frames.csv"], ["'frames.csv' is one argument too many"])
 
     def test_missing_options(self):
-        for command, option in (("simulate", "--array"), ("calibrate", "--array"), ("run", "--model"),
-                                ("evaluate", "--model"), ("doctor", "--model")):
+        for command, option in (
+            ("simulate", "--array"),
+            ("calibrate", "--array"),
+            ("run", "--model"),
+            ("evaluate", "--model"),
+            ("doctor", "--model"),
+        ):
             with self.subTest(command):
                 self.refuse([command], [option])
 
@@ -37,8 +43,9 @@ class Usage(SmallArray):
     def test_two_outputs_in_one_file(self):
         self.refuse([*self.run_arguments(self.work / "f.csv"), "--sigma", self.work / "f.csv"], ["--sigma", "--out"])
 
-        self.refuse([*self.run_arguments(self.work / "f.csv"), "--contacts", self.work / "f.csv"],
-                    ["--contacts", "--out"])
+        self.refuse(
+            [*self.run_arguments(self.work / "f.csv"), "--contacts", self.work / "f.csv"], ["--contacts", "--out"]
+        )
 
     def test_a_run_that_writes_nothing(self):
         self.refuse(["run", "--model", self.model, "--in", self.contacts / "frames.csv"], ["--out", "--contacts"])
@@ -46,28 +53,54 @@ class Usage(SmallArray):
     def test_a_count_below_zero(self):
         for option in ("--frames", "--seed"):
             with self.subTest(option):
-                self.refuse(["simulate", "--array", self.array, "--scene", "multitouch", "--out", self.work / "o",
-                             option, "-1"], [option], **files_limited_to(1000000))
+                self.refuse(
+                    [
+                        "simulate",
+                        "--array",
+                        self.array,
+                        "--scene",
+                        "multitouch",
+                        "--out",
+                        self.work / "o",
+                        option,
+                        "-1",
+                    ],
+                    [option],
+                    **files_limited_to(1000000),
+                )
 
     def test_results_are_no_frames(self):
-        self.succeed(*self.run_arguments(self.work / "f.csv"), "--contacts", self.work / "c.csv", "--totals", self.work / "t.csv")
-        for file, content in ((self.work / "f.csv", "forces"), (self.work / "c.csv", "contacts"),
-                              (self.work / "t.csv", "total forces"), (self.contacts / "loads.csv", "loads")):
+        self.succeed(
+            *self.run_arguments(self.work / "f.csv"), "--contacts", self.work / "c.csv", "--totals", self.work / "t.csv"
+        )
+        for file, content in (
+            (self.work / "f.csv", "forces"),
+            (self.work / "c.csv", "contacts"),
+            (self.work / "t.csv", "total forces"),
+            (self.contacts / "loads.csv", "loads"),
+        ):
             with self.subTest(content):
-                self.refuse(self.run_arguments(self.work / "o.csv", **{"in": file}),
-                            [f"{file}:1: is a table of {content}, not of raw counts"])
+                self.refuse(
+                    self.run_arguments(self.work / "o.csv", **{"in": file}),
+                    [f"{file}:1: is a table of {content}, not of raw counts"],
+                )
 
     def test_a_folder_with_frames_is_told_which(self):
-        self.refuse(self.run_arguments(self.work / "o.csv", **{"in": self.contacts}),
-                    [f"{self.contacts}: is a folder; name {self.contacts / 'frames.csv'}"])
+        self.refuse(
+            self.run_arguments(self.work / "o.csv", **{"in": self.contacts}),
+            [f"{self.contacts}: is a folder; name {self.contacts / 'frames.csv'}"],
+        )
 
     def test_a_count_beyond_its_range(self):
-        self.refuse(["serve", "--from", "sim:idle?rate=10", "--model", self.model, "--port", 99999],
-                    ["--port", "must be 0 to 65535"])
+        self.refuse(
+            ["serve", "--from", "sim:idle?rate=10", "--model", self.model, "--port", 99999],
+            ["--port", "must be 0 to 65535"],
+        )
 
     def test_unknown_scene(self):
-        self.refuse(["simulate", "--array", self.array, "--scene", "party", "--out", self.work / "o"],
-                    ["party", "multitouch"])
+        self.refuse(
+            ["simulate", "--array", self.array, "--scene", "party", "--out", self.work / "o"], ["party", "multitouch"]
+        )
 
     def test_options_of_other_scenes_and_memories(self):
         simulate = ["simulate", "--array", self.array, "--out", self.work / "o", "--scene"]
@@ -77,28 +110,38 @@ class Usage(SmallArray):
         self.refuse([*simulate, "two_weights", "--taxels", 21], ["two_weights", "1 to 20"])
         self.refuse([*simulate, "touches", "--memory", "elephant"], ["--memory", "simple", "rubber", "elephant"])
         self.refuse([*simulate, "touches", "--touch-gain", 0.1], ["--touch-gain", "--memory rubber"])
-        self.refuse([*simulate, "touches", "--memory", "rubber", "--creep-per-decade", 0.5],
-                    ["creep_per_decade", "0.02 to 0.3"])
+        self.refuse(
+            [*simulate, "touches", "--memory", "rubber", "--creep-per-decade", 0.5], ["creep_per_decade", "0.02 to 0.3"]
+        )
         physics = self.written("physics.toml", "[rubber]\ncreep = 0.1\n")
         self.refuse([*simulate, "touches", "--memory", "rubber", "--physics", physics], ["rubber.creep", "simple"])
 
     def test_a_scene_of_fixed_length_with_another_length(self):
-        self.refuse(["simulate", "--array", self.array, "--scene", "paper", "--frames", "3", "--out", self.work / "o"],
-                    ["paper", "fixed"])
+        self.refuse(
+            ["simulate", "--array", self.array, "--scene", "paper", "--frames", "3", "--out", self.work / "o"],
+            ["paper", "fixed"],
+        )
 
 
 class MissingFiles(SmallArray):
     def test_each_input(self):
         absent = self.work / "absent"
         model, forces = self.work / "m", self.work / "f.csv"
-        cases = [self.calibrate_arguments(model, array=absent), self.calibrate_arguments(model, frames=absent),
-                 self.calibrate_arguments(model, loads=absent), ("doctor", "--model", self.model, "--in", absent),
-                 ("check", "--model", self.model, "--in", absent, "--weight", 5),
-                 ("recalibrate", "--model", self.model, "--frames", absent, "--loads", absent), self.run_arguments(forces, model=absent),
-                 self.run_arguments(forces, **{"in": absent}), self.evaluate_arguments(model=absent),
-                 self.evaluate_arguments(frames=absent), self.evaluate_arguments(loads=absent),
-                 ("simulate", "--array", absent, "--scene", "idle", "--out", self.work / "o"),
-                 ("simulate", "--array", self.array, "--physics", absent, "--scene", "idle", "--out", self.work / "o")]
+        cases = [
+            self.calibrate_arguments(model, array=absent),
+            self.calibrate_arguments(model, frames=absent),
+            self.calibrate_arguments(model, loads=absent),
+            ("doctor", "--model", self.model, "--in", absent),
+            ("check", "--model", self.model, "--in", absent, "--weight", 5),
+            ("recalibrate", "--model", self.model, "--frames", absent, "--loads", absent),
+            self.run_arguments(forces, model=absent),
+            self.run_arguments(forces, **{"in": absent}),
+            self.evaluate_arguments(model=absent),
+            self.evaluate_arguments(frames=absent),
+            self.evaluate_arguments(loads=absent),
+            ("simulate", "--array", absent, "--scene", "idle", "--out", self.work / "o"),
+            ("simulate", "--array", self.array, "--physics", absent, "--scene", "idle", "--out", self.work / "o"),
+        ]
         for arguments in cases:
             with self.subTest(arguments):
                 self.refuse(arguments, [absent])
@@ -106,7 +149,10 @@ class MissingFiles(SmallArray):
     def test_a_bank(self):
         absent = self.work / "absent"
         self.refuse([*self.evaluate_arguments(), "--bank", absent], [absent])
-        self.refuse([*self.evaluate_arguments(), "--bank", self.model], [self.model, "not a bank of the paper", "dermis calibrate"])
+        self.refuse(
+            [*self.evaluate_arguments(), "--bank", self.model],
+            [self.model, "not a bank of the paper", "dermis calibrate"],
+        )
 
     def test_a_folder_instead_of_a_file(self):
         self.refuse(self.run_arguments(self.work / "f.csv", **{"in": self.root}), [self.root])
@@ -116,8 +162,10 @@ class BodyOfASuit(SmallArray):
     ROBOT = '<robot name="r"><link name="trunk"/></robot>'
 
     def refuse_suit(self, suit, places, link=""):
-        suit = self.written("suit.toml", f'[suit]\n{suit}\n[[array]]\nname = "chest"\nfrom = "sim:idle?rate=50"\n'
-                                         f'model = "{self.model}"\n{link}\n')
+        suit = self.written(
+            "suit.toml",
+            f'[suit]\n{suit}\n[[array]]\nname = "chest"\nfrom = "sim:idle?rate=50"\nmodel = "{self.model}"\n{link}\n',
+        )
         self.refuse(["serve", "--suit", suit, "--port", 0], places)
 
     def test_a_body_that_cannot_be_read(self):
@@ -158,8 +206,10 @@ class ArrayFile(SmallArray):
         self.refuse_array(ARRAY.replace("adc_bits = 12", "adc_bits = 99"), [":11", "adc_bits"])
 
     def test_metres_for_millimetres(self):
-        self.refuse_array(ARRAY.replace("cols = 5", "cols = 5\npitch_mm = [0.015, 0.015]"),
-                          [":5", "pitch_mm", "0.05 to 1000", "write 15"])
+        self.refuse_array(
+            ARRAY.replace("cols = 5", "cols = 5\npitch_mm = [0.015, 0.015]"),
+            [":5", "pitch_mm", "0.05 to 1000", "write 15"],
+        )
 
     def test_a_list_of_the_wrong_length(self):
         self.refuse_array(ARRAY.replace("load_ohm = 200.0", "load_ohm = [1.0, 2.0]"), [":10", "load_ohm", "5"])
@@ -180,15 +230,20 @@ class ArrayFile(SmallArray):
         self.refuse_array(ARRAY + "column_switch_ohm = 80\n", [":14", "column_switch_ohm", "idle_columns"])
 
     def test_a_circuit_that_is_not_known_yet(self):
-        for text in (ARRAY.replace("load_ohm = 200.0", 'load_ohm = "fit"'),
-                     ARRAY.replace('"divider"', '"auto"'), ARRAY + 'adc_settling = "fit"\n',
-                     ARRAY + 'supply_ohm = "fit"\n'):
+        for text in (
+            ARRAY.replace("load_ohm = 200.0", 'load_ohm = "fit"'),
+            ARRAY.replace('"divider"', '"auto"'),
+            ARRAY + 'adc_settling = "fit"\n',
+            ARRAY + 'supply_ohm = "fit"\n',
+        ):
             self.refuse_array(text, ["fitted"])
 
     def test_unknown_physics(self):
         physics = self.written("physics.toml", "[rubber]\nexponnt = 0.9\n")
-        self.refuse(["simulate", "--array", self.array, "--physics", physics, "--scene", "idle",
-                     "--out", self.work / "o"], [physics, ":2", "exponnt", "exponent"])
+        self.refuse(
+            ["simulate", "--array", self.array, "--physics", physics, "--scene", "idle", "--out", self.work / "o"],
+            [physics, ":2", "exponnt", "exponent"],
+        )
 
 
 class FramesFile(SmallArray):
@@ -197,24 +252,30 @@ class FramesFile(SmallArray):
         change(lines)
         frames = self.written("frames.csv", "\n".join(lines) + "\n")
         out = self.work / "out"
-        for arguments in (self.run_arguments(out, **{"in": frames}), self.evaluate_arguments(frames=frames),
-                          self.calibrate_arguments(out, frames=frames, loads=self.contacts / "loads.csv")):
+        for arguments in (
+            self.run_arguments(out, **{"in": frames}),
+            self.evaluate_arguments(frames=frames),
+            self.calibrate_arguments(out, frames=frames, loads=self.contacts / "loads.csv"),
+        ):
             with self.subTest(arguments[0]):
                 self.refuse(arguments, [frames, *places])
 
     def test_missing_column(self):
         def change(lines):
             lines[:] = [line.rpartition(",")[0] for line in lines]
+
         self.refuse_frames(change, [":1", "r3c4"])
 
     def test_missing_time(self):
         def change(lines):
             lines[:] = [line.partition(",")[2] for line in lines]
+
         self.refuse_frames(change, [":1", "time_s"])
 
     def test_ragged_row(self):
         def change(lines):
             lines[6] = lines[6].rpartition(",")[0]
+
         self.refuse_frames(change, [":7", "22", "23"])
 
     def test_text_in_a_number(self):
@@ -222,12 +283,14 @@ class FramesFile(SmallArray):
             cells = lines[6].split(",")
             cells[5] = "12a"
             lines[6] = ",".join(cells)
+
         self.refuse_frames(change, [":7", "r0c2", "12a"])
 
     def test_wrong_size_for_the_array(self):
         def change(lines):
             names = lines[0].split(",")[:3] + [f"r{r}c{c}" for r in range(5) for c in range(4)]
             lines[0] = ",".join(names)
+
         self.refuse_frames(change, [":1", "5x4", "4x5"])
 
     def test_empty_file(self):
@@ -241,6 +304,7 @@ class FramesFile(SmallArray):
     def test_decimals_with_a_comma(self):
         def change(lines):
             lines[6] = lines[6].replace(".", ",")
+
         self.refuse_frames(change, [":7", "the header 23", "decimals with a point"])
 
 
@@ -267,22 +331,27 @@ class WhatCannotBe(SmallArray):
         self.assertIn(words[-1], doctor.stdout.splitlines()[-1])
         (self.work / "forces.csv").unlink()
         frames = self.changed(self.calibration / "frames.csv", change)
-        self.refuse(self.calibrate_arguments(self.work / "m", frames=frames),
-                    ["1400 of 1400 loaded frames cannot be: the first is frame 20: ", words[-1]])
+        self.refuse(
+            self.calibrate_arguments(self.work / "m", frames=frames),
+            ["1400 of 1400 loaded frames cannot be: the first is frame 20: ", words[-1]],
+        )
 
     def test_temperature_in_kelvin(self):
         def change(row, columns):
             row[columns["temperature_celsius"]] = str(float(row[columns["temperature_celsius"]]) + 273.15)
+
         self.assert_named(change, ["it looks like kelvin, give degrees Celsius"])
 
     def test_supply_in_millivolts(self):
         def change(row, columns):
             row[columns["supply_v"]] = str(float(row[columns["supply_v"]]) * 1000)
+
         self.assert_named(change, ["looks like millivolts, give volts"])
 
     def test_nothing_but_zeros(self):
         def change(row, columns):
-            row[columns["r0c0"]:] = ["0"] * 20
+            row[columns["r0c0"] :] = ["0"] * 20
+
         self.assert_named(change, ["all readings 0", "is the array connected and powered?"])
 
     def test_zeros_for_some_seconds(self):
@@ -290,7 +359,8 @@ class WhatCannotBe(SmallArray):
 
         def change(row, columns):
             if row[0] in lost:
-                row[columns["r0c0"]:] = ["0"] * 20
+                row[columns["r0c0"] :] = ["0"] * 20
+
         frames = self.changed(self.contacts / "frames.csv", change)
         line = "40 of 200 frames with all readings 0, where untouched taxels read more: is the array connected and powered?"
         result = support.dermis(*self.run_arguments(self.work / "forces.csv", **{"in": frames}))
@@ -303,10 +373,18 @@ class WhatCannotBe(SmallArray):
         bare = self.written("bare.toml", ARRAY.replace('"divider"\ndrive_ohm = 20.0\nload_ohm = 200.0', '"none"'))
         model = self.work / "bare.safetensors"
         self.succeed("simulate", "--array", bare, "--scene", "calibration", "--out", self.work / "bare")
-        self.succeed(*self.calibrate_arguments(model, array=bare, frames=self.work / "bare/frames.csv",
-                                               loads=self.work / "bare/loads.csv"))
-        frames = self.written("zeros.csv", "time_s," + ",".join(f"r{k // 5}c{k % 5}" for k in range(20)) + "\n"
-                              + "".join(f"{k},{','.join('0' * 20)}\n" for k in range(100)))
+        self.succeed(
+            *self.calibrate_arguments(
+                model, array=bare, frames=self.work / "bare/frames.csv", loads=self.work / "bare/loads.csv"
+            )
+        )
+        frames = self.written(
+            "zeros.csv",
+            "time_s,"
+            + ",".join(f"r{k // 5}c{k % 5}" for k in range(20))
+            + "\n"
+            + "".join(f"{k},{','.join('0' * 20)}\n" for k in range(100)),
+        )
         result = support.dermis(*self.run_arguments(self.work / "forces.csv", model=model, **{"in": frames}))
         line = "all readings of all 100 frames are 0: nothing touches the array, or it is not connected"
         self.assertEqual((result.returncode, result.stderr.splitlines()[-1]), (0, line))
@@ -316,16 +394,35 @@ class WhatCannotBe(SmallArray):
         square = self.written("square.toml", ARRAY.replace("cols = 5", "cols = 4"))
         self.succeed("simulate", "--array", square, "--scene", "calibration", "--out", self.work / "square")
         exchanged = re.sub(r"r(\d)c(\d)", r"r\2c\1", (self.work / "square/loads.csv").read_text())
-        self.refuse(self.calibrate_arguments(self.work / "m.safetensors", array=square,
-                                             frames=self.work / "square/frames.csv",
-                                             loads=self.written("loads.csv", exchanged)),
-                    ["exchange rows and columns", "r1c0 answers where they name r0c1", "12 of 12 taxels"])
+        self.refuse(
+            self.calibrate_arguments(
+                self.work / "m.safetensors",
+                array=square,
+                frames=self.work / "square/frames.csv",
+                loads=self.written("loads.csv", exchanged),
+            ),
+            ["exchange rows and columns", "r1c0 answers where they name r0c1", "12 of 12 taxels"],
+        )
         model = self.work / "square.safetensors"
-        self.succeed(*self.calibrate_arguments(model, array=square, frames=self.work / "square/frames.csv",
-                                               loads=self.work / "square/loads.csv"))
+        self.succeed(
+            *self.calibrate_arguments(
+                model, array=square, frames=self.work / "square/frames.csv", loads=self.work / "square/loads.csv"
+            )
+        )
         for command in ("recalibrate", "evaluate"):
-            self.refuse((command, "--model", model, "--frames", self.work / "square/frames.csv", "--loads",
-                         self.work / "loads.csv"), ["exchange rows and columns", "12 of 12 taxels"])
+            self.refuse(
+                (
+                    command,
+                    "--model",
+                    model,
+                    "--frames",
+                    self.work / "square/frames.csv",
+                    "--loads",
+                    self.work / "loads.csv",
+                ),
+                ["exchange rows and columns", "12 of 12 taxels"],
+            )
+
 
 class EveryCommand(SmallArray):
     """All that read frames, on frames that are missing, cut or beyond the ADC."""
@@ -336,12 +433,15 @@ class EveryCommand(SmallArray):
         cls.threats = cls.root / "threats.toml"
         cls.threats.write_text('[[threat]]\nname = "hard"\nquantity = "contact_force"\nlimit_n = 1e6\n')
         cls.labels = cls.root / "labels.csv"
-        cls.labels.write_text("id,first,last,class\n" + "".join(
-            f"{k},{5 * k},{5 * k},{'hand' if k % 2 else 'foot'}\n" for k in range(40)))
+        cls.labels.write_text(
+            "id,first,last,class\n" + "".join(f"{k},{5 * k},{5 * k},{'hand' if k % 2 else 'foot'}\n" for k in range(40))
+        )
         cls.classes = cls.root / "classes"
         cls.recording = cls.root / "rec.mcap"
-        for step in (("learn", "--in", cls.contacts / "frames.csv", "--labels", cls.labels, "--out", cls.classes),
-                     ("convert", cls.contacts / "frames.csv", cls.recording)):
+        for step in (
+            ("learn", "--in", cls.contacts / "frames.csv", "--labels", cls.labels, "--out", cls.classes),
+            ("convert", cls.contacts / "frames.csv", cls.recording),
+        ):
             result = support.dermis(*step)
             if result.returncode != 0:
                 raise AssertionError(f"{step}: {result.stderr}")
@@ -352,12 +452,18 @@ class EveryCommand(SmallArray):
         yield self.run_arguments(out, **{"in": frames}), out
         yield self.evaluate_arguments(frames=frames), None
         yield ("watch", "--threats", self.threats, "--model", self.model, "--in", frames), None
-        yield ("replay", frames, "--speed", 0, "--model", self.model, "--out", self.work / "replayed.csv"), \
-            self.work / "replayed.csv"
-        yield ("record", "--from", frames, "--model", self.model, "--out", self.work / "forces.mcap"), \
-            self.work / "forces.mcap"
-        yield ("image", "--in", frames, "--model", self.model, "--frame", 150, "--out", self.work / "forces.png"), \
-            self.work / "forces.png"
+        yield (
+            ("replay", frames, "--speed", 0, "--model", self.model, "--out", self.work / "replayed.csv"),
+            self.work / "replayed.csv",
+        )
+        yield (
+            ("record", "--from", frames, "--model", self.model, "--out", self.work / "forces.mcap"),
+            self.work / "forces.mcap",
+        )
+        yield (
+            ("image", "--in", frames, "--model", self.model, "--frame", 150, "--out", self.work / "forces.png"),
+            self.work / "forces.png",
+        )
 
     def all_commands(self, frames):
         yield from self.with_forces(frames)
@@ -368,7 +474,10 @@ class EveryCommand(SmallArray):
         yield ("record", "--from", frames, "--out", self.work / "counts.mcap"), self.work / "counts.mcap"
         yield ("image", "--in", frames, "--frame", 150, "--out", self.work / "counts.png"), self.work / "counts.png"
         yield ("learn", "--in", frames, "--labels", self.labels, "--out", self.work / "classes"), self.work / "classes"
-        yield ("recognise", "--classes", self.classes, "--in", frames, "--out", self.work / "r.csv"), self.work / "r.csv"
+        yield (
+            ("recognise", "--classes", self.classes, "--in", frames, "--out", self.work / "r.csv"),
+            self.work / "r.csv",
+        )
         yield ("emulate", "--protocol", "csv", "--in", frames, "--to", "stdout:"), None
 
     def test_a_header_alone(self):
@@ -403,7 +512,9 @@ class EveryCommand(SmallArray):
         loads = self.work / "loads.csv"
         lines = (self.contacts / "loads.csv").read_text().splitlines()
         loads.write_text("\n".join(line for line in lines if not line.startswith("199,")) + "\n")
-        self.end_with(self.run_arguments(self.work / "f.csv", **{"in": cut}), self.work / "f.csv", [f"{cut}:201", "cut off"])
+        self.end_with(
+            self.run_arguments(self.work / "f.csv", **{"in": cut}), self.work / "f.csv", [f"{cut}:201", "cut off"]
+        )
         self.end_with(self.evaluate_arguments(frames=cut, loads=loads), None, [f"{cut}:201", "cut off"])
         self.end_with(("info", cut), None, [cut, "cut off"])
         self.refuse(self.evaluate_arguments(frames=cut), [f"{cut}:201", "cut off", "loads.csv", "frame 199"])
@@ -420,8 +531,10 @@ class EveryCommand(SmallArray):
         for arguments, out in self.with_forces(frames):
             with self.subTest(arguments[0]):
                 self.end_with(arguments, out, ["have no force", "but the ADC gives 0 to 4095 (adc_bits = 12)"])
-        self.refuse(self.calibrate_arguments(self.work / "m", frames=frames, loads=self.contacts / "loads.csv"),
-                    ["the ADC gives 0 to 4095 (adc_bits = 12)"])
+        self.refuse(
+            self.calibrate_arguments(self.work / "m", frames=frames, loads=self.contacts / "loads.csv"),
+            ["the ADC gives 0 to 4095 (adc_bits = 12)"],
+        )
 
     def test_settling_beyond_the_end(self):
         self.refuse([*self.run_arguments(self.work / "f.csv"), "--settle", "1e6"], ["frames.csv", "settling"], status=1)
@@ -434,12 +547,13 @@ class WrongFiles(SmallArray):
         frames = self.contacts / "frames.csv"
         out = self.work / "out"
         for arguments, file, kind in (
-                (self.run_arguments(out, model=recording), recording, "an MCAP recording, not a safetensors file"),
-                (self.run_arguments(out, model=frames), frames, "a table (CSV), not a safetensors file"),
-                (self.calibrate_arguments(out, array=recording), recording, "an MCAP recording, not a TOML file"),
-                (self.calibrate_arguments(out, array=frames), frames, "a table (CSV), not a TOML file"),
-                (self.calibrate_arguments(out, loads=recording), recording, "an MCAP recording, not a table (CSV)"),
-                (self.calibrate_arguments(out, loads=self.array), self.array, "a TOML file, not a table (CSV)")):
+            (self.run_arguments(out, model=recording), recording, "an MCAP recording, not a safetensors file"),
+            (self.run_arguments(out, model=frames), frames, "a table (CSV), not a safetensors file"),
+            (self.calibrate_arguments(out, array=recording), recording, "an MCAP recording, not a TOML file"),
+            (self.calibrate_arguments(out, array=frames), frames, "a table (CSV), not a TOML file"),
+            (self.calibrate_arguments(out, loads=recording), recording, "an MCAP recording, not a table (CSV)"),
+            (self.calibrate_arguments(out, loads=self.array), self.array, "a TOML file, not a table (CSV)"),
+        ):
             with self.subTest(kind):
                 self.refuse(arguments, [file, kind])
         for name in ("frames.csv", "frames.h5", "frames.npy", "frames.npz"):
@@ -523,8 +637,19 @@ class ModelFile(SmallArray):
         whole = self.model.read_bytes()
         header = 8 + int.from_bytes(whole[:8], "little")
         cut = self.work / "model"
-        for size in (0, 1, 7, 8, 9, header // 2, header - 1, header, header + 1, (header + len(whole)) // 2,
-                     len(whole) - 1):
+        for size in (
+            0,
+            1,
+            7,
+            8,
+            9,
+            header // 2,
+            header - 1,
+            header,
+            header + 1,
+            (header + len(whole)) // 2,
+            len(whole) - 1,
+        ):
             with self.subTest(size):
                 cut.write_bytes(whole[:size])
                 self.refuse(self.run_arguments(self.work / "f.csv", model=cut), [cut])
@@ -539,7 +664,7 @@ class ModelFile(SmallArray):
         changed = self.work / "model"
         for place in range(len(whole) - 1, len(whole) // 2, -997):
             with self.subTest(place):
-                changed.write_bytes(whole[:place] + bytes([whole[place] ^ 4]) + whole[place + 1:])
+                changed.write_bytes(whole[:place] + bytes([whole[place] ^ 4]) + whole[place + 1 :])
                 self.refuse(self.run_arguments(self.work / "f.csv", model=changed), [changed, "its checksum differs"])
 
     def test_a_model_without_a_checksum_is_used_and_a_line_says_so(self):
@@ -561,8 +686,12 @@ class ModelFile(SmallArray):
     def test_a_header_that_was_changed(self):
         whole = self.model.read_bytes()
         changed = self.work / "model"
-        for old, new in ((b"dermis model 3", b"dermis model 9"), (b"rows = 4", b"rows = 3"),
-                         (b"networks.gain", b"networks.gone"), (b"F64", b"F32")):
+        for old, new in (
+            (b"dermis model 3", b"dermis model 9"),
+            (b"rows = 4", b"rows = 3"),
+            (b"networks.gain", b"networks.gone"),
+            (b"F64", b"F32"),
+        ):
             with self.subTest(new):
                 self.assertIn(old, whole)
                 changed.write_bytes(whole.replace(old, new, 1))
@@ -574,8 +703,9 @@ class ModelFile(SmallArray):
         frames = self.work / "other"
         self.succeed("simulate", "--array", other, "--scene", "multitouch", "--frames", "5", "--out", frames)
         self.refuse(self.run_arguments(self.work / "f.csv", **{"in": frames / "frames.csv"}), [":1", "5x5", "4x5"])
-        self.refuse(self.evaluate_arguments(frames=frames / "frames.csv", loads=frames / "loads.csv"),
-                    [":1", "5x5", "4x5"])
+        self.refuse(
+            self.evaluate_arguments(frames=frames / "frames.csv", loads=frames / "loads.csv"), [":1", "5x5", "4x5"]
+        )
 
 
 class Outputs(SmallArray):
@@ -603,8 +733,9 @@ class Outputs(SmallArray):
         self.work.chmod(0o755)
         self.root.chmod(0o755)
         self.refuse(self.run_arguments(folder / "f.csv"), [folder], status=1, **user)
-        self.refuse(["simulate", "--array", self.array, "--scene", "paper", "--out", folder / "o"], [folder], status=1,
-                    **user)
+        self.refuse(
+            ["simulate", "--array", self.array, "--scene", "paper", "--out", folder / "o"], [folder], status=1, **user
+        )
         self.refuse([*self.evaluate_arguments(), "--report", folder / "o"], [folder], status=1, **user)
         self.refuse(["paper", "--report", folder / "o"], [folder], status=1, **user)  # before the work
 

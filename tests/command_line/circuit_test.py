@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """dermis circuit: what a circuit reads, the way back, and advice to who designs one."""
+
 import json
 import math
 import random
@@ -20,7 +21,7 @@ CIRCUITS = {
     "two terminals": ARRAY + 'idle_rows = "floating"\nidle_columns = "floating"\n',
     "amplifiers": AMPLIFIERS,
     "real amplifiers": AMPLIFIERS + "column_switch_ohm = [1, 2, 3, 4, 5]\namplifier_gain = 1e4\n"
-                                    "amplifier_offset_v = [0.001, -0.001, 0, 0.002, 0.001]\n",
+    "amplifier_offset_v = [0.001, -0.001, 0, 0.002, 0.001]\n",
     "real amplifiers, idle rows floating": AMPLIFIERS + 'column_switch_ohm = 5\nidle_rows = "floating"\n',
     "flexitac": FLEXITAC,
     "resistive lines": ARRAY + "row_segment_ohm = [1, 2, 0, 3]\ncolumn_segment_ohm = 2\n",
@@ -40,8 +41,10 @@ def numbers(path):
 def random_siemens(seed, frames=3):
     """Taxels of 500 ohm to 1 Mohm."""
     source = random.Random(seed)
-    return [[[1.0 / math.exp(source.uniform(math.log(500), math.log(1e6))) for _ in range(COLS)] for _ in range(ROWS)]
-            for _ in range(frames)]
+    return [
+        [[1.0 / math.exp(source.uniform(math.log(500), math.log(1e6))) for _ in range(COLS)] for _ in range(ROWS)]
+        for _ in range(frames)
+    ]
 
 
 class Circuit(SmallArray):
@@ -60,11 +63,21 @@ class Circuit(SmallArray):
 
     def forward_arguments(self, **replaced):
         files = {"array": self.array, "conductance": self.siemens, "out": self.readings, **replaced}
-        return ["circuit", "forward", "--force", *(part for name, value in files.items() for part in (f"--{name}", value))]
+        return [
+            "circuit",
+            "forward",
+            "--force",
+            *(part for name, value in files.items() for part in (f"--{name}", value)),
+        ]
 
     def invert_arguments(self, **replaced):
         files = {"array": self.array, "readings": self.readings, "out": self.back, **replaced}
-        return ["circuit", "invert", "--force", *(part for name, value in files.items() for part in (f"--{name}", value))]
+        return [
+            "circuit",
+            "invert",
+            "--force",
+            *(part for name, value in files.items() for part in (f"--{name}", value)),
+        ]
 
 
 class ForwardAndBack(Circuit):
@@ -117,8 +130,9 @@ class ForwardAndBack(Circuit):
         source = random.Random(3)
         noise = 1e-6
         noisy = [value + noise * source.gauss(0.0, 1.0) for value in numbers(self.readings)]
-        frames = [[noisy[(k * ROWS + row) * COLS:(k * ROWS + row + 1) * COLS] for row in range(ROWS)]
-                  for k in range(400)]
+        frames = [
+            [noisy[(k * ROWS + row) * COLS : (k * ROWS + row + 1) * COLS] for row in range(ROWS)] for k in range(400)
+        ]
         self.written("readings.csv", table(frames))
         self.succeed(*self.invert_arguments(sigma=self.work / "sigma.csv"), "--noise", noise)
         siemens, back, sigma = numbers(self.siemens), numbers(self.back), numbers(self.work / "sigma.csv")
@@ -138,8 +152,8 @@ class ForwardAndBack(Circuit):
             self.assertIn(str(place), result.stderr)
         back = numbers(self.back)
         size = ROWS * COLS
-        self.assertTrue(all(math.isnan(value) for value in back[size:2 * size]))
-        self.assertFalse(any(math.isnan(value) for value in back[:size] + back[2 * size:]))
+        self.assertTrue(all(math.isnan(value) for value in back[size : 2 * size]))
+        self.assertFalse(any(math.isnan(value) for value in back[:size] + back[2 * size :]))
 
     def test_output_to_a_pipe(self):
         piped = self.succeed(*self.forward_arguments(out="/dev/stdout"))
@@ -156,11 +170,14 @@ class Advise(Circuit):
         for name, text in CIRCUITS.items():
             with self.subTest(name):
                 advice = json.loads(self.advice("--json", text=text))
-                self.assertEqual(set(advice), {"noise_ratio", "best_load_ohm", "best", "present", "ideal_drivers",
-                                               "most_drive_ohm", "loads"})
+                self.assertEqual(
+                    set(advice),
+                    {"noise_ratio", "best_load_ohm", "best", "present", "ideal_drivers", "most_drive_ohm", "loads"},
+                )
                 self.assertAlmostEqual(advice["noise_ratio"], 1.0 / 4095.0, places=12)
-                means = {entry["load_ohm"]: entry["precision"]["mean"] for entry in advice["loads"]
-                         if entry["precision"]}
+                means = {
+                    entry["load_ohm"]: entry["precision"]["mean"] for entry in advice["loads"] if entry["precision"]
+                }
                 self.assertEqual(min(means, key=means.get), advice["best_load_ohm"])
                 self.assertLessEqual(advice["best"]["mean"], advice["present"]["mean"])
                 for precision in (advice["best"], advice["present"], advice["ideal_drivers"]):
@@ -182,21 +199,31 @@ class Advise(Circuit):
 
     def test_text_names_load_and_drive(self):
         text = self.advice()
-        for words in ("4 x 5 taxels of 1 kohm to 100 kohm, divider, idle rows grounded", "best\n", "Load: take",
-                      "Now, with 200 ohm", "Drive: the less the better", "grows by less than 10 %"):
+        for words in (
+            "4 x 5 taxels of 1 kohm to 100 kohm, divider, idle rows grounded",
+            "best\n",
+            "Load: take",
+            "Now, with 200 ohm",
+            "Drive: the less the better",
+            "grows by less than 10 %",
+        ):
             self.assertIn(words, text)
 
 
 class BadInput(Circuit):
     def test_circuits_that_cannot_be_computed(self):
         readings = self.written("readings.csv", table([[[0.1] * COLS] * ROWS]))
-        for text, place in ((ARRAY.replace('"divider"', '"none"'), "none"),
-                            (ARRAY.replace("= 200.0", '= "fit"'), "fitted"),
-                            (ARRAY.replace('"divider"', '"auto"'), "fitted")):
+        for text, place in (
+            (ARRAY.replace('"divider"', '"none"'), "none"),
+            (ARRAY.replace("= 200.0", '= "fit"'), "fitted"),
+            (ARRAY.replace('"divider"', '"auto"'), "fitted"),
+        ):
             array = self.written("array.toml", text)
-            for arguments in (self.forward_arguments(out=self.work / "o"),
-                              self.invert_arguments(readings=readings, out=self.work / "o"),
-                              ["circuit", "advise", "--array", array, "--range", 1e3, 1e5]):
+            for arguments in (
+                self.forward_arguments(out=self.work / "o"),
+                self.invert_arguments(readings=readings, out=self.work / "o"),
+                ["circuit", "advise", "--array", array, "--range", 1e3, 1e5],
+            ):
                 with self.subTest((place, arguments[1])):
                     self.refuse(arguments, [array, place])
 

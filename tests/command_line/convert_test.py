@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """convert, info and recover, held against h5py, numpy and csv of Python."""
+
 import csv
 import itertools
 import json
@@ -31,8 +32,10 @@ def csv_frames(path):
         header, *rows = csv.reader(file)
     named = {name: [row[i] for row in rows] for i, name in enumerate(header)}
     taxels = [i for i, name in enumerate(header) if name.startswith("r")]
-    nanos = [int(whole) * 10**9 + int(part.ljust(9, "0"))
-             for whole, _, part in (text.partition(".") for text in named["time_s"])]
+    nanos = [
+        int(whole) * 10**9 + int(part.ljust(9, "0"))
+        for whole, _, part in (text.partition(".") for text in named["time_s"])
+    ]
     counts = np.array([[np.float32(row[i]) for i in taxels] for row in rows], np.float32)
     return nanos, counts, named.get("temperature_celsius"), named.get("supply_v")
 
@@ -41,7 +44,7 @@ def middle_chunk(mcap):
     """Where the chunk in the middle of the file begins and ends: records are an opcode, 8 bytes of length, the content."""
     chunks, at = [], 8
     while at + 9 < len(mcap) - 8:
-        end = at + 9 + int.from_bytes(mcap[at + 1:at + 9], "little")
+        end = at + 9 + int.from_bytes(mcap[at + 1 : at + 9], "little")
         if mcap[at] == 0x06:
             chunks.append((at, end))
         at = end
@@ -137,7 +140,9 @@ class Convert(FrameFiles):
             np.testing.assert_array_equal(file["temperature_celsius"][:], np.array(temperatures, float))
             np.testing.assert_array_equal(file["supply_v"][:], [float(text or "nan") for text in supplies])
             self.assertTrue((file["known"][:] & 4 == 0).all())  # no sequence
-            units = {name: file[name].attrs["units"] for name in ("counts", "time_s", "temperature_celsius", "supply_v")}
+            units = {
+                name: file[name].attrs["units"] for name in ("counts", "time_s", "temperature_celsius", "supply_v")
+            }
             self.assertEqual(units, {"counts": "counts", "time_s": "s", "temperature_celsius": "degC", "supply_v": "V"})
             self.assertEqual((file.attrs["format"], file.attrs["name"]), ("dermis frames", "small"))
             self.assertIn('name = "small"', file.attrs["array"])
@@ -156,8 +161,10 @@ class Convert(FrameFiles):
 
     def test_hdf5_by_hand_is_read(self):
         counts = np.random.default_rng(1).integers(0, 4096, (50, 3, 4))
-        for dtype, options in itertools.product((np.uint8, np.int16, np.int64, np.float32, np.float64, ">u4"),
-                                                ({}, {"chunks": (7, 2, 3)}, {"compression": "gzip", "shuffle": True})):
+        for dtype, options in itertools.product(
+            (np.uint8, np.int16, np.int64, np.float32, np.float64, ">u4"),
+            ({}, {"chunks": (7, 2, 3)}, {"compression": "gzip", "shuffle": True}),
+        ):
             path = self.work / "hand.h5"
             with h5py.File(path, "w") as file:
                 file.create_dataset("counts", data=counts.astype(dtype), **options)
@@ -193,8 +200,10 @@ class Convert(FrameFiles):
 
     def test_an_array_of_another_size_is_refused(self):
         source = self.written("f.csv", "time_s,r0c0\n0,1\n")
-        self.refuse(("convert", source, self.work / "f.h5", "--array", self.array),
-                    [f"{source}:1: has 1x1 taxels, the array is 4x5"])
+        self.refuse(
+            ("convert", source, self.work / "f.h5", "--array", self.array),
+            [f"{source}:1: has 1x1 taxels, the array is 4x5"],
+        )
 
     def test_errors_name_the_mend(self):
         frames = self.contacts / "frames.csv"
@@ -255,11 +264,22 @@ class Convert(FrameFiles):
             ([lists("counts", np.full((2, 1, 1), 2**24 + 1)), lists("time_s", np.zeros(2))], ["frame 0", "16777217"]),
             ([lambda file: file.create_group("counts")], ["'counts'"]),
             ([lambda file: file.create_virtual_dataset("counts", layout)], ["other files", "h5repack"]),
-            ([lambda file: file.create_dataset("counts", (2, 3, 4), "u2", external=[(str(raw), 0, 48)])],
-             ["other files", "h5repack"]),
-            ([lambda file: file.create_dataset("counts", (9, 1024, 1024), "f4", chunks=(17, 1024, 1024),
-                                               maxshape=(None, 1024, 1024))], ["'counts'"]),
-            ([lambda file: file.create_dataset("counts", (2**40, 3, 4), "u2", chunks=(1, 3, 4))], ["larger than the file"]),
+            (
+                [lambda file: file.create_dataset("counts", (2, 3, 4), "u2", external=[(str(raw), 0, 48)])],
+                ["other files", "h5repack"],
+            ),
+            (
+                [
+                    lambda file: file.create_dataset(
+                        "counts", (9, 1024, 1024), "f4", chunks=(17, 1024, 1024), maxshape=(None, 1024, 1024)
+                    )
+                ],
+                ["'counts'"],
+            ),
+            (
+                [lambda file: file.create_dataset("counts", (2**40, 3, 4), "u2", chunks=(1, 3, 4))],
+                ["larger than the file"],
+            ),
             ([lists("counts", whole, compression="lzf"), lists("time_s", np.zeros(2))], ["'counts'", "cannot be read"]),
         ):
             with self.subTest(places=places):
@@ -271,8 +291,12 @@ class Convert(FrameFiles):
     def test_nothing_is_left_where_the_disk_is_full(self):
         for name in NAMES:
             with self.subTest(name=name):
-                self.refuse(("convert", self.recording, self.work / name), [f"cannot write '{self.work / name}'"],
-                            status=1, **files_limited_to(2000))
+                self.refuse(
+                    ("convert", self.recording, self.work / name),
+                    [f"cannot write '{self.work / name}'"],
+                    status=1,
+                    **files_limited_to(2000),
+                )
 
 
 class Wiresens(FrameFiles):
@@ -292,11 +316,21 @@ class Wiresens(FrameFiles):
                     file.create_dataset("frame_count", (1,), maxshape=(None,), dtype=np.uint32)
                     for name in ("ts", "predCount"):
                         file.create_dataset(name, (self.BLOCK,), maxshape=(None,), dtype=np.float64, chunks=True)
-                    file.create_dataset("pressure", (self.BLOCK, *reading.shape), maxshape=(None, *reading.shape),
-                                        dtype=np.int32, chunks=True)
+                    file.create_dataset(
+                        "pressure",
+                        (self.BLOCK, *reading.shape),
+                        maxshape=(None, *reading.shape),
+                        dtype=np.int32,
+                        chunks=True,
+                    )
                     if packets:
-                        file.create_dataset("packetNumber", (self.BLOCK, packets), maxshape=(None, packets),
-                                            dtype=np.uint32, chunks=True)
+                        file.create_dataset(
+                            "packetNumber",
+                            (self.BLOCK, packets),
+                            maxshape=(None, packets),
+                            dtype=np.uint32,
+                            chunks=True,
+                        )
                 if number == len(file["ts"]):
                     for name in set(file) - {"frame_count"}:
                         file[name].resize(number + self.BLOCK, axis=0)
@@ -347,8 +381,17 @@ class Info(FrameFiles):
 
     def test_of_a_recording(self):
         info = self.info(self.recording)
-        expected = {"format": "MCAP", "frames": FRAMES, "rows": ROWS, "cols": COLS, "lost": 0, "complete": True,
-                    "name": "small", "compression": "lz4", "size_bytes": self.recording.stat().st_size}
+        expected = {
+            "format": "MCAP",
+            "frames": FRAMES,
+            "rows": ROWS,
+            "cols": COLS,
+            "lost": 0,
+            "complete": True,
+            "name": "small",
+            "compression": "lz4",
+            "size_bytes": self.recording.stat().st_size,
+        }
         self.assertEqual({key: info[key] for key in expected}, expected)
         self.assertRegex(info["start_utc"], r"^20\d\d-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z$")
         self.assertIn('name = "small"', info["array_toml"])
@@ -356,7 +399,9 @@ class Info(FrameFiles):
         self.assertEqual(raw, [{"name": "/small/raw", "type": "sensor_msgs/msg/Image", "messages": FRAMES}])
 
     def test_of_every_format(self):
-        source = self.written("f.csv", "time_s,temperature_celsius,r0c0,r0c1,r0c2\n5,20,1,2,3\n6,,1,2,3\n7.5,-1,1,2,3\n")
+        source = self.written(
+            "f.csv", "time_s,temperature_celsius,r0c0,r0c1,r0c2\n5,20,1,2,3\n6,,1,2,3\n7.5,-1,1,2,3\n"
+        )
         for name in NAMES:
             with self.subTest(name=name):
                 info = self.info(self.convert(source, name)[0])
@@ -369,8 +414,13 @@ class Info(FrameFiles):
 
     def test_as_text(self):
         text = self.succeed("info", self.convert(self.recording, "a.h5")[0])
-        for line in ("format        HDF5", f"frames        {FRAMES}", "taxels        4x5", "complete      yes",
-                     "array         small (with its description)"):
+        for line in (
+            "format        HDF5",
+            f"frames        {FRAMES}",
+            "taxels        4x5",
+            "complete      yes",
+            "array         small (with its description)",
+        ):
             self.assertIn(line + "\n", text)
 
     def test_names_what_cannot_be_read(self):
@@ -393,8 +443,8 @@ def rewritten(recording, change):
     """The bytes of a recording of which `change` has changed some, and which says nothing of checksums of its own."""
     changed = bytearray(recording)
     change(changed)
-    summary, = struct.unpack_from("<Q", changed, len(changed) - len(MAGIC) - 20)
-    changed[summary - 4:summary] = changed[-len(MAGIC) - 4:-len(MAGIC)] = bytes(4)
+    (summary,) = struct.unpack_from("<Q", changed, len(changed) - len(MAGIC) - 20)
+    changed[summary - 4 : summary] = changed[-len(MAGIC) - 4 : -len(MAGIC)] = bytes(4)
     return bytes(changed)
 
 
@@ -409,7 +459,7 @@ def in_json(recording):
 def without_schemas(recording):
     for opcode, begin, _ in records(recording):
         if opcode == 4:
-            recording[begin + 2:begin + 4] = bytes(2)
+            recording[begin + 2 : begin + 4] = bytes(2)
 
 
 class Unread(FrameFiles):
@@ -421,8 +471,11 @@ class Unread(FrameFiles):
         return path
 
     def test_info_tells_what_is_there_and_why_it_is_not_read(self):
-        for change, why in ((in_json, "'/small/raw' are in 'jsn'; frames are read in 'cdr'"),
-                            (without_schemas, "'/small/raw' have no schema"), (in_gzip, "compressed with 'gzi'")):
+        for change, why in (
+            (in_json, "'/small/raw' are in 'jsn'; frames are read in 'cdr'"),
+            (without_schemas, "'/small/raw' have no schema"),
+            (in_gzip, "compressed with 'gzi'"),
+        ):
             with self.subTest(change.__name__):
                 path = self.rewrite(change)
                 result = dermis("info", path)
@@ -436,8 +489,11 @@ class Unread(FrameFiles):
                 self.refuse(("convert", path, self.work / "out.csv"), [path.name, why])
 
     def test_a_recovery_of_nothing_fails(self):
-        self.refuse(("recover", self.rewrite(in_gzip), "--out", self.work / "out.mcap"),
-                    ["in_gzip.mcap: nothing can be recovered: the chunk is compressed with 'gzi'"], status=1)
+        self.refuse(
+            ("recover", self.rewrite(in_gzip), "--out", self.work / "out.mcap"),
+            ["in_gzip.mcap: nothing can be recovered: the chunk is compressed with 'gzi'"],
+            status=1,
+        )
 
 
 class Recover(FrameFiles):
@@ -446,8 +502,9 @@ class Recover(FrameFiles):
         super().setUpClass()
         cls.long = cls.root / "long.mcap"
         # 64x160 taxels fill a chunk of 1 MiB in 50 frames
-        result = dermis("record", "--from", "sim:multitouch?rows=64&cols=160&rate=1000&seed=1", "--frames", "400",
-                        "--out", cls.long)
+        result = dermis(
+            "record", "--from", "sim:multitouch?rows=64&cols=160&rate=1000&seed=1", "--frames", "400", "--out", cls.long
+        )
         if result.returncode != 0:
             raise AssertionError(result.stderr)
 
@@ -463,8 +520,10 @@ class Recover(FrameFiles):
         text = self.succeed("recover", self.recording, "--out", self.work / "out.mcap")
         self.assertIn(f"out.mcap: {FRAMES} frames", text)
         self.assertIn("nothing was wrong", text)
-        self.assertEqual([list(part) for part in self.frames_of(self.work / "out.mcap")[::2]],
-                         [list(part) for part in self.frames_of(self.recording)[::2]])
+        self.assertEqual(
+            [list(part) for part in self.frames_of(self.work / "out.mcap")[::2]],
+            [list(part) for part in self.frames_of(self.recording)[::2]],
+        )
 
     def test_a_cut_recording_gives_the_frames_before_the_cut(self):
         whole = self.long.read_bytes()
@@ -476,8 +535,11 @@ class Recover(FrameFiles):
             left = self.told("cut.mcap", (1, 2))  # 2 where no frame is left
             self.assertFalse(left["complete"])
             if left["frames"] == 0:
-                self.refuse(("recover", cut, "--out", self.work / "out.mcap", "--force"), ["cut.mcap: nothing can be recovered"],
-                            status=1)
+                self.refuse(
+                    ("recover", cut, "--out", self.work / "out.mcap", "--force"),
+                    ["cut.mcap: nothing can be recovered"],
+                    status=1,
+                )
                 continue
             text = self.succeed("recover", cut, "--out", self.work / "out.mcap", "--force")
             info = self.recovered("out.mcap")
@@ -514,8 +576,9 @@ class Recover(FrameFiles):
         self.refuse(("recover", copy, "--out", self.work / "b.h5"), ["b.h5", ".mcap"])
         self.refuse(("recover", self.work / "none.mcap", "--out", self.work / "b.mcap"), ["none.mcap", "No such file"])
         self.refuse(("recover", self.written("t.mcap", "text"), "--out", self.work / "b.mcap"), ["t.mcap"])
-        self.refuse(("recover", self.long, "--out", self.work / "b.mcap"), ["b.mcap"], status=1,
-                    **files_limited_to(100_000))
+        self.refuse(
+            ("recover", self.long, "--out", self.work / "b.mcap"), ["b.mcap"], status=1, **files_limited_to(100_000)
+        )
 
 
 if __name__ == "__main__":

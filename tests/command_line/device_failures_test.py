@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """What goes wrong with devices: one line says what to do, and what was recorded before stays valid."""
+
 import contextlib
 import json
 import os
@@ -66,8 +67,9 @@ class Failures(unittest.TestCase):
         info = json.loads(result.stdout)
         self.assertEqual(info["frames"], len(frames))
         self.assertEqual(info["complete"], complete)
-        self.assertEqual([list(record.counts) for record in read_frames(self.out)],
-                         [list(frame.counts) for frame in frames])
+        self.assertEqual(
+            [list(record.counts) for record in read_frames(self.out)], [list(frame.counts) for frame in frames]
+        )
 
     def test_interrupted(self):
         """Ctrl-C in the middle of a frame, or `kill`: all whole frames are there."""
@@ -109,9 +111,9 @@ class Failures(unittest.TestCase):
                 line = Serial(2_000_000, link)
                 line.wait_for_reader(recorder.is_running)
             begin = 30 * part
-            mine = pieces[begin:begin + 30]
+            mine = pieces[begin : begin + 30]
             mine[-1] = Piece(mine[-1].data[:400])
-            whole += frames[begin + (part > 0):begin + 29]
+            whole += frames[begin + (part > 0) : begin + 29]
             if part > 0:
                 mine[0] = Piece(mine[0].data[111:])
             line.play(mine, DERMIS.bytes_per_second, recorder.is_running)
@@ -127,8 +129,9 @@ class Failures(unittest.TestCase):
     def test_full_disk(self):
         frames, pieces = DERMIS.stream(random.Random(4), count=400)
         with contextlib.closing(Serial(2_000_000)) as line:
-            recorder = Recorder(support.BINARY, line.uri(DERMIS.parameters(False)), self.out,
-                                **files_limited_to(100_000))
+            recorder = Recorder(
+                support.BINARY, line.uri(DERMIS.parameters(False)), self.out, **files_limited_to(100_000)
+            )
             line.wait_for_reader(recorder.is_running)
             line.play(pieces, DERMIS.bytes_per_second, recorder.is_running)
             status, says = recorder.finish(20)
@@ -139,15 +142,19 @@ class Failures(unittest.TestCase):
         result = dermis("info", self.out, "--json")
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(json.loads(result.stdout)["frames"], len(recorded))
-        self.assertEqual([list(record.counts) for record in recorded],
-                         [list(frame.counts) for frame in frames[:len(recorded)]])
+        self.assertEqual(
+            [list(record.counts) for record in recorded], [list(frame.counts) for frame in frames[: len(recorded)]]
+        )
 
     def test_bytes_that_are_no_frames(self):
         """Of another protocol, which is named, and of none."""
         noise = [Piece(random.Random(6).randbytes(1_000_000))]
-        cases = [(FLEXITAC, WUJI.stream(random.Random(5), seconds=2)[1], ["flexitac", "wuji"]),
-                 (WUJI, FLEXITAC.stream(random.Random(5), seconds=10)[1], ["wuji", "flexitac"]),
-                 (FLEXITAC, noise, ["flexitac"]), (DERMIS, noise, ["dermis"])]
+        cases = [
+            (FLEXITAC, WUJI.stream(random.Random(5), seconds=2)[1], ["flexitac", "wuji"]),
+            (WUJI, FLEXITAC.stream(random.Random(5), seconds=10)[1], ["wuji", "flexitac"]),
+            (FLEXITAC, noise, ["flexitac"]),
+            (DERMIS, noise, ["dermis"]),
+        ]
         with ThreadPoolExecutor(len(cases)) as pool:
             for case, (status, says) in zip(cases, pool.map(lambda case: self.play_wrong(*case[:2]), cases)):
                 with self.subTest(case[2]):
@@ -232,8 +239,9 @@ class Failures(unittest.TestCase):
         with contextlib.closing(Serial(2_000_000)) as line:
             os.chmod(line.path, 0o666)
             self.start(line, FLEXITAC)
-            result = dermis("record", "--from", line.uri(FLEXITAC.parameters(False)), "--out",
-                            self.work / "second.mcap", **user)
+            result = dermis(
+                "record", "--from", line.uri(FLEXITAC.parameters(False)), "--out", self.work / "second.mcap", **user
+            )
             self.assertIn(result.returncode, (1, 2), result.stderr)
             self.error_of(result.stderr, [line.path])
 

@@ -3,6 +3,7 @@
 """`dermis record` on every device of devices/emulators.py: each frame is recorded once and in order, whatever the
 transport; damaged bytes cost the frames they are in; `protocol=auto` sees no difference. The long form of this is
 scripts/device_campaign."""
+
 import random
 import tempfile
 import unittest
@@ -38,20 +39,40 @@ class Devices(unittest.TestCase):
                     self.assertEqual(list(outcome.failures(device.checksum)), [], outcome.says)
 
     def test_every_frame_is_recorded(self):
-        self.run_all([(device, {"transport": transport, "seconds": SECONDS})
-                      for device in DEVICES for transport in device.transports])
+        self.run_all(
+            [
+                (device, {"transport": transport, "seconds": SECONDS})
+                for device in DEVICES
+                for transport in device.transports
+            ]
+        )
 
     def test_the_protocol_is_recognised(self):
-        self.run_all([(device, {"transport": "file", "seconds": SECONDS, "auto": True})
-                      for device in DEVICES if device.recognised])
+        self.run_all(
+            [
+                (device, {"transport": "file", "seconds": SECONDS, "auto": True})
+                for device in DEVICES
+                if device.recognised
+            ]
+        )
 
     def test_it_may_begin_in_the_middle_of_a_frame(self):
-        self.run_all([(device, {"transport": "file", "seconds": SECONDS, "joined": True}) for device in DEVICES
-                      if device.is_independent])
+        self.run_all(
+            [
+                (device, {"transport": "file", "seconds": SECONDS, "joined": True})
+                for device in DEVICES
+                if device.is_independent
+            ]
+        )
 
     def test_damage_costs_the_frames_it_hits(self):
-        self.run_all([(device, {"transport": "file", "seconds": bytes_of(device) / device.bytes_per_second,
-                                "corrupt": True}) for device in DEVICES if device.is_independent])
+        self.run_all(
+            [
+                (device, {"transport": "file", "seconds": bytes_of(device) / device.bytes_per_second, "corrupt": True})
+                for device in DEVICES
+                if device.is_independent
+            ]
+        )
 
 
 class Damage(unittest.TestCase):

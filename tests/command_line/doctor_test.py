@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """`dermis doctor`: a healthy array is called healthy, and each fault by its name, its place and its first frame."""
+
 import json
 import random
 
@@ -12,8 +13,21 @@ class Doctor(SmallArray):
     def recording(self, faults):
         """Frames of several contacts with faults."""
         physics = self.written("physics.toml", "[faults]\n" + faults)
-        self.succeed("simulate", "--array", self.array, "--scene", "multitouch", "--frames", 300, "--seed", 5,
-                     "--physics", physics, "--out", self.work / "faulty")
+        self.succeed(
+            "simulate",
+            "--array",
+            self.array,
+            "--scene",
+            "multitouch",
+            "--frames",
+            300,
+            "--seed",
+            5,
+            "--physics",
+            physics,
+            "--out",
+            self.work / "faulty",
+        )
         return self.work / "faulty" / "frames.csv"
 
     def examine(self, frames, *options):
@@ -43,8 +57,19 @@ class Doctor(SmallArray):
         report = json.loads(self.examine(contacts, "--json").stdout)
         self.assertEqual(report["problems"], [])
         physics = self.written("physics.toml", "[environment]\nadc_noise_lsb = 4\n")
-        self.succeed("simulate", "--array", self.array, "--scene", "idle", "--frames", 100, "--physics", physics, "--out",
-                     self.work / "noisy")
+        self.succeed(
+            "simulate",
+            "--array",
+            self.array,
+            "--scene",
+            "idle",
+            "--frames",
+            100,
+            "--physics",
+            physics,
+            "--out",
+            self.work / "noisy",
+        )
         report = self.unhealthy(self.work / "noisy" / "frames.csv")
         self.assertIn("counts of noise", report["problems"][0])
 
@@ -53,17 +78,26 @@ class Doctor(SmallArray):
         result = self.examine(frames)
         self.assertEqual(result.returncode, 1)
         sentence = next(line for line in result.stdout.splitlines() if line.startswith("row 2 is open"))
-        for part in ("since frame 120", "check the wire or crimp of row 2", "5 taxels are masked", "the rest is still good"):
+        for part in (
+            "since frame 120",
+            "check the wire or crimp of row 2",
+            "5 taxels are masked",
+            "the rest is still good",
+        ):
             self.assertIn(part, sentence)
         report = self.unhealthy(frames)
-        self.assertEqual([(fault["kind"], fault["place"], fault["since_frame"]) for fault in report["faults"]],
-                         [("silent_row", "row 2", 120)])
+        self.assertEqual(
+            [(fault["kind"], fault["place"], fault["since_frame"]) for fault in report["faults"]],
+            [("silent_row", "row 2", 120)],
+        )
 
     def test_other_faults_by_name(self):
-        for faults, kind, place in (("open_columns = [1]", "silent_column", "column 1"),
-                                    ("supplied_columns = [3]", "supplied_column", "column 3"),
-                                    ("dead_taxels = ['r1c3']", "dead_taxel", "taxel r1c3"),
-                                    ("stuck_taxels = ['r3c0']", "stuck_taxel", "taxel r3c0")):
+        for faults, kind, place in (
+            ("open_columns = [1]", "silent_column", "column 1"),
+            ("supplied_columns = [3]", "supplied_column", "column 3"),
+            ("dead_taxels = ['r1c3']", "dead_taxel", "taxel r1c3"),
+            ("stuck_taxels = ['r3c0']", "stuck_taxel", "taxel r3c0"),
+        ):
             with self.subTest(faults):
                 report = self.unhealthy(self.recording(faults + "\n"))
                 self.assertEqual([(fault["kind"], fault["place"]) for fault in report["faults"]], [(kind, place)])
@@ -81,22 +115,27 @@ class Doctor(SmallArray):
         _, *cells = lines[frame].split(",")
         noise = random.Random(7)
         for i in range(count):
-            readings = [str(max(0, int(cell) + noise.choice((-1, 0, 1)))) for cell in cells[first - 1:]]
-            lines[i:] = [",".join([f"{0.05 * i:.2f}", *cells[:first - 1], *readings])]
+            readings = [str(max(0, int(cell) + noise.choice((-1, 0, 1)))) for cell in cells[first - 1 :]]
+            lines[i:] = [",".join([f"{0.05 * i:.2f}", *cells[: first - 1], *readings])]
         return self.written(name, "\n".join([header, *lines]) + "\n")
 
     def test_a_load_that_was_never_released(self):
         pressed = self.held("pressed.csv", self.pressed_frame(), 150)
         [problem] = self.unhealthy(pressed)["problems"]
-        self.assertRegex(problem, r"^r\dc\d (was|.*were) never released and reads? [\d.]+ N: take off what lies there, or tare")
+        self.assertRegex(
+            problem, r"^r\dc\d (was|.*were) never released and reads? [\d.]+ N: take off what lies there, or tare"
+        )
         result = dermis(*self.run_arguments(self.work / "forces.csv", **{"in": pressed}))
         self.assertEqual((result.returncode, error_lines(result)), (0, [problem]))
 
     def test_a_tare_under_a_load_is_refused_until_it_is_forced(self):
         pressed = self.held("pressed.csv", self.pressed_frame(), 60)
         out = self.work / "forces.csv"
-        self.refuse((*self.run_arguments(out, **{"in": pressed}), "--tare"),
-                    ["pressed.csv", "not tared", " N: take it off and tare again", "--tare-force", "nothing is written"], 1)
+        self.refuse(
+            (*self.run_arguments(out, **{"in": pressed}), "--tare"),
+            ["pressed.csv", "not tared", " N: take it off and tare again", "--tare-force", "nothing is written"],
+            1,
+        )
         self.assertFalse(out.exists())
         result = dermis(*self.run_arguments(out, **{"in": pressed}), "--tare-force")
         self.assertEqual(result.returncode, 0)
@@ -120,15 +159,29 @@ class Doctor(SmallArray):
         self.assertEqual([k for k, cell in enumerate(last[2:]) if cell == "nan"], list(range(10, 15)))
 
     def test_faults_that_the_array_cannot_have(self):
-        for faults, places in (("open_rows = [4]", ["faults.open_rows", "below 4"]),
-                               ("open_rows = 1", ["physics.toml:2", "faults.open_rows", "list"]),
-                               ("dead_taxels = ['r9c9']", ["faults.dead_taxels", "r9c9"]),
-                               ("dead_taxels = [9]", ["faults.dead_taxels", "texts"]),
-                               ("broken_rows = [1]", ["broken_rows"])):
+        for faults, places in (
+            ("open_rows = [4]", ["faults.open_rows", "below 4"]),
+            ("open_rows = 1", ["physics.toml:2", "faults.open_rows", "list"]),
+            ("dead_taxels = ['r9c9']", ["faults.dead_taxels", "r9c9"]),
+            ("dead_taxels = [9]", ["faults.dead_taxels", "texts"]),
+            ("broken_rows = [1]", ["broken_rows"]),
+        ):
             with self.subTest(faults):
                 physics = self.written("physics.toml", "[faults]\n" + faults + "\n")
-                self.refuse(("simulate", "--array", self.array, "--scene", "idle", "--physics", physics, "--out",
-                             self.work / "o"), places)
+                self.refuse(
+                    (
+                        "simulate",
+                        "--array",
+                        self.array,
+                        "--scene",
+                        "idle",
+                        "--physics",
+                        physics,
+                        "--out",
+                        self.work / "o",
+                    ),
+                    places,
+                )
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Files of other systems, made as their programs write them: all hold the same frames."""
+
 import bz2
 import struct
 import zlib
@@ -13,7 +14,7 @@ ROWS, COLS, FRAMES, RATE = 4, 5, 60, 50.0
 def counts():
     """A weight of 3x3 taxels, whole numbers of kilopascals, that comes after a third of the frames."""
     frames = numpy.zeros((FRAMES, ROWS, COLS))
-    frames[FRAMES // 3:, 0:3, 1:4] = [[20, 30, 20], [30, 50, 30], [20, 30, 20]]
+    frames[FRAMES // 3 :, 0:3, 1:4] = [[20, 30, 20], [30, 50, 30], [20, 30, 20]]
     return frames
 
 
@@ -66,8 +67,9 @@ def png(path):
     for k, frame in enumerate(counts()):
         raw = b"".join(b"\0" + bytes(int(value) for value in row) for row in frame)
         header = struct.pack(">IIBBBBB", COLS, ROWS, 8, 0, 0, 0, 0)
-        (path / f"{k}.png").write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) +
-                                        chunk(b"IDAT", zlib.compress(raw)) + chunk(b"IEND", b""))
+        (path / f"{k}.png").write_bytes(
+            b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(raw)) + chunk(b"IEND", b"")
+        )
 
 
 def packed10(path):
@@ -76,7 +78,12 @@ def packed10(path):
 
 
 TIMED = {"a.asf": tekscan, "tekscan.csv": tekscan, "xsensor.csv": xsensor, "a.lst": novel, "a.dsa": dsa}
-UNTIMED = {"a.txt": text_matrix, "matrix.csv": text_matrix, "pictures": png, "a.packed10": packed10,
-           "a.npz": lambda path: numpy.savez_compressed(path, counts()),
-           "b.npz": lambda path: numpy.savez(path, counts().astype(numpy.uint8))}
+UNTIMED = {
+    "a.txt": text_matrix,
+    "matrix.csv": text_matrix,
+    "pictures": png,
+    "a.packed10": packed10,
+    "a.npz": lambda path: numpy.savez_compressed(path, counts()),
+    "b.npz": lambda path: numpy.savez(path, counts().astype(numpy.uint8)),
+}
 ALL = TIMED | UNTIMED

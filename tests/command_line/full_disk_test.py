@@ -4,6 +4,7 @@
 stands for the disk, /dev/full for a device that takes nothing.
 Usage: full_disk_test.py BINARY [SIZES]
 SIZES is how many sizes of the disk a recording meets; 200 are a campaign."""
+
 import subprocess
 import sys
 
@@ -36,21 +37,30 @@ class FullDisk(SmallArray):
         (self.work / "o").mkdir()
         for size in (0, 500, 3000):
             with self.subTest(size):
-                self.refuse(["simulate", "--array", self.array, "--scene", "paper", "--out", self.work / "o"],
-                            [self.work / "o"], status=1, **files_limited_to(size))
+                self.refuse(
+                    ["simulate", "--array", self.array, "--scene", "paper", "--out", self.work / "o"],
+                    [self.work / "o"],
+                    status=1,
+                    **files_limited_to(size),
+                )
 
     def test_report(self):
         (self.work / "o").mkdir()
-        self.refuse([*self.evaluate_arguments(), "--report", self.work / "o"], [self.work / "o"], status=1,
-                    **files_limited_to(1000))
+        self.refuse(
+            [*self.evaluate_arguments(), "--report", self.work / "o"],
+            [self.work / "o"],
+            status=1,
+            **files_limited_to(1000),
+        )
 
 
 class FullDiskOfRecording(SmallArray):
     def record(self, size):
         """Returns the recording, if its beginning has room."""
         out = self.work / "rec.mcap"
-        result = support.dermis("record", "--from", "sim:contacts?rate=1000", "--seconds", 5, "--out", out,
-                                **files_limited_to(size))
+        result = support.dermis(
+            "record", "--from", "sim:contacts?rate=1000", "--seconds", 5, "--out", out, **files_limited_to(size)
+        )
         self.assertEqual(result.returncode, 1, result.stderr)
         self.assertEqual(result.stderr.count(f"dermis: cannot write '{out}'"), 1, result.stderr)
         self.assertEqual([file.name for file in self.work.glob("rec*")], ["rec.mcap"] if out.exists() else [])
@@ -77,11 +87,15 @@ class FullDevice(SmallArray):
         self.refuse(self.calibrate_arguments("/dev/full"), ["/dev/full"], status=1)
 
     def test_standard_output(self):
-        for arguments in (self.evaluate_arguments(), (*self.evaluate_arguments(), "--json"),
-                          self.calibrate_arguments(self.work / "m")):
+        for arguments in (
+            self.evaluate_arguments(),
+            (*self.evaluate_arguments(), "--json"),
+            self.calibrate_arguments(self.work / "m"),
+        ):
             with self.subTest(arguments[0]), open("/dev/full", "w") as full:
-                result = subprocess.run([support.BINARY, *map(str, arguments)], stdout=full, stderr=subprocess.PIPE,
-                                        text=True)
+                result = subprocess.run(
+                    [support.BINARY, *map(str, arguments)], stdout=full, stderr=subprocess.PIPE, text=True
+                )
                 self.assertEqual(result.returncode, 1, result.stderr)
                 self.assertEqual(len(error_lines(result)), 1, result.stderr)
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Files of other systems, made here as their programs write them, and arrays whose readings are forces."""
+
 import csv
 import json
 import unittest
@@ -78,8 +79,10 @@ class Imports(support.SmallArray):
                 self.succeed("image", "--in", recording, "--frame", 40, "--out", self.work / "c.svg")
                 self.assertIn(" N<", (self.work / "c.svg").read_text())
                 self.succeed("replay", recording, "--speed", 0, "--model", self.mat, "--out", self.work / "again.csv")
-                self.assertEqual((self.work / "again.csv").read_text().splitlines()[1].split(",")[2:],
-                                 out.read_text().splitlines()[1].split(",")[2:])
+                self.assertEqual(
+                    (self.work / "again.csv").read_text().splitlines()[1].split(",")[2:],
+                    out.read_text().splitlines()[1].split(",")[2:],
+                )
 
     def test_calibration_and_evaluation_take_them_too(self):
         """The counts of a calibration, as a stack without times and as one of the arrays of an archive."""
@@ -89,22 +92,33 @@ class Imports(support.SmallArray):
         numpy.save(stack, values)
         numpy.savez(archive, labels=values[:3], frames=values)
         header = "time_s," + ",".join(f"r{r}c{c}" for r in range(ROWS) for c in range(COLS)) + "\n"
-        plain = self.written("c.csv", header + "".join(f"{k / 100}," + ",".join(f"{v:g}" for v in frame.flat) + "\n"
-                                                       for k, frame in enumerate(values)))
+        plain = self.written(
+            "c.csv",
+            header
+            + "".join(f"{k / 100}," + ",".join(f"{v:g}" for v in frame.flat) + "\n" for k, frame in enumerate(values)),
+        )
         expected = None
         for source in (plain, f"file:{stack}?rate=100", f"file:{archive}%23frames?rate=100"):
             model = self.work / "model"
             result = support.dermis(*self.calibrate_arguments(model, frames=source))  # poor without temperatures
             self.assertEqual(result.returncode, 0, result.stderr)
-            judged = self.succeed(*self.evaluate_arguments(model=model, frames=source,
-                                                           loads=self.calibration / "loads.csv"), "--json")
+            judged = self.succeed(
+                *self.evaluate_arguments(model=model, frames=source, loads=self.calibration / "loads.csv"), "--json"
+            )
             expected = expected or judged
             self.assertEqual(judged, expected)
         self.refuse(self.calibrate_arguments(self.work / "m", frames="sim:idle?rate=100"), ["dermis record"])
 
     def test_info_names_the_format(self):
-        formats = {"a.asf": "Tekscan ASCII", "xsensor.csv": "XSENSOR ASCII", "a.lst": "novel listing",
-                   "a.dsa": "Weiss DSA", "a.txt": "text matrix", "pictures": "PNG", "a.npz": "NumPy archive"}
+        formats = {
+            "a.asf": "Tekscan ASCII",
+            "xsensor.csv": "XSENSOR ASCII",
+            "a.lst": "novel listing",
+            "a.dsa": "Weiss DSA",
+            "a.txt": "text matrix",
+            "pictures": "PNG",
+            "a.npz": "NumPy archive",
+        }
         for name, expected in formats.items():
             with self.subTest(name):
                 info = json.loads(self.succeed("info", self.root / name, "--json"))
@@ -125,8 +139,10 @@ class Imports(support.SmallArray):
     def test_a_frame_that_is_cut_costs_itself(self):
         whole = (self.contacts / "frames.csv").read_text().splitlines(True)
         cut = self.written("cut.csv", "".join(whole[:50]) + whole[50][:20])
-        for source, place in ((cut, "cut.csv:51"), (self.written("cut.asf", (self.root / "a.asf").read_text()[:2000]),
-                                                    "cut.asf:")):
+        for source, place in (
+            (cut, "cut.csv:51"),
+            (self.written("cut.asf", (self.root / "a.asf").read_text()[:2000]), "cut.asf:"),
+        ):
             out = self.work / "out.npy"
             result = support.dermis("convert", source, out, "--force")
             self.assertEqual(result.returncode, 1, result.stderr)
@@ -150,14 +166,21 @@ class Imports(support.SmallArray):
             (self.run_arguments(out, **{"in": quotes}), ["quotes.csv:1", "quotes"]),
             (self.run_arguments(out, **{"in": wide}), ["wide.csv:1", "UTF-16", "UTF-8"]),
             (self.calibrate_arguments(self.work / "m", loads=loads), ["loads.csv:1", "tabs"]),
-            (("run", "--model", self.mat, "--in", self.root / "a.txt", "--out", out), ["a.txt", "has no times", "rate"]),
-            (("run", "--model", self.mat, "--in", f"file:{self.root / 'a.asf'}?rate=5", "--out", out),
-             ["times of its own", "rate"]),
+            (
+                ("run", "--model", self.mat, "--in", self.root / "a.txt", "--out", out),
+                ["a.txt", "has no times", "rate"],
+            ),
+            (
+                ("run", "--model", self.mat, "--in", f"file:{self.root / 'a.asf'}?rate=5", "--out", out),
+                ["times of its own", "rate"],
+            ),
             (("convert", self.root / "a.asf", out, "--rate", 5), ["--rate", "times of its own"]),
             (("convert", self.root / "a.packed10", out, "--rate", 5), ["a.packed10", "rows and cols"]),
             (("convert", self.contacts / "frames.csv", self.work / "a.asf"), ["a.asf", "only read"]),
-            (("run", "--model", self.array, "--in", self.contacts / "frames.csv", "--out", out),
-             [self.array, "dermis calibrate"]),
+            (
+                ("run", "--model", self.array, "--in", self.contacts / "frames.csv", "--out", out),
+                [self.array, "dermis calibrate"],
+            ),
             (("serve", "--model", self.mat, "--from", f"file:{self.root / 'a.txt'}?rate=5"), ["make a recording"]),
         ):
             with self.subTest(arguments):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Ctrl-C in work of which a half is worth nothing: status 130, one line, and no file but those that were there."""
+
 import os
 import signal
 import subprocess
@@ -31,8 +32,9 @@ class Interrupted(SmallArray):
 
     def interrupt(self, is_busy, *arguments):
         before = files_below(self.work)
-        process = subprocess.Popen([support.BINARY, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                   text=True)
+        process = subprocess.Popen(
+            [support.BINARY, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
         is_busy(process)
         process.send_signal(signal.SIGINT)
         output, errors = process.communicate(timeout=60)
@@ -44,11 +46,12 @@ class Interrupted(SmallArray):
     def test_while_frames_are_read(self):
         beginning = (self.contacts / "frames.csv").read_text()
         labels = self.written("labels.csv", "id,first,last,class\n0,0,4,hand\n1,5,9,foot\n")
-        for name, command in (("convert.csv", lambda frames: ("convert", frames, self.work / "out.npy")),
-                              ("evaluate.csv", lambda frames: self.evaluate_arguments(frames=frames)),
-                              ("learn.csv", lambda frames: ("learn", "--in", frames, "--labels", labels, "--out",
-                                                            self.work / "classes")),
-                              ("calibrate.csv", lambda frames: self.calibrate_arguments(self.work / "m", frames=frames))):
+        for name, command in (
+            ("convert.csv", lambda frames: ("convert", frames, self.work / "out.npy")),
+            ("evaluate.csv", lambda frames: self.evaluate_arguments(frames=frames)),
+            ("learn.csv", lambda frames: ("learn", "--in", frames, "--labels", labels, "--out", self.work / "classes")),
+            ("calibrate.csv", lambda frames: self.calibrate_arguments(self.work / "m", frames=frames)),
+        ):
             with self.subTest(name):
                 frames, is_read = self.endless(name, beginning)
                 self.interrupt(lambda process: is_read.wait(60), *command(frames))
@@ -59,9 +62,21 @@ class Interrupted(SmallArray):
                 pass
 
         (self.work / "out").mkdir()
-        large = self.written("large.toml", support.ARRAY.replace("rows = 4", "rows = 16").replace("cols = 5", "cols = 16"))
-        self.interrupt(has_begun_to_write, "simulate", "--array", large, "--scene", "multitouch", "--frames", 200000, "--out",
-                       self.work / "out")
+        large = self.written(
+            "large.toml", support.ARRAY.replace("rows = 4", "rows = 16").replace("cols = 5", "cols = 16")
+        )
+        self.interrupt(
+            has_begun_to_write,
+            "simulate",
+            "--array",
+            large,
+            "--scene",
+            "multitouch",
+            "--frames",
+            200000,
+            "--out",
+            self.work / "out",
+        )
 
 
 if __name__ == "__main__":

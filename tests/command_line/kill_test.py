@@ -4,6 +4,7 @@
 file as it is left and after dermis recover, and npm's reader reads the recovered file by its index.
 Usage: kill_test.py BINARY MCAP_SAMPLE [KILLS [SEED]]
 KILLS is for a machine that does nothing else: each frame that was taken 100 ms before a kill is to be read back, too."""
+
 import random
 import re
 import subprocess
@@ -45,8 +46,12 @@ class Kill(unittest.TestCase):
 
     def record(self, source):
         with open(self.work / "stderr", "w") as messages:
-            process = subprocess.Popen([BINARY, "record", "--from", source, "--out", self.out], stdin=subprocess.PIPE,
-                                       stdout=subprocess.DEVNULL, stderr=messages)
+            process = subprocess.Popen(
+                [BINARY, "record", "--from", source, "--out", self.out],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.DEVNULL,
+                stderr=messages,
+            )
         self.addCleanup(process.communicate)
         self.addCleanup(process.kill)
         return process
@@ -90,7 +95,9 @@ class Kill(unittest.TestCase):
                 if KILLS:
                     self.assertLess(ages[-1], PROMISE_S + 1 / RATE_HZ)
                 recovered = self.work / "recovered.mcap"
-                result = subprocess.run([BINARY, "recover", self.out, "--out", recovered], capture_output=True, text=True)
+                result = subprocess.run(
+                    [BINARY, "recover", self.out, "--out", recovered], capture_output=True, text=True
+                )
                 self.assertEqual(result.returncode, 0, result.stderr)
                 self.assertEqual(read_frames(recovered), frames)
                 npm = subprocess.run(["node", NPM_READER, recovered], capture_output=True, text=True)
@@ -98,8 +105,10 @@ class Kill(unittest.TestCase):
                 self.assertEqual(int(re.search(r"sensor_msgs/msg/Image (\d+)", npm.stdout).group(1)), len(frames))
                 self.out.unlink()
                 recovered.unlink()
-        print(f"{len(ages)} kills; age of the last frame at the kill: "
-              f"{', '.join(f'{1000 * age:.0f}' for age in sorted(ages))} ms")
+        print(
+            f"{len(ages)} kills; age of the last frame at the kill: "
+            f"{', '.join(f'{1000 * age:.0f}' for age in sorted(ages))} ms"
+        )
 
     def test_frames_that_none_follows(self):
         """They come into the file without a further frame and without an end of the recording."""

@@ -2,6 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """`dermis learn --in`: recordings become classes, by the forces of a model or by tared readings, which `dermis recognise`
 names in other recordings."""
+
 import bisect
 import csv
 import io
@@ -29,8 +30,22 @@ class Forces(SmallArray):
         for seed in (3, 4, 5):
             folder = cls.root / f"scene{seed}"
             recording = cls.root / f"rec{seed}.mcap"
-            for step in (("simulate", "--array", cls.array, "--scene", "multitouch", "--frames", 150, "--seed", seed,
-                          "--out", folder), ("convert", folder / "frames.csv", recording)):
+            for step in (
+                (
+                    "simulate",
+                    "--array",
+                    cls.array,
+                    "--scene",
+                    "multitouch",
+                    "--frames",
+                    150,
+                    "--seed",
+                    seed,
+                    "--out",
+                    folder,
+                ),
+                ("convert", folder / "frames.csv", recording),
+            ):
                 result = dermis(*step)
                 if result.returncode != 0:
                     raise AssertionError(f"{step}: {result.stderr}")
@@ -38,22 +53,44 @@ class Forces(SmallArray):
             with open(folder / "loads.csv") as loads:
                 for load in csv.DictReader(loads):
                     pressed[int(load["frame"])] += load["where"] != "all" and float(load["value"]) > 0.3
-            cls.kinds[seed] = {frame: "few" if count <= 2 else "many" for frame, count in enumerate(pressed)
-                               if 0 < count <= 2 or count >= 6}
+            cls.kinds[seed] = {
+                frame: "few" if count <= 2 else "many"
+                for frame, count in enumerate(pressed)
+                if 0 < count <= 2 or count >= 6
+            }
 
     def labels(self, *seeds, header="id,first,last,class,recording"):
-        lines = [f"r{seed}f{frame},{frame},{frame},{kind},rec{seed}.mcap"
-                 for seed in seeds for frame, kind in self.kinds[seed].items()]
+        lines = [
+            f"r{seed}f{frame},{frame},{frame},{kind},rec{seed}.mcap"
+            for seed in seeds
+            for frame, kind in self.kinds[seed].items()
+        ]
         return self.written("labels.csv", "\n".join([header, *lines]) + "\n")
 
     def learn(self, *seeds, model=True, labels=None, arguments=()):
         recordings = [self.root / f"rec{seed}.mcap" for seed in seeds]
-        return ["learn", "--in", *recordings, "--labels", labels or self.labels(*seeds), "--out",
-                self.work / "c.safetensors", *(("--model", self.model) if model else ()), *arguments]
+        return [
+            "learn",
+            "--in",
+            *recordings,
+            "--labels",
+            labels or self.labels(*seeds),
+            "--out",
+            self.work / "c.safetensors",
+            *(("--model", self.model) if model else ()),
+            *arguments,
+        ]
 
     def recognised(self, seed):
-        output = self.succeed("recognise", "--classes", self.work / "c.safetensors", "--model", self.model, "--in",
-                              self.root / f"rec{seed}.mcap")
+        output = self.succeed(
+            "recognise",
+            "--classes",
+            self.work / "c.safetensors",
+            "--model",
+            self.model,
+            "--in",
+            self.root / f"rec{seed}.mcap",
+        )
         return {int(line["last"]): line for line in csv.DictReader(io.StringIO(output))}
 
     def right_share(self, seed):
@@ -71,29 +108,52 @@ class Forces(SmallArray):
     def test_the_same_frames_give_the_same_answer_in_every_file(self):
         self.succeed(*self.learn(3))
         recorded = self.recognised(3)
-        output = self.succeed("recognise", "--classes", self.work / "c.safetensors", "--model", self.model, "--in",
-                              self.root / "scene3" / "frames.csv")
+        output = self.succeed(
+            "recognise",
+            "--classes",
+            self.work / "c.safetensors",
+            "--model",
+            self.model,
+            "--in",
+            self.root / "scene3" / "frames.csv",
+        )
         from_text = {int(line["last"]): line for line in csv.DictReader(io.StringIO(output))}
         self.assertEqual(len(recorded), 150)
         for frame, line in recorded.items():
-            self.assertEqual((line["likeliest"], line["probability"]),
-                             (from_text[frame]["likeliest"], from_text[frame]["probability"]))
+            self.assertEqual(
+                (line["likeliest"], line["probability"]),
+                (from_text[frame]["likeliest"], from_text[frame]["probability"]),
+            )
 
     def test_a_report_compares_with_other_estimators(self):
-        self.refuse(["learn", "--in", self.root / "rec3.mcap", "--labels", self.labels(3), "--report",
-                     self.work / "page"], ["nothing would be written", "--out"])
+        self.refuse(
+            ["learn", "--in", self.root / "rec3.mcap", "--labels", self.labels(3), "--report", self.work / "page"],
+            ["nothing would be written", "--out"],
+        )
         self.succeed(*self.learn(3, 4, arguments=["--report", self.work / "page"]))
         page = (self.work / "page" / "index.html").read_text()
-        shares = {name: float(share) for name, share in
-                  re.findall(r"(dermis|nearest frame|BP network)</th><td[^>]*>([\d.]+) %", page)}
+        shares = {
+            name: float(share)
+            for name, share in re.findall(r"(dermis|nearest frame|BP network)</th><td[^>]*>([\d.]+) %", page)
+        }
         self.assertEqual(set(shares), {"dermis", "nearest frame", "BP network"})
         self.assertGreaterEqual(shares["dermis"], 90)
         self.assertGreaterEqual(shares["BP network"], 85)
         self.assertTrue((self.work / "page" / "confusion.svg").exists())
 
     def evaluate(self, seed, *arguments):
-        return ["evaluate", "--classes", self.work / "c.safetensors", "--in", self.root / f"rec{seed}.mcap", "--model",
-                self.model, "--labels", self.labels(seed), *arguments]
+        return [
+            "evaluate",
+            "--classes",
+            self.work / "c.safetensors",
+            "--in",
+            self.root / f"rec{seed}.mcap",
+            "--model",
+            self.model,
+            "--labels",
+            self.labels(seed),
+            *arguments,
+        ]
 
     def test_classes_are_judged_by_a_recording_that_they_have_not_seen(self):
         self.succeed(*self.learn(3, 4))
@@ -109,15 +169,21 @@ class Forces(SmallArray):
         self.assertLessEqual(judged["calibration_error"], 0.1)
 
     def test_classes_are_judged_by_plain_files_and_by_new_classes(self):
-        frames = ["--frames", self.work / "frames.npy", "--arrays",
-                  self.written("arrays.csv", "array,rows,cols,first_column\nskin,4,5,0\n")]
+        frames = [
+            "--frames",
+            self.work / "frames.npy",
+            "--arrays",
+            self.written("arrays.csv", "array,rows,cols,first_column\nskin,4,5,0\n"),
+        ]
         self.assertEqual(dermis("convert", self.root / "rec3.mcap", self.work / "frames.npy").returncode, 0)
         labels = self.labels(3)
         self.succeed("learn", *frames, "--labels", labels, "--out", self.work / "c.safetensors")
         text = self.succeed("evaluate", "--classes", self.work / "c.safetensors", *frames, "--labels", labels)
         self.assertIn(f"of {len(self.kinds[3])}, calibration error", text)
         first, *others = labels.read_text().splitlines()
-        labels.write_text("\n".join([first, *others[:10], *(line.replace("few", "new") for line in others[10:])]) + "\n")
+        labels.write_text(
+            "\n".join([first, *others[:10], *(line.replace("few", "new") for line in others[10:])]) + "\n"
+        )
         text = self.succeed("evaluate", "--classes", self.work / "c.safetensors", *frames, "--labels", labels)
         self.assertRegex(text, r"of \d+ examples of classes that were not learned, \d+ are called unknown")
 
@@ -126,13 +192,27 @@ class Forces(SmallArray):
         classes = self.work / "c.safetensors"
         self.refuse(self.evaluate(4)[:-2], ["--labels"])
         self.refuse(self.evaluate(4, "--report", self.work / "page"), ["--classes", "--report"])
-        self.refuse(["evaluate", "--classes", classes, "--in", self.root / "rec4.mcap", "--labels", self.labels(4)],
-                    [classes, "--model"])
+        self.refuse(
+            ["evaluate", "--classes", classes, "--in", self.root / "rec4.mcap", "--labels", self.labels(4)],
+            [classes, "--model"],
+        )
         self.refuse([*self.evaluate_arguments(), "--labels", self.labels(4)], ["--labels", "--classes"])
         never = self.written("never.csv", "id,first,last,class\na,0,0,never\n")
         self.refuse([*self.evaluate(4), "--label", "subject"], ["subject"])
-        self.refuse(["evaluate", "--classes", classes, "--model", self.model, "--in", self.root / "rec4.mcap",
-                     "--labels", never], [classes, "no label"])
+        self.refuse(
+            [
+                "evaluate",
+                "--classes",
+                classes,
+                "--model",
+                self.model,
+                "--in",
+                self.root / "rec4.mcap",
+                "--labels",
+                never,
+            ],
+            [classes, "no label"],
+        )
 
     def test_one_recording_needs_no_column_that_names_it(self):
         lines = [f"f{frame},{frame},{frame},{kind}" for frame, kind in self.kinds[3].items()]
@@ -142,13 +222,16 @@ class Forces(SmallArray):
 
     def test_labels_that_do_not_fit(self):
         header = "id,first,last,class,recording\na,0,0,few,rec3.mcap\n"
-        for line, places in (("b,150,150,many,rec3.mcap", ["rec3.mcap", "'b'", "frame 150", "150 frames"]),
-                             ("b,0,1,many,rec3.mcap", ["rec3.mcap", "'b' overlaps label 'a'", "frame 0"]),
-                             ("b,0,1,many,rec9.mcap", [":3", "'rec9.mcap'", "rec3.mcap, rec4.mcap"]),
-                             ("a,0,0,many,rec4.mcap", ["'a' stands twice"])):
+        for line, places in (
+            ("b,150,150,many,rec3.mcap", ["rec3.mcap", "'b'", "frame 150", "150 frames"]),
+            ("b,0,1,many,rec3.mcap", ["rec3.mcap", "'b' overlaps label 'a'", "frame 0"]),
+            ("b,0,1,many,rec9.mcap", [":3", "'rec9.mcap'", "rec3.mcap, rec4.mcap"]),
+            ("a,0,0,many,rec4.mcap", ["'a' stands twice"]),
+        ):
             with self.subTest(line):
-                self.refuse(self.learn(3, 4, labels=self.written("labels.csv", header + line + "\n")),
-                            ["labels.csv", *places])
+                self.refuse(
+                    self.learn(3, 4, labels=self.written("labels.csv", header + line + "\n")), ["labels.csv", *places]
+                )
 
     def test_several_recordings_need_the_column_that_names_them(self):
         labels = self.written("labels.csv", "id,first,last,class\na,0,0,few\nb,1,1,many\n")
@@ -161,27 +244,30 @@ class Forces(SmallArray):
         arguments = self.learn(3)
         self.refuse([*arguments[:3], twin / "rec3.mcap", *arguments[3:]], ["two recordings are called rec3.mcap"])
         other = self.written("other.csv", "time_s,r0c0,r0c1\n0,1,2\n1,2,3\n")
-        self.refuse([*self.learn(3, model=False)[:3], other, *self.learn(3, model=False)[3:]],
-                    ["other.csv", "1x2", "4x5"])
+        self.refuse(
+            [*self.learn(3, model=False)[:3], other, *self.learn(3, model=False)[3:]], ["other.csv", "1x2", "4x5"]
+        )
         self.refuse(["learn", "--in", "sim:idle?rate=100&rows=4&cols=5", *self.learn(3)[3:]], ["dermis record"])
 
     def test_examples_that_are_named_twice_or_not_at_all(self):
         labels, out = self.labels(3), self.work / "c.safetensors"
         self.refuse(["learn", "--labels", labels, "--out", out], ["name the examples", "recordings", "frames"])
         self.refuse(["learn", "--labels", labels, "--out", out, "--frames", labels], ["with their arrays"])
-        self.refuse(["learn", "--labels", labels, "--out", out, "--frames", labels, "--arrays", labels, "--tare"],
-                    ["--frames", "tare"])
+        self.refuse(
+            ["learn", "--labels", labels, "--out", out, "--frames", labels, "--arrays", labels, "--tare"],
+            ["--frames", "tare"],
+        )
         self.refuse(self.learn(3, arguments=["--frames", labels]), ["--in", "excludes frames"])
 
     def test_classes_and_sources_that_do_not_fit(self):
         self.succeed(*self.learn(3))
         recording, classes = self.root / "rec4.mcap", self.work / "c.safetensors"
         self.refuse(["recognise", "--classes", classes, "--in", recording], [classes, "--model"])
-        self.refuse(["recognise", "--classes", classes, "--model", self.model, "--in", "sim:idle?rows=3&cols=3"],
-                    ["3x3"])
+        self.refuse(
+            ["recognise", "--classes", classes, "--model", self.model, "--in", "sim:idle?rows=3&cols=3"], ["3x3"]
+        )
         self.succeed(*self.learn(3, model=False))
-        self.refuse(["recognise", "--classes", classes, "--model", self.model, "--in", recording],
-                    [classes, "--model"])
+        self.refuse(["recognise", "--classes", classes, "--model", self.model, "--in", recording], [classes, "--model"])
         other = self.written("other.csv", "time_s,r0c0,r0c1\n0,1,2\n1,2,3\n")
         self.refuse(["recognise", "--classes", classes, "--in", other], ["other.csv"])
 
@@ -209,8 +295,10 @@ class TaredReadings(unittest.TestCase):
             frames += [[o + force * (i == taxel) for i, o in enumerate(offsets)]] * length
             frames += [offsets] * generator.randint(20, 30)
         header = ",".join(["time_s", *(f"r{r}c{c}" for r in range(ROWS) for c in range(COLS))])
-        lines = [",".join([f"{i / RATE}", *(f"{value + generator.gauss(0, 1):.0f}" for value in frame)])
-                 for i, frame in enumerate(frames)]
+        lines = [
+            ",".join([f"{i / RATE}", *(f"{value + generator.gauss(0, 1):.0f}" for value in frame)])
+            for i, frame in enumerate(frames)
+        ]
         text = self.written(f"{name}.csv", "\n".join([header, *lines]) + "\n")
         self.succeed("convert", text, self.work / f"{name}.mcap")
         return happened
@@ -218,14 +306,24 @@ class TaredReadings(unittest.TestCase):
     def learn(self, happened, *arguments):
         lines = [f"t{i},{first},{last},{kind}" for i, (first, last, kind) in enumerate(happened)]
         labels = self.written("labels.csv", "\n".join(["id,first,last,class", *lines]) + "\n")
-        return ["learn", "--in", self.work / "taught.mcap", "--labels", labels, "--out", self.work / "c.safetensors",
-                "--tare", *arguments]
+        return [
+            "learn",
+            "--in",
+            self.work / "taught.mcap",
+            "--labels",
+            labels,
+            "--out",
+            self.work / "c.safetensors",
+            "--tare",
+            *arguments,
+        ]
 
     def test_gestures_are_found_and_named_in_another_recording(self):
         self.succeed(*self.learn(self.recording("taught", 1)))
         happened = self.recording("other", 2)
-        output = self.succeed("recognise", "--classes", self.work / "c.safetensors", "--tare", "--in",
-                              self.work / "other.mcap")
+        output = self.succeed(
+            "recognise", "--classes", self.work / "c.safetensors", "--tare", "--in", self.work / "other.mcap"
+        )
         lines = list(csv.DictReader(io.StringIO(output)))
         self.assertEqual(len(lines), len(happened))
         for line, (first, last, kind) in zip(lines, happened):
@@ -234,8 +332,10 @@ class TaredReadings(unittest.TestCase):
             self.assertLessEqual(abs(int(line["last"]) - last), 2)
 
     def test_no_example_lies_in_the_tare(self):
-        self.refuse(self.learn([(RATE - 1, RATE + 3, "tap"), *self.recording("taught", 1)]),
-                    ["labels.csv", "taught.mcap", "'t0'", f"first {RATE} frames are the tare"])
+        self.refuse(
+            self.learn([(RATE - 1, RATE + 3, "tap"), *self.recording("taught", 1)]),
+            ["labels.csv", "taught.mcap", "'t0'", f"first {RATE} frames are the tare"],
+        )
 
     def test_a_recording_that_ends_before_it_is_tared(self):
         self.recording("taught", 1, touches=0, idle=RATE // 2)
@@ -244,15 +344,21 @@ class TaredReadings(unittest.TestCase):
     def test_further_readings_tell_apart_what_feels_the_same(self):
         def joints(name, happened):
             """The elbow is bent in every second pair of touches, alike for taps and holds."""
-            lines = [f"{name}.mcap,{(first - 3) / RATE},{90 * (i % 4 >= 2)},{i % 3}"
-                     for i, (first, _, _) in enumerate(happened)]
-            lines += [f"{name}.mcap,{(last + first) / 2 / RATE},{90 * (i % 4 >= 2) + 1},{i % 3}"
-                      for i, (first, last, _) in enumerate(happened)]
+            lines = [
+                f"{name}.mcap,{(first - 3) / RATE},{90 * (i % 4 >= 2)},{i % 3}"
+                for i, (first, _, _) in enumerate(happened)
+            ]
+            lines += [
+                f"{name}.mcap,{(last + first) / 2 / RATE},{90 * (i % 4 >= 2) + 1},{i % 3}"
+                for i, (first, last, _) in enumerate(happened)
+            ]
             return sorted(lines, key=lambda line: float(line.split(",")[1]))
 
         def bent(happened):
-            return [(first, last, f"{kind}_{'bent' if i % 4 >= 2 else 'straight'}")
-                    for i, (first, last, kind) in enumerate(happened)]
+            return [
+                (first, last, f"{kind}_{'bent' if i % 4 >= 2 else 'straight'}")
+                for i, (first, last, kind) in enumerate(happened)
+            ]
 
         taught, other = self.recording("taught", 1, touches=40), self.recording("other", 2)
         header = ["recording,time_s,elbow,wrist"]
@@ -269,19 +375,33 @@ class TaredReadings(unittest.TestCase):
         self.assertEqual(len(lines), len(other))
         right = sum(line["likeliest"] == kind for line, (_, _, kind) in zip(lines, bent(other)))
         self.assertGreaterEqual(right, 0.9 * len(other))
-        self.refuse([*self.learn(bent(taught)), "--extra", self.written("away.csv", "time_s,elbow\n99999,1\n")],
-                    ["away.csv", "'elbow'", "time_s"])
-        self.refuse([*self.learn(bent(taught)), "--extra", self.written("text.csv", "time_s,elbow\n0,bent\n")],
-                    ["text.csv:2", "'bent'"])
+        self.refuse(
+            [*self.learn(bent(taught)), "--extra", self.written("away.csv", "time_s,elbow\n99999,1\n")],
+            ["away.csv", "'elbow'", "time_s"],
+        )
+        self.refuse(
+            [*self.learn(bent(taught)), "--extra", self.written("text.csv", "time_s,elbow\n0,bent\n")],
+            ["text.csv:2", "'bent'"],
+        )
 
     def test_poses_without_a_rate_are_told_so(self):
         happened = self.recording("taught", 1)
-        labels = "".join(f"{i},{first + 2},{first + 2},{'left' if i % 2 else 'right'}\n"
-                         for i, (first, _, _) in enumerate(happened))
+        labels = "".join(
+            f"{i},{first + 2},{first + 2},{'left' if i % 2 else 'right'}\n" for i, (first, _, _) in enumerate(happened)
+        )
         arrays = self.written("arrays.csv", f"array,rows,cols,first_column\nskin,{ROWS},{COLS},0\n")
         self.assertEqual(dermis("convert", self.work / "taught.csv", self.work / "taught.npy").returncode, 0)
-        self.succeed("learn", "--frames", self.work / "taught.npy", "--arrays", arrays, "--labels",
-                     self.written("labels.csv", "id,first,last,class\n" + labels), "--out", self.work / "c.safetensors")
+        self.succeed(
+            "learn",
+            "--frames",
+            self.work / "taught.npy",
+            "--arrays",
+            arrays,
+            "--labels",
+            self.written("labels.csv", "id,first,last,class\n" + labels),
+            "--out",
+            self.work / "c.safetensors",
+        )
         recognise = ["recognise", "--classes", self.work / "c.safetensors", "--in", self.work / "taught.csv"]
         result = dermis(*recognise)
         self.assertEqual(result.returncode, 0, result.stderr)
@@ -298,9 +418,13 @@ class Suit(SmallArray):
     def setUpClass(cls):
         super().setUpClass()
         cls.suit = cls.root / "suit.toml"
-        cls.suit.write_text("".join(
-            f'[[array]]\nname = "{name}"\nfrom = "sim:multitouch?rows=4&cols=5&rate=50&seed={seed}"\n'
-            f'model = "{cls.model}"\n' for seed, name in enumerate(("left", "right"), 5)))
+        cls.suit.write_text(
+            "".join(
+                f'[[array]]\nname = "{name}"\nfrom = "sim:multitouch?rows=4&cols=5&rate=50&seed={seed}"\n'
+                f'model = "{cls.model}"\n'
+                for seed, name in enumerate(("left", "right"), 5)
+            )
+        )
         cls.recordings = [cls.root / "monday.mcap", cls.root / "friday.mcap"]
         for recording in cls.recordings:
             cls.record(recording)
@@ -308,8 +432,11 @@ class Suit(SmallArray):
     @classmethod
     def record(cls, recording, patience=120):
         """Serves the suit until 3 s of it are in the recording."""
-        process = subprocess.Popen([support.BINARY, "serve", "--port", "0", "--suit", cls.suit, "--record", recording],
-                                   stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+        process = subprocess.Popen(
+            [support.BINARY, "serve", "--port", "0", "--suit", cls.suit, "--record", recording],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+        )
         process.stdout.close()
         try:
             for _ in range(10 * patience):
@@ -329,8 +456,10 @@ class Suit(SmallArray):
         result = dermis("run", "--model", self.model, "--in", f"{recording}#{array}", "--out", forces)
         self.assertEqual(result.returncode, 0, result.stderr)
         with open(forces) as lines:
-            return [(float(line["time_s"]), sum(float(line[f"r{r}c{c}"]) for r in range(4) for c in range(5)))
-                    for line in csv.DictReader(lines)]
+            return [
+                (float(line["time_s"]), sum(float(line[f"r{r}c{c}"]) for r in range(4) for c in range(5)))
+                for line in csv.DictReader(lines)
+            ]
 
     def kinds(self, recording):
         """Which array is pressed more, by the number of the frame of the first."""
@@ -351,8 +480,18 @@ class Suit(SmallArray):
     def learn(self, *arguments):
         """At one frame a second, so that no frame is looked at together with those before."""
         monday = self.recordings[0]
-        return ["learn", "--in", monday, "--labels", self.labels(monday), "--rate", 1, "--out",
-                self.work / "c.safetensors", *arguments]
+        return [
+            "learn",
+            "--in",
+            monday,
+            "--labels",
+            self.labels(monday),
+            "--rate",
+            1,
+            "--out",
+            self.work / "c.safetensors",
+            *arguments,
+        ]
 
     def test_what_was_learned_from_two_arrays_is_recognised_in_both(self):
         monday, friday = self.recordings
@@ -365,8 +504,9 @@ class Suit(SmallArray):
                 kinds = self.kinds(friday)
                 right = sum(answers[frame] == kind for frame, kind in kinds.items())
                 self.assertGreaterEqual(right / len(kinds), 0.9)
-                judged = json.loads(self.succeed("evaluate", *classes, "--in", friday, "--labels", self.labels(friday),
-                                                 "--json"))
+                judged = json.loads(
+                    self.succeed("evaluate", *classes, "--in", friday, "--labels", self.labels(friday), "--json")
+                )
                 self.assertGreaterEqual(judged["accuracy"], 0.9)
 
     def test_arrays_and_models_that_do_not_fit(self):
@@ -378,8 +518,9 @@ class Suit(SmallArray):
         classes = ["--classes", self.work / "c.safetensors"]
         self.refuse(["recognise", *classes, "--in", friday, "--model", other], ["other.toml", "'right'"])
         self.refuse(["recognise", *classes, "--in", friday], [classes[1], "--model"])
-        self.refuse(["recognise", *classes, "--in", f"{friday}#left", "--model", self.model],
-                    [classes[1], "1 arrays", "had 2"])
+        self.refuse(
+            ["recognise", *classes, "--in", f"{friday}#left", "--model", self.model], [classes[1], "1 arrays", "had 2"]
+        )
         self.succeed("learn", "--in", f"{monday}#left", "--labels", self.work / "monday.csv", "--out", classes[1])
         self.refuse(["recognise", *classes, "--in", friday], [friday, "name one", "'left', 'right'"])
 

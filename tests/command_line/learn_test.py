@@ -2,6 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """`dermis learn`: a data set in plain files becomes classes and predictions; what cannot be learned gives one line.
 `dermis recognise` names what it has learned."""
+
 import csv
 import io
 import json
@@ -28,8 +29,11 @@ def npy(path, rows):
 
 def touch(generator, kind):
     row, col = generator.randint(1, 3), generator.randint(1, 4)
-    taxels = {"dot": [(row, col)], "bar": [(row, col), (row + 1, col), (row + 2, col)],
-              "pair": [(row, col), (row + 4, col)]}[kind]
+    taxels = {
+        "dot": [(row, col)],
+        "bar": [(row, col), (row + 1, col), (row + 2, col)],
+        "pair": [(row, col), (row + 4, col)],
+    }[kind]
     frame = [generator.random() for _ in range(ROWS * COLS)]
     for r, c in taxels:
         frame[r * COLS + c] += generator.uniform(300, 900)
@@ -51,8 +55,10 @@ class Learn(unittest.TestCase):
         (self.work / "labels.csv").write_text("\n".join(["id,first,last,class", *lines]) + "\n")
 
     def learn(self, *arguments, **replaced):
-        files = {name: self.work / f"{name}.{ending}"
-                 for name, ending in (("frames", "npy"), ("arrays", "csv"), ("labels", "csv"))}
+        files = {
+            name: self.work / f"{name}.{ending}"
+            for name, ending in (("frames", "npy"), ("arrays", "csv"), ("labels", "csv"))
+        }
         files.update(replaced)
         return dermis("learn", *(part for name, path in files.items() for part in (f"--{name}", path)), *arguments)
 
@@ -88,8 +94,10 @@ class Learn(unittest.TestCase):
         self.assertTrue(all(1 / 3 < float(probability) <= 1 for *_, probability in answers))
 
     def test_predictions_of_classes_that_were_never_learned(self):
-        lines = [f"o0,{'unknown' if kind == 'pair' else 'known' if i < 12 else 'train'},t{i}"
-                 for i, kind in enumerate(self.kinds)]
+        lines = [
+            f"o0,{'unknown' if kind == 'pair' else 'known' if i < 12 else 'train'},t{i}"
+            for i, kind in enumerate(self.kinds)
+        ]
         (self.work / "open.csv").write_text("\n".join(["split,role,id", *lines]) + "\n")
         result = self.learn("--open", self.work / "open.csv", "--open-predictions", self.work / "o.csv")
         self.assertEqual(result.returncode, 0, result.stderr)
@@ -100,8 +108,14 @@ class Learn(unittest.TestCase):
 
     def recognised(self, *arguments):
         self.assertEqual(self.learn("--out", self.work / "c.safetensors").returncode, 0)
-        return dermis("recognise", "--classes", self.work / "c.safetensors", "--in",
-                      f"file:{self.work / 'frames.npy'}?rate=30", *arguments)
+        return dermis(
+            "recognise",
+            "--classes",
+            self.work / "c.safetensors",
+            "--in",
+            f"file:{self.work / 'frames.npy'}?rate=30",
+            *arguments,
+        )
 
     def test_poses_are_recognised_frame_by_frame(self):
         result = self.recognised()
@@ -118,8 +132,16 @@ class Learn(unittest.TestCase):
         device = [support.BINARY, "emulate", "--protocol", "dermis", "--in", frames, "--loop", "--to", "stdout:"]
         with subprocess.Popen(device, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as endless:
             self.addCleanup(endless.kill)
-            result = dermis("recognise", "--classes", self.work / "c.safetensors", "--in", "stdin:?protocol=dermis",
-                            "--out", "/dev/full", stdin=endless.stdout)
+            result = dermis(
+                "recognise",
+                "--classes",
+                self.work / "c.safetensors",
+                "--in",
+                "stdin:?protocol=dermis",
+                "--out",
+                "/dev/full",
+                stdin=endless.stdout,
+            )
             self.assertIsNone(endless.poll())
             endless.kill()
         self.assertEqual(result.returncode, 1, result.stderr)
@@ -138,9 +160,11 @@ class Learn(unittest.TestCase):
     def test_classes_and_frames_that_do_not_fit(self):
         self.assertEqual(self.learn("--out", self.work / "c.safetensors").returncode, 0)
         npy(self.work / "other.npy", [[1.0] * 12])
-        for classes, source, place in ((self.work / "absent", "frames.npy", "absent"),
-                                       (self.work / "frames.npy", "frames.npy", "frames.npy"),
-                                       (self.work / "c.safetensors", "other.npy", "other.npy")):
+        for classes, source, place in (
+            (self.work / "absent", "frames.npy", "absent"),
+            (self.work / "frames.npy", "frames.npy", "frames.npy"),
+            (self.work / "c.safetensors", "other.npy", "other.npy"),
+        ):
             with self.subTest(place):
                 result = dermis("recognise", "--classes", classes, "--in", f"file:{self.work / source}?rate=30")
                 self.assertEqual(result.returncode, 2, result.stderr)
@@ -159,8 +183,9 @@ class Learn(unittest.TestCase):
             with self.subTest(name):
                 self.refuse(self.work / "absent", **{name: self.work / "absent"})
         self.refuse(self.work / "absent", arguments=["--out", self.work / "c", "--extra", self.work / "absent"])
-        self.refuse(self.work / "absent",
-                    arguments=["--splits", self.work / "absent", "--predictions", self.work / "p.csv"])
+        self.refuse(
+            self.work / "absent", arguments=["--splits", self.work / "absent", "--predictions", self.work / "p.csv"]
+        )
 
     def test_labels_that_overlap(self):
         self.write_labels(["a,0,3,dot", "b,3,5,bar"])

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """No command writes onto a file that it reads, by any name of it, and none overwrites what cannot be made again."""
+
 import itertools
 import os
 import re
@@ -26,13 +27,21 @@ COMMANDS = {
 # And what is written into a folder.
 FOLDERS = {
     "simulate": (("--array", "--physics"), "--out", ("frames.csv", "loads.csv", "contacts.csv", "origin.toml")),
-    "evaluate": (("--model", "--frames", "--loads", "--bank", "--classes", "--in", "--labels"), "--report", ("index.html",)),
+    "evaluate": (
+        ("--model", "--frames", "--loads", "--bank", "--classes", "--in", "--labels"),
+        "--report",
+        ("index.html",),
+    ),
     "learn": (("--labels", "--in", "--model", "--splits", "--open"), "--report", ("index.html",)),
 }
 MODELS = {("calibrate", "--out"), ("calibrate", "--bank"), ("learn", "--out"), ("recalibrate", "--out")}
 PROTECTED = {
-    "a recording": b"\x89MCAP0\r\n", "a model": b"\x10\0\0\0\0\0\0\0{}              ", "a description": b"[array]\nrows = 4\n",
-    "frames": b"time_s,r0c0,r0c1\n0,1,2\n", "loads": b"frame,kind,where,value\n", "an array of NumPy": b"\x93NUMPY",
+    "a recording": b"\x89MCAP0\r\n",
+    "a model": b"\x10\0\0\0\0\0\0\0{}              ",
+    "a description": b"[array]\nrows = 4\n",
+    "frames": b"time_s,r0c0,r0c1\n0,1,2\n",
+    "loads": b"frame,kind,where,value\n",
+    "an array of NumPy": b"\x93NUMPY",
     "something else": b"notes\n",
 }
 
@@ -46,8 +55,12 @@ def aliases(path, folder):
     link, hard_link = folder / "link", folder / "hard_link"
     link.symlink_to(path)
     os.link(path, hard_link)
-    return {"itself": path, "a detour": path.parent / "." / ".." / path.parent.name / path.name, "a link": link,
-            "a hard link": hard_link}
+    return {
+        "itself": path,
+        "a detour": path.parent / "." / ".." / path.parent.name / path.name,
+        "a link": link,
+        "a hard link": hard_link,
+    }
 
 
 class NothingIsOverwritten(SmallArray):
@@ -87,7 +100,11 @@ class NothingIsOverwritten(SmallArray):
                         path.unlink()
 
     def test_a_folder_is_not_written_over_an_input(self):
-        required = {"simulate": {"--array": self.array, "--scene": "idle"}, "evaluate": {}, "learn": {"--labels": self.array}}
+        required = {
+            "simulate": {"--array": self.array, "--scene": "idle"},
+            "evaluate": {},
+            "learn": {"--labels": self.array},
+        }
         folder, link = self.work / "folder", self.work / "link"
         folder.mkdir()
         for command, (inputs, option, files) in FOLDERS.items():
@@ -99,28 +116,42 @@ class NothingIsOverwritten(SmallArray):
                     with self.subTest(command=command, read=read, file=file, named=named):
                         options = {**required[command], read: named, option: folder}
                         result = dermis(command, *itertools.chain(*options.items()), "--force")
-                        self.assertEqual((result.returncode, result.stderr),
-                                         (2, f"dermis: {option}: is the file of {read}; name another\n"))
+                        self.assertEqual(
+                            (result.returncode, result.stderr),
+                            (2, f"dermis: {option}: is the file of {read}; name another\n"),
+                        )
                         self.assertEqual(path.read_text(), "valuable")
                 link.unlink()
                 path.unlink()
 
     def test_no_command_writes_onto_what_its_suit_names(self):
-        named = {"model": "m.safetensors", "classes": "c.safetensors", "body": "body.urdf", "positions": "places.csv",
-                 "a source": "frames.csv"}
+        named = {
+            "model": "m.safetensors",
+            "classes": "c.safetensors",
+            "body": "body.urdf",
+            "positions": "places.csv",
+            "a source": "frames.csv",
+        }
         for name in named.values():
             self.written(name, "valuable")
         self.written("places.csv", "x_mm,y_mm,z_mm\n" + "0,0,0\n" * 20)
-        suit = self.written("suit.toml", '[suit]\nbody = "body.urdf"\nclasses = "c.safetensors"\n[[array]]\nname = "a"\n'
-                            f'from = "file:{self.work}/frames.csv?rate=100"\nmodel = "m.safetensors"\n'
-                            'positions_mm = "places.csv"\n')
-        for command in (("recognise", "--classes", self.model, "--in", self.contacts / "frames.csv"),
-                        ("learn", "--labels", self.contacts / "loads.csv", "--in", self.contacts / "frames.csv")):
+        suit = self.written(
+            "suit.toml",
+            '[suit]\nbody = "body.urdf"\nclasses = "c.safetensors"\n[[array]]\nname = "a"\n'
+            f'from = "file:{self.work}/frames.csv?rate=100"\nmodel = "m.safetensors"\n'
+            'positions_mm = "places.csv"\n',
+        )
+        for command in (
+            ("recognise", "--classes", self.model, "--in", self.contacts / "frames.csv"),
+            ("learn", "--labels", self.contacts / "loads.csv", "--in", self.contacts / "frames.csv"),
+        ):
             for what, name in named.items():
                 with self.subTest(command[0], what=what):
                     before = (self.work / name).read_bytes()
                     result = dermis(*command, "--model", suit, "--out", self.work / "." / name, "--force")
-                    self.assertEqual((result.returncode, result.stderr), (2, "dermis: --out: is the file of --model; name another\n"))
+                    self.assertEqual(
+                        (result.returncode, result.stderr), (2, "dermis: --out: is the file of --model; name another\n")
+                    )
                     self.assertEqual((self.work / name).read_bytes(), before)
 
     def test_a_page_in_the_folder_where_one_works_is_nobodys_report(self):
@@ -134,14 +165,18 @@ class NothingIsOverwritten(SmallArray):
         before = frames.read_bytes()
         for source in (f"file:{frames}?rate=100", f"{frames}#small"):
             result = dermis(*self.run_arguments(frames, **{"in": source}), "--force")
-            self.assertEqual((result.returncode, result.stderr), (2, "dermis: --out: is the file of --in; name another\n"))
+            self.assertEqual(
+                (result.returncode, result.stderr), (2, "dermis: --out: is the file of --in; name another\n")
+            )
             self.assertEqual(frames.read_bytes(), before)
 
     def test_names_that_no_file_can_have_are_told(self):
         long = self.work / ("a" * 300)
-        for arguments in (("simulate", "--array", self.array, "--scene", "idle", "--frames", 3, "--out", long),
-                          ("record", "--from", "sim:idle?rate=100&frames=3", "--out", f"{long}.mcap"),
-                          ("convert", f"{long}.csv", f"{long}.mcap")):
+        for arguments in (
+            ("simulate", "--array", self.array, "--scene", "idle", "--frames", 3, "--out", long),
+            ("record", "--from", "sim:idle?rate=100&frames=3", "--out", f"{long}.mcap"),
+            ("convert", f"{long}.csv", f"{long}.mcap"),
+        ):
             with self.subTest(arguments[0]):
                 result = dermis(*arguments)
                 self.assertIn(result.returncode, (1, 2))
@@ -149,7 +184,9 @@ class NothingIsOverwritten(SmallArray):
 
     def test_two_outputs_are_two_files(self):
         result = dermis(*self.run_arguments(self.work / "f.csv"), "--contacts", self.work / "." / "f.csv")
-        self.assertEqual((result.returncode, result.stderr), (2, "dermis: --contacts: is the file of --out; name another\n"))
+        self.assertEqual(
+            (result.returncode, result.stderr), (2, "dermis: --contacts: is the file of --out; name another\n")
+        )
 
     def test_what_cannot_be_made_again_stays(self):
         for command, (_, outputs) in COMMANDS.items():
@@ -163,15 +200,21 @@ class NothingIsOverwritten(SmallArray):
                         path.write_bytes(content)
                         result = self.command(command, {**paths, written: path})
                         self.assertEqual(result.returncode, 2, result)
-                        self.assertEqual(result.stderr,
-                                         f"dermis: {written}: '{path}' exists; name another, or replace it with --force\n")
+                        self.assertEqual(
+                            result.stderr,
+                            f"dermis: {written}: '{path}' exists; name another, or replace it with --force\n",
+                        )
                         self.assertEqual(path.read_bytes(), content)
 
     def test_force_replaces_it(self):
         frames, recording = self.contacts / "frames.csv", self.work / "session.mcap"
         self.succeed("convert", frames, recording)
-        for command in (("record", "--from", frames, "--out"), ("convert", frames), ("recover", recording, "--out"),
-                        self.calibrate_arguments("")[:-1]):
+        for command in (
+            ("record", "--from", frames, "--out"),
+            ("convert", frames),
+            ("recover", recording, "--out"),
+            self.calibrate_arguments("")[:-1],
+        ):
             with self.subTest(command[0]):
                 path = self.work / "there.mcap"
                 path.write_bytes(b"\x89MCAP0")
@@ -194,21 +237,27 @@ class NothingIsOverwritten(SmallArray):
         self.assertNotEqual(model.read_bytes(), earlier)
 
     def test_tables_and_pictures_are_replaced_and_it_says_so(self):
-        forces, contacts, picture, drawing = (self.work / name for name in ("forces.csv", "contacts.csv", "map.png", "map.svg"))
-        for arguments, paths in (((*self.run_arguments(forces), "--contacts", contacts), (forces, contacts)),
-                                 (("image", "--in", self.contacts / "frames.csv", "--out", picture), (picture,)),
-                                 (("image", "--in", self.contacts / "frames.csv", "--out", drawing), (drawing,))):
+        forces, contacts, picture, drawing = (
+            self.work / name for name in ("forces.csv", "contacts.csv", "map.png", "map.svg")
+        )
+        for arguments, paths in (
+            ((*self.run_arguments(forces), "--contacts", contacts), (forces, contacts)),
+            (("image", "--in", self.contacts / "frames.csv", "--out", picture), (picture,)),
+            (("image", "--in", self.contacts / "frames.csv", "--out", drawing), (drawing,)),
+        ):
             self.succeed(*arguments)
             result = dermis(*arguments)
             said = "".join(f"'{path}' exists and will be replaced\n" for path in paths)
-            self.assertEqual((result.returncode, result.stderr[:len(said)]), (0, said))
+            self.assertEqual((result.returncode, result.stderr[: len(said)]), (0, said))
 
     def test_a_report_is_replaced_and_a_page_of_something_else_is_not(self):
         report = self.work / "report"
         arguments = (*self.evaluate_arguments(), "--report", report)
         self.succeed(*arguments)
         result = dermis(*arguments)
-        self.assertEqual((result.returncode, result.stderr), (0, f"'{report}/index.html' exists and will be replaced\n"))
+        self.assertEqual(
+            (result.returncode, result.stderr), (0, f"'{report}/index.html' exists and will be replaced\n")
+        )
         (report / "index.html").write_text("notes")
         self.assertEqual(dermis(*arguments).returncode, 2)
         self.assertEqual((report / "index.html").read_text(), "notes")

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """dermis image and dermis top: pictures read back by Python, a terminal played by it."""
+
 import fcntl
 import os
 import pty
@@ -27,8 +28,8 @@ def chunks_of(path):
     assert data.startswith(PNG)
     place, chunks = len(PNG), []
     while place < len(data):
-        size, = struct.unpack_from(">I", data, place)
-        body = data[place + 4:place + 8 + size]
+        (size,) = struct.unpack_from(">I", data, place)
+        body = data[place + 4 : place + 8 + size]
         assert zlib.crc32(body) == struct.unpack_from(">I", data, place + 8 + size)[0]
         chunks.append((body[:4].decode(), body[4:]))
         place += size + 12
@@ -50,8 +51,11 @@ class Image(SmallArray):
         self.assertEqual(result.stdout, "")
 
     def test_png_holds_a_whole_picture(self):
-        for name, options in (("counts.png", ()), ("force.png", ("--model", self.model, "--at", 0.5)),
-                              ("number.png", ("--model", self.model, "--frame", 100, "--high", 7))):
+        for name, options in (
+            ("counts.png", ()),
+            ("force.png", ("--model", self.model, "--at", 0.5)),
+            ("number.png", ("--model", self.model, "--frame", 100, "--high", 7)),
+        ):
             out = self.work / name
             self.draw(out, *options)
             (kind, header), *rest = chunks_of(out)
@@ -88,11 +92,13 @@ class Image(SmallArray):
         self.assertEqual(numbers, list(range(19)))
 
     def test_wrong_wishes_are_one_line(self):
-        for options, said in ((("--out", "a.gif"), "must end in .png or .svg"),
-                              (("--out", "a.png", "--at", 100), "has 200 frames"),
-                              (("--out", "a.svg", "--to", 1), "only .png can move"),
-                              (("--out", "a.png", "--from", 2, "--to", 1), "later than --from"),
-                              (("--out", "a.png", "--high", 0), "more than 0")):
+        for options, said in (
+            (("--out", "a.gif"), "must end in .png or .svg"),
+            (("--out", "a.png", "--at", 100), "has 200 frames"),
+            (("--out", "a.svg", "--to", 1), "only .png can move"),
+            (("--out", "a.png", "--from", 2, "--to", 1), "later than --from"),
+            (("--out", "a.png", "--high", 0), "more than 0"),
+        ):
             result = dermis("image", "--in", self.recording, *options, cwd=self.work)
             self.assertEqual(result.returncode, 2, result.stderr)
             self.assertEqual(len(error_lines(result)), 1, result.stderr)
@@ -140,13 +146,18 @@ class Terminal:
 def screens_of(shown):
     """The whole screens in what was written, each as lines without their colours."""
     plain = re.sub(rb"\x1b\[[0-9;?]*m", b"", shown)
-    return [[line.replace("\x1b[K", "").rstrip("\r") for line in screen.decode(errors="replace").split("\n")]
-            for screen in plain.split(b"\x1b[H")[1:-1]]
+    return [
+        [line.replace("\x1b[K", "").rstrip("\r") for line in screen.decode(errors="replace").split("\n")]
+        for screen in plain.split(b"\x1b[H")[1:-1]
+    ]
 
 
 class Top(SmallArray):
     def test_colours_contacts_and_the_end(self):
-        for environment, colour in (({"COLORTERM": "truecolor"}, rb"\x1b\[38;2;\d+;\d+;\d+m"), ({}, rb"\x1b\[38;5;\d+m")):
+        for environment, colour in (
+            ({"COLORTERM": "truecolor"}, rb"\x1b\[38;2;\d+;\d+;\d+m"),
+            ({}, rb"\x1b\[38;5;\d+m"),
+        ):
             terminal = Terminal(24, 80, "top", "--from", SOURCE, "--model", self.model, **environment)
             shown = terminal.read_until(rb"#\d+ +\d+\.\d\d N +[\d.-]+ +[\d.-]+ mm")
             self.assertIn(b"\x1b[?1049h", shown)
@@ -201,8 +212,9 @@ class Top(SmallArray):
         self.assertEqual(terminal.end(b"")[1], 0)
 
     def test_record_shows_how_far_a_scene_is_simulated(self):
-        terminal = Terminal(24, 80, "record", "--from", "sim:contacts?rows=4&cols=5&rate=100", "--out",
-                            self.work / "r.mcap")
+        terminal = Terminal(
+            24, 80, "record", "--from", "sim:contacts?rows=4&cols=5&rate=100", "--out", self.work / "r.mcap"
+        )
         terminal.read_until(rb"simulating the scene: \d+ %")
         terminal.read_until(rb"[1-9]\d* frames, ")
         self.assertEqual(terminal.end()[1], 0)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Manual pages and completion: what --help shows, and what real shells make of it."""
+
 import os
 import pty
 import re
@@ -72,7 +73,9 @@ class Reference(unittest.TestCase):
     @unittest.skipUnless(shutil.which("mandoc"), "no mandoc")
     def test_mandoc_misses_no_more_than_a_date(self):
         for page in self.pages:
-            lint = subprocess.run(["mandoc", "-Tlint", "-Wwarning", page], capture_output=True, text=True).stdout.splitlines()
+            lint = subprocess.run(
+                ["mandoc", "-Tlint", "-Wwarning", page], capture_output=True, text=True
+            ).stdout.splitlines()
             self.assertEqual([line for line in lint if not LINT_OF_NO_DATE.fullmatch(line)], [])
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """dermis serve from outside: what it refuses, its page and documents, its recording. The stream itself: tests/stream."""
+
 import gzip
 import json
 import re
@@ -35,8 +36,13 @@ zone = "edge"
 class Serve(SmallArray):
     def serve(self, *options):
         """The running server, with the notices that it gives first, and its address."""
-        process = subprocess.Popen([support.BINARY, "serve", "--port", "0", *map(str, options)], cwd=self.work,
-                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        process = subprocess.Popen(
+            [support.BINARY, "serve", "--port", "0", *map(str, options)],
+            cwd=self.work,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
         self.addCleanup(process.stderr.close)
         self.addCleanup(process.stdout.close)
         self.addCleanup(process.wait)
@@ -100,21 +106,37 @@ class Serve(SmallArray):
         folder = self.work / f"{rows}x{cols}"
         folder.mkdir()
         places = [(k % rows, k % cols) for k in range(24)]
-        npy(folder / "frames.npy", [[5.0 + k / 10 if (i // cols, i % cols) == place else 0.0 for i in range(rows * cols)]
-                                    for k, place in enumerate(places)])
+        npy(
+            folder / "frames.npy",
+            [
+                [5.0 + k / 10 if (i // cols, i % cols) == place else 0.0 for i in range(rows * cols)]
+                for k, place in enumerate(places)
+            ],
+        )
         (folder / "arrays.csv").write_text(f"array,rows,cols,first_column\nskin,{rows},{cols},0\n")
         halves = ("upper" if row < rows / 2 else "lower" for row, _ in places)
-        (folder / "labels.csv").write_text("id,first,last,class\n" + "".join(
-            f"t{k},{k},{k},{half}\n" for k, half in enumerate(halves)))
-        result = dermis("learn", "--frames", folder / "frames.npy", "--arrays", folder / "arrays.csv", "--labels",
-                        folder / "labels.csv", "--out", folder / "classes.safetensors")
+        (folder / "labels.csv").write_text(
+            "id,first,last,class\n" + "".join(f"t{k},{k},{k},{half}\n" for k, half in enumerate(halves))
+        )
+        result = dermis(
+            "learn",
+            "--frames",
+            folder / "frames.npy",
+            "--arrays",
+            folder / "arrays.csv",
+            "--labels",
+            folder / "labels.csv",
+            "--out",
+            folder / "classes.safetensors",
+        )
         self.assertEqual(result.returncode, 0, result.stderr)
         return folder / "classes.safetensors"
 
     def test_names_touches_and_watches_limits(self):
         threats = self.written("threats.toml", LIMITS.format(array="small", last_row=1))
-        process, address = self.serve("--from", LIVE, "--model", self.model, "--classes", self.learned(4, 5),
-                                      "--threats", threats)
+        process, address = self.serve(
+            "--from", LIVE, "--model", self.model, "--classes", self.learned(4, 5), "--threats", threats
+        )
         self.assertEqual(["not learned with a model" in notice for notice in process.notices], [True])
         [array] = json.loads(self.get(address + "suit.json"))["arrays"]
         self.assertEqual(array["classes"], ["lower", "upper"])
@@ -133,9 +155,14 @@ class Serve(SmallArray):
         self.refuse([*serve, "--threats", outside], ["threats.toml", "edge", "4 x 5"])
 
     def test_records_all_arrays_of_a_suit(self):
-        suit = self.written("suit.toml", "\n".join(
-            f'[[array]]\nname = "{name}"\nfrom = "{LIVE}&seed={seed}"\nmodel = "{self.model}"\n'
-            f"base_from_array = {{translation_mm = [{100 * seed}, 0, 0]}}\n" for seed, name in enumerate(("left", "right"))))
+        suit = self.written(
+            "suit.toml",
+            "\n".join(
+                f'[[array]]\nname = "{name}"\nfrom = "{LIVE}&seed={seed}"\nmodel = "{self.model}"\n'
+                f"base_from_array = {{translation_mm = [{100 * seed}, 0, 0]}}\n"
+                for seed, name in enumerate(("left", "right"))
+            ),
+        )
         recording = self.work / "suit.mcap"
         process, address = self.serve("--suit", suit, "--record", recording)
         arrays = json.loads(self.get(address + "suit.json"))["arrays"]
@@ -145,12 +172,18 @@ class Serve(SmallArray):
         self.end(process)
         for name in ("left", "right"):
             self.assertGreater(self.recorded_frames(f"{recording}#{name}"), 30)
-        self.refuse(["serve", "--from", recording], ["holds 2 arrays; name one, as", "'left', 'right'; or play all of it with --suit"])
-        self.refuse(["serve", "--from", recording, "--model", self.model], ["has no array 'small'; it has: 'left', 'right'"])
+        self.refuse(
+            ["serve", "--from", recording],
+            ["holds 2 arrays; name one, as", "'left', 'right'; or play all of it with --suit"],
+        )
+        self.refuse(
+            ["serve", "--from", recording, "--model", self.model], ["has no array 'small'; it has: 'left', 'right'"]
+        )
 
         process, address = self.serve("--from", recording, "--suit", suit)
-        self.assertEqual([array["name"] for array in json.loads(self.get(address + "suit.json"))["arrays"]],
-                         ["left", "right"])
+        self.assertEqual(
+            [array["name"] for array in json.loads(self.get(address + "suit.json"))["arrays"]], ["left", "right"]
+        )
         self.end(process)
         process, address = self.serve("--from", f"{recording}#right", "--model", self.model)
         self.end(process)
@@ -166,8 +199,12 @@ class Serve(SmallArray):
     def test_the_array_of_any_other_recording_is_asked_for_as_that_of_a_device(self):
         recording = self.work / "untold.mcap"
         self.succeed("convert", self.contacts / "frames.csv", recording)
-        process = subprocess.Popen([support.BINARY, "serve", "--port", "0", "--from", recording], cwd=self.work,
-                                   stderr=subprocess.PIPE, text=True)
+        process = subprocess.Popen(
+            [support.BINARY, "serve", "--port", "0", "--from", recording],
+            cwd=self.work,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
         self.addCleanup(process.stderr.close)
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)
@@ -176,8 +213,10 @@ class Serve(SmallArray):
         self.assertEqual((setup["from"], setup["rows"], setup["cols"]), (str(recording), 4, 5))
 
     def test_what_is_neither_device_nor_recording_is_refused_before_anybody_is_asked(self):
-        for source, words in ((self.contacts / "frames.csv", "make a recording of it first"),
-                              ("sim:contacts", "say how many frames a second it sends")):
+        for source, words in (
+            (self.contacts / "frames.csv", "make a recording of it first"),
+            ("sim:contacts", "say how many frames a second it sends"),
+        ):
             self.refuse(("serve", "--port", 0, "--from", source), [f"'{source}': ", words])
 
     def test_a_recording_that_exists_stays(self):
@@ -214,8 +253,11 @@ class Serve(SmallArray):
             self.refuse(["serve", "--from", LIVE, "--model", self.model, "--port", port], [str(port)], status=1)
 
     def test_a_recording_that_cannot_be_written(self):
-        self.refuse(["serve", "--port", "0", "--from", LIVE, "--model", self.model, "--record", "/nowhere/r.mcap"],
-                    ["/nowhere/r.mcap"], status=1)
+        self.refuse(
+            ["serve", "--port", "0", "--from", LIVE, "--model", self.model, "--record", "/nowhere/r.mcap"],
+            ["/nowhere/r.mcap"],
+            status=1,
+        )
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Sums of forces in a world that shares nothing with the simulator (scripts/independent_world.py)."""
+
 import importlib.util
 import sys
 import unittest

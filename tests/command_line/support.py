@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Runs the binary named on the command line on a small simulated array."""
+
 import os
 import re
 import resource
@@ -88,10 +89,23 @@ class SmallArray(unittest.TestCase):
         cls.calibration = cls.root / "calibration"
         cls.contacts = cls.root / "contacts"
         cls.model = cls.root / "model.safetensors"
-        for step in (("simulate", "--array", cls.array, "--scene", "calibration", "--out", cls.calibration),
-                     ("simulate", "--array", cls.array, "--scene", "multitouch", "--frames", 200, "--seed", 2,
-                      "--out", cls.contacts),
-                     cls.calibrate_arguments(cls.model)):
+        for step in (
+            ("simulate", "--array", cls.array, "--scene", "calibration", "--out", cls.calibration),
+            (
+                "simulate",
+                "--array",
+                cls.array,
+                "--scene",
+                "multitouch",
+                "--frames",
+                200,
+                "--seed",
+                2,
+                "--out",
+                cls.contacts,
+            ),
+            cls.calibrate_arguments(cls.model),
+        ):
             result = dermis(*step)
             if result.returncode != 0:
                 raise AssertionError(f"{step}: {result.stderr}")
@@ -100,8 +114,17 @@ class SmallArray(unittest.TestCase):
     def calibrate_arguments(cls, out, **replaced):
         files = {"array": cls.array, "frames": cls.calibration / "frames.csv", "loads": cls.calibration / "loads.csv"}
         files.update(replaced)
-        return ("calibrate", "--array", files["array"], "--frames", files["frames"], "--loads", files["loads"],
-                "--out", out)
+        return (
+            "calibrate",
+            "--array",
+            files["array"],
+            "--frames",
+            files["frames"],
+            "--loads",
+            files["loads"],
+            "--out",
+            out,
+        )
 
     @classmethod
     def run_arguments(cls, out, **replaced):

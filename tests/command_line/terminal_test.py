@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """What people type and read at a terminal: streams by "-", help in words, models in words, units, nearest names."""
+
 import json
 import os
 import signal
@@ -11,11 +12,30 @@ from support import SmallArray, dermis
 
 # Each command that reads or writes a model or classes, a recording or a folder, by an option of that.
 NO_STREAMS = (
-    ("calibrate", "--frames"), ("calibrate", "--out"), ("calibrate", "--bank"), ("check", "--model"), ("doctor", "--model"), ("evaluate", "--model"),
-    ("evaluate", "--bank"), ("evaluate", "--classes"), ("evaluate", "--report"), ("image", "--model"), ("learn", "--model"),
-    ("learn", "--out"), ("learn", "--report"), ("paper", "--report"), ("recalibrate", "--model"), ("recalibrate", "--out"),
-    ("recognise", "--classes"), ("recognise", "--model"), ("record", "--model"), ("replay", "--model"), ("run", "--model"),
-    ("simulate", "--out"), ("top", "--model"), ("watch", "--model"),
+    ("calibrate", "--frames"),
+    ("calibrate", "--out"),
+    ("calibrate", "--bank"),
+    ("check", "--model"),
+    ("doctor", "--model"),
+    ("evaluate", "--model"),
+    ("evaluate", "--bank"),
+    ("evaluate", "--classes"),
+    ("evaluate", "--report"),
+    ("image", "--model"),
+    ("learn", "--model"),
+    ("learn", "--out"),
+    ("learn", "--report"),
+    ("paper", "--report"),
+    ("recalibrate", "--model"),
+    ("recalibrate", "--out"),
+    ("recognise", "--classes"),
+    ("recognise", "--model"),
+    ("record", "--model"),
+    ("replay", "--model"),
+    ("run", "--model"),
+    ("simulate", "--out"),
+    ("top", "--model"),
+    ("watch", "--model"),
 )
 
 
@@ -42,7 +62,9 @@ class Terminal(SmallArray):
         frames, copy = self.contacts / "frames.csv", self.work / "copy.csv"
         for command in (("convert", "-", "-"), ("record", "--from", "-", "--out", "-")):
             with self.subTest(command[0]), frames.open() as read, copy.open("w") as written:
-                result = subprocess.run([support.BINARY, *command], stdin=read, stdout=written, stderr=subprocess.PIPE, timeout=60)
+                result = subprocess.run(
+                    [support.BINARY, *command], stdin=read, stdout=written, stderr=subprocess.PIPE, timeout=60
+                )
                 self.assertEqual((result.returncode, copy.read_text()), (0, frames.read_text()), result.stderr)
 
     def test_who_has_read_enough_ends_a_command_in_silence(self):
@@ -50,32 +72,53 @@ class Terminal(SmallArray):
             reader, writer = os.pipe()
             os.close(reader)
             with self.subTest(command[0]), open(writer, "wb") as closed:
-                result = subprocess.run([support.BINARY, *map(str, command)], stdout=closed, stderr=subprocess.PIPE, timeout=60)
+                result = subprocess.run(
+                    [support.BINARY, *map(str, command)], stdout=closed, stderr=subprocess.PIPE, timeout=60
+                )
                 self.assertEqual((result.returncode, result.stderr), (128 + signal.SIGPIPE, b""))
 
     def test_every_command_that_reads_frames_once_reads_a_pipe(self):
-        for command in (("doctor", "--model", self.model, "--in", "-"), ("image", "--in", "-", "--out", self.work / "map.png"),
-                        ("emulate", "--in", "-", "--to", "stdout:", "--protocol", "dermis", "--rate", 1000),
-                        ("evaluate", "--model", self.model, "--frames", "-", "--loads", self.contacts / "loads.csv"),
-                        ("evaluate", "--model", self.model, "--frames", "-", "--loads", self.contacts / "loads.csv",
-                         "--report", self.work / "report")):
+        for command in (
+            ("doctor", "--model", self.model, "--in", "-"),
+            ("image", "--in", "-", "--out", self.work / "map.png"),
+            ("emulate", "--in", "-", "--to", "stdout:", "--protocol", "dermis", "--rate", 1000),
+            ("evaluate", "--model", self.model, "--frames", "-", "--loads", self.contacts / "loads.csv"),
+            (
+                "evaluate",
+                "--model",
+                self.model,
+                "--frames",
+                "-",
+                "--loads",
+                self.contacts / "loads.csv",
+                "--report",
+                self.work / "report",
+            ),
+        ):
             with self.subTest(command[0]):
                 with (self.contacts / "frames.csv").open("rb") as frames:
                     cat = subprocess.Popen(["cat"], stdin=frames, stdout=subprocess.PIPE)
                     self.addCleanup(cat.wait)
                     self.addCleanup(cat.stdout.close)
-                    result = subprocess.run([support.BINARY, *map(str, command)], stdin=cat.stdout, capture_output=True, timeout=60)
+                    result = subprocess.run(
+                        [support.BINARY, *map(str, command)], stdin=cat.stdout, capture_output=True, timeout=60
+                    )
                 self.assertEqual(result.returncode, 0, result.stderr)
 
     def test_two_options_cannot_share_a_stream(self):
-        self.refuse(self.evaluate_arguments(frames="-", loads="-"),
-                    ["--loads: --frames reads the standard input; name a file"])
-        self.refuse((*self.run_arguments("-"), "--totals", "-"), ["--totals: --out writes the standard output; name a file"])
+        self.refuse(
+            self.evaluate_arguments(frames="-", loads="-"), ["--loads: --frames reads the standard input; name a file"]
+        )
+        self.refuse(
+            (*self.run_arguments("-"), "--totals", "-"), ["--totals: --out writes the standard output; name a file"]
+        )
 
     def test_a_stream_that_is_a_file_of_the_command_is_found(self):
         frames = self.written("f.csv", (self.contacts / "frames.csv").read_text())
         with frames.open() as stream:
-            self.refuse(self.run_arguments(frames, **{"in": "-"}), ["--out: is the file of --in; name another"], stdin=stream)
+            self.refuse(
+                self.run_arguments(frames, **{"in": "-"}), ["--out: is the file of --in; name another"], stdin=stream
+            )
 
     def test_what_is_no_table_is_no_stream(self):
         for command, option in NO_STREAMS:
@@ -92,14 +135,29 @@ class Terminal(SmallArray):
             self.assertEqual(self.succeed("help", *command), dermis(*command, "--help").stdout)
         self.refuse(("help", "evalute"), ["unknown command 'evalute'; did you mean 'evaluate'?"])
         self.refuse(("help", "run", "fast"), ["'fast' is one argument too many"])
-        self.assertRegex(self.succeed("help"), r"(?m)^  help {3,}.*\n  version {3,}(.*\n)*dermis help COMMAND: .*guides: .*\n\Z")
+        self.assertRegex(
+            self.succeed("help"), r"(?m)^  help {3,}.*\n  version {3,}(.*\n)*dermis help COMMAND: .*guides: .*\n\Z"
+        )
 
     def test_a_model_is_told_in_words(self):
         text = self.succeed("info", self.model)
-        for line in (r"format +model", r"name +small", r"taxels +4 rows x 5 columns", r"circuit +divider", r"drive +20 ohm",
-                     r"load +200 ohm", r"ADC +12 bit", r"labelled frames +1500", r"loads +0.5 to 50 N",
-                     r"temperature +-0.5 to 50.5 C", r"memory +none was learned", r"uncertainty +readings \u00b1 ",
-                     r"dead taxels +none", r"frames hash +fnv1a64:", r"dermis version +\d"):
+        for line in (
+            r"format +model",
+            r"name +small",
+            r"taxels +4 rows x 5 columns",
+            r"circuit +divider",
+            r"drive +20 ohm",
+            r"load +200 ohm",
+            r"ADC +12 bit",
+            r"labelled frames +1500",
+            r"loads +0.5 to 50 N",
+            r"temperature +-0.5 to 50.5 C",
+            r"memory +none was learned",
+            r"uncertainty +readings \u00b1 ",
+            r"dead taxels +none",
+            r"frames hash +fnv1a64:",
+            r"dermis version +\d",
+        ):
             self.assertRegex(text, r"(?m)^" + line)
         told = json.loads(self.succeed("info", self.model, "--json"))
         self.assertEqual((told["format"], told["array"]["circuit"]), ("model", "divider"))
@@ -121,50 +179,76 @@ class Terminal(SmallArray):
         self.assertRegex(result.stderr, r"^50 frames, 100 skipped: forces in .*late.csv\n")
 
     def test_a_number_that_is_none_is_told_in_a_line(self):
-        for arguments, words in ((("serve", "--port", "abc"), "--port: 'abc' is no whole number; write one such as 200"),
-                                 (("serve", "--port", "80x"), "--port: '80x' is no whole number; write one such as 200"),
-                                 (("serve", "--port", "99999"), "--port: must be 0 to 65535"),
-                                 (("simulate", "--rate", "fast"), "--rate: 'fast' is no number"),
-                                 (("circuit", "advise", "--range", "1k", "10"), "--range: '1k' is no number")):
+        for arguments, words in (
+            (("serve", "--port", "abc"), "--port: 'abc' is no whole number; write one such as 200"),
+            (("serve", "--port", "80x"), "--port: '80x' is no whole number; write one such as 200"),
+            (("serve", "--port", "99999"), "--port: must be 0 to 65535"),
+            (("simulate", "--rate", "fast"), "--rate: 'fast' is no number"),
+            (("circuit", "advise", "--range", "1k", "10"), "--range: '1k' is no number"),
+        ):
             self.refuse(arguments, [words])
 
     def test_a_scene_in_nearly_its_name_is_known(self):
-        self.refuse(self.run_arguments(self.work / "f.csv", **{"in": "sim:contact"}),
-                    ["sim:contact", 'did you mean "contacts"?'])
-        self.refuse(("simulate", "--array", self.array, "--scene", "two-weights", "--out", self.work / "s"),
-                    ['did you mean "two_weights"?'])
-        self.refuse(("simulate", "--array", self.array, "--scene", "earthquake", "--out", self.work / "s"),
-                    ["unknown; there are calibration, uniform"])
+        self.refuse(
+            self.run_arguments(self.work / "f.csv", **{"in": "sim:contact"}),
+            ["sim:contact", 'did you mean "contacts"?'],
+        )
+        self.refuse(
+            ("simulate", "--array", self.array, "--scene", "two-weights", "--out", self.work / "s"),
+            ['did you mean "two_weights"?'],
+        )
+        self.refuse(
+            ("simulate", "--array", self.array, "--scene", "earthquake", "--out", self.work / "s"),
+            ["unknown; there are calibration, uniform"],
+        )
 
     def test_a_weight_in_two_arguments_is_told_how_to_write_it(self):
-        self.refuse(("check", "--model", self.model, "--in", self.contacts / "frames.csv", "--weight", 200, "g"),
-                    ["'g' is one argument too many; write '200 g' in quotes, or 200g (see"])
+        self.refuse(
+            ("check", "--model", self.model, "--in", self.contacts / "frames.csv", "--weight", 200, "g"),
+            ["'g' is one argument too many; write '200 g' in quotes, or 200g (see"],
+        )
         self.refuse(("check", "--weight", 200, 5), ["'5' is one argument too many (see"])
 
     def test_a_weight_may_be_given_by_its_mass(self):
-        array = self.written("direct.toml", '[array]\nrows = 1\ncols = 1\n[readout]\ncircuit = "force"\nadc_noise_counts = 0.01\n')
+        array = self.written(
+            "direct.toml", '[array]\nrows = 1\ncols = 1\n[readout]\ncircuit = "force"\nadc_noise_counts = 0.01\n'
+        )
         lines = [f"{k / 10},{2 if 30 <= k % 200 < 120 else 0}" for k in range(600)]
         frames = self.written("press.csv", "time_s,r0c0\n" + "\n".join(lines) + "\n")
-        told = {dermis("check", "--model", array, "--in", frames, "--weight", weight).stdout
-                for weight in ("0.2 kg", "200g", "1.96133", "1.96133 N")}
+        told = {
+            dermis("check", "--model", array, "--in", frames, "--weight", weight).stdout
+            for weight in ("0.2 kg", "200g", "1.96133", "1.96133 N")
+        }
         self.assertEqual(len(told), 1)
         self.assertRegex(told.pop(), r"^weight +1.961 N, put on 3 times\n")
-        self.refuse(("check", "--model", array, "--in", frames, "--weight", 200),
-                    ["3 read something else, the last 2 N; if it weighs 200 grams, write '200 g'"], status=1)
-        self.refuse(("check", "--model", array, "--in", frames, "--weight", "two"),
-                    ["--weight: 'two' is no force; write newtons, or a unit as in 2 N, 200 g or 0.2 kg"])
+        self.refuse(
+            ("check", "--model", array, "--in", frames, "--weight", 200),
+            ["3 read something else, the last 2 N; if it weighs 200 grams, write '200 g'"],
+            status=1,
+        )
+        self.refuse(
+            ("check", "--model", array, "--in", frames, "--weight", "two"),
+            ["--weight: 'two' is no force; write newtons, or a unit as in 2 N, 200 g or 0.2 kg"],
+        )
 
     def test_loads_in_grams_are_newtons(self):
         loads = [line.split(",") for line in (self.calibration / "loads.csv").read_text().splitlines()]
-        grams = [",".join(line if k == 0 or line[1] != "force" else [*line[:3], f"{float(line[3]) / 0.00980665!r} g"])
-                 for k, line in enumerate(loads)]
-        text = self.succeed(*self.calibrate_arguments(self.work / "grams", loads=self.written("g.csv", "\n".join(grams) + "\n")))
+        grams = [
+            ",".join(line if k == 0 or line[1] != "force" else [*line[:3], f"{float(line[3]) / 0.00980665!r} g"])
+            for k, line in enumerate(loads)
+        ]
+        text = self.succeed(
+            *self.calibrate_arguments(self.work / "grams", loads=self.written("g.csv", "\n".join(grams) + "\n"))
+        )
         self.assertIn("loads 0.5 to 50 N", text)
 
     def test_nothing_on_the_terminal_is_written_as_in_a_program(self):
-        said = [self.succeed(*self.calibrate_arguments(self.work / "m")), self.succeed(*self.evaluate_arguments()),
-                dermis("doctor", "--model", self.model, "--in", self.contacts / "frames.csv").stdout,
-                self.succeed("info", self.model)]
+        said = [
+            self.succeed(*self.calibrate_arguments(self.work / "m")),
+            self.succeed(*self.evaluate_arguments()),
+            dermis("doctor", "--model", self.model, "--in", self.contacts / "frames.csv").stdout,
+            self.succeed("info", self.model),
+        ]
         for text in said:
             self.assertNotIn("+-", text)
             self.assertNotRegex(text.replace("adc_bits", ""), r"\b[a-z]+_[a-z_]+\b")

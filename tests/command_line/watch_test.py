@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """`dermis watch`: threats as lines and as an exit status, and a program that is stopped by them."""
+
 import json
 import signal
 import subprocess
@@ -30,8 +31,17 @@ def runs(pid):
 class Watch(SmallArray):
     def watch(self, newtons, *options, source=None, **keywords):
         threats = self.written("threats.toml", PUSHED.format(newtons=newtons))
-        return dermis("watch", "--threats", threats, "--model", self.model, "--in",
-                      source or self.contacts / "frames.csv", *options, **keywords)
+        return dermis(
+            "watch",
+            "--threats",
+            threats,
+            "--model",
+            self.model,
+            "--in",
+            source or self.contacts / "frames.csv",
+            *options,
+            **keywords,
+        )
 
     def test_a_file_is_read_to_its_end(self):
         result = self.watch(30)
@@ -48,8 +58,9 @@ class Watch(SmallArray):
         lines = [json.loads(line) for line in self.watch(30, "--json").stdout.splitlines()]
         self.assertEqual({line["event"] for line in lines}, {"begins", "ends"})
         first = lines[0]
-        self.assertEqual((first["threat"], first["quantity"], first["unit"], first["limit"]),
-                         ("pushed", "taxel_force", "N", 30.0))
+        self.assertEqual(
+            (first["threat"], first["quantity"], first["unit"], first["limit"]), ("pushed", "taxel_force", "N", 30.0)
+        )
         self.assertGreater(first["value"] - 2 * first["sigma"], 30.0)
         self.assertEqual(first["crossed_ns"], first["time_ns"])
 
@@ -78,27 +89,51 @@ class Watch(SmallArray):
         frames = self.contacts / "frames.csv"
         self.refuse([*arguments, frames, "--", "true"], ["device alone"])
         self.refuse([*arguments, LIVE, "--", "no-such-program"], ["no-such-program", "No such file"])
-        elsewhere = self.written("elsewhere.toml", PUSHED.format(newtons=30) + 'zone = "z"\n[[zone]]\nname = "z"\n'
-                                 'array = "arm"\nrows = [0, 1]\ncols = [0, 1]\n')
-        self.refuse(["watch", "--threats", elsewhere, "--model", self.model, "--in", frames],
-                    ["elsewhere.toml", "no threat is for 'small'"])
+        elsewhere = self.written(
+            "elsewhere.toml",
+            PUSHED.format(newtons=30) + 'zone = "z"\n[[zone]]\nname = "z"\n'
+            'array = "arm"\nrows = [0, 1]\ncols = [0, 1]\n',
+        )
+        self.refuse(
+            ["watch", "--threats", elsewhere, "--model", self.model, "--in", frames],
+            ["elsewhere.toml", "no threat is for 'small'"],
+        )
 
 
 class Silence(SmallArray):
     def start(self, *arguments):
-        process = subprocess.Popen([support.BINARY, *map(str, arguments)], stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE, text=True)
+        process = subprocess.Popen(
+            [support.BINARY, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
         self.addCleanup(process.communicate)
         self.addCleanup(process.kill)
         return process
 
     def test_frames_that_stay_away_stop_the_program(self):
         threats = self.written("threats.toml", PUSHED.format(newtons=1000))
-        device = self.start("emulate", "--protocol", "dermis", "--in", "sim:multitouch?rate=200&rows=4&cols=5", "--to",
-                            "tcp-listen://127.0.0.1:0")
+        device = self.start(
+            "emulate",
+            "--protocol",
+            "dermis",
+            "--in",
+            "sim:multitouch?rate=200&rows=4&cols=5",
+            "--to",
+            "tcp-listen://127.0.0.1:0",
+        )
         place = device.stdout.readline().strip()
-        watch = self.start("watch", "--threats", threats, "--model", self.model, "--in",
-                           f"tcp://{place}?protocol=dermis", "--", "sh", "-c", "echo works; exec sleep 60")
+        watch = self.start(
+            "watch",
+            "--threats",
+            threats,
+            "--model",
+            self.model,
+            "--in",
+            f"tcp://{place}?protocol=dermis",
+            "--",
+            "sh",
+            "-c",
+            "echo works; exec sleep 60",
+        )
         self.assertEqual(watch.stdout.readline(), "works\n")
         device.send_signal(signal.SIGSTOP)
         _, says = watch.communicate(timeout=60)

@@ -7,9 +7,21 @@ import math
 import support
 from support import SmallArray, dermis
 
-ESTIMATOR_KEYS = {"name", "median_relative_error", "p95_relative_error", "p99_relative_error", "max_relative_error",
-                  "taxels_judged", "ghost_p99_n", "ghost_max_n", "ghost_taxels_judged", "total_rmse_n",
-                  "total_median_relative_error", "total_max_relative_error", "totals_judged"}
+ESTIMATOR_KEYS = {
+    "name",
+    "median_relative_error",
+    "p95_relative_error",
+    "p99_relative_error",
+    "max_relative_error",
+    "taxels_judged",
+    "ghost_p99_n",
+    "ghost_max_n",
+    "ghost_taxels_judged",
+    "total_rmse_n",
+    "total_median_relative_error",
+    "total_max_relative_error",
+    "totals_judged",
+}
 COVERAGE_KEYS = {"coverage_68", "coverage_95", "coverage_taxels"}
 BREAKDOWNS = ("by_force", "by_temperature", "by_supply", "by_contacts")
 OVER_TIME = ("by_onset", "by_direction", "after_release")
@@ -42,8 +54,19 @@ class Workflow(SmallArray):
 
     def test_evaluation_as_json(self):
         result = json.loads(self.succeed(*self.evaluate_arguments(), "--json"))
-        self.assertEqual(set(result), {"frames", "frames_rejected", "judged_from_n", "estimators", "sums", *BREAKDOWNS,
-                                       *OVER_TIME, "cramer_rao_bound"})
+        self.assertEqual(
+            set(result),
+            {
+                "frames",
+                "frames_rejected",
+                "judged_from_n",
+                "estimators",
+                "sums",
+                *BREAKDOWNS,
+                *OVER_TIME,
+                "cramer_rao_bound",
+            },
+        )
         self.assertEqual((result["frames"], result["frames_rejected"]), (200, 0))
         names = [entry["name"] for entry in result["estimators"]]
         self.assertEqual(names, ["dermis", "raw_lookup", "temperature_lookup", "crosstalk_lookup"])
@@ -82,8 +105,9 @@ class Workflow(SmallArray):
         result = json.loads(self.succeed(*self.evaluate_arguments(), "--json"))
         self.assertTrue(0.63 <= result["estimators"][0]["coverage_68"] <= 0.75, result["estimators"][0])
         self.assertTrue(0.92 <= result["estimators"][0]["coverage_95"] <= 0.98, result["estimators"][0])
-        self.assertLess(result["cramer_rao_bound"]["median_relative_bound"],
-                        result["cramer_rao_bound"]["median_relative_deviation"])
+        self.assertLess(
+            result["cramer_rao_bound"]["median_relative_bound"], result["cramer_rao_bound"]["median_relative_deviation"]
+        )
 
     def test_evaluation_as_text_names_all_estimators(self):
         text = self.succeed(*self.evaluate_arguments())
@@ -118,8 +142,9 @@ class Workflow(SmallArray):
         for circuit in ('drive_ohm = "fit"', 'circuit = "auto"'):
             key = circuit.split(" ")[0]
             array = self.work / "unknown.toml"
-            kept = [line for line in known.splitlines()
-                    if not line.startswith((key, "idle_" if "auto" in circuit else key))]
+            kept = [
+                line for line in known.splitlines() if not line.startswith((key, "idle_" if "auto" in circuit else key))
+            ]
             array.write_text("\n".join(kept).replace("[readout]", "[readout]\n" + circuit) + "\n")
             arguments = self.calibrate_arguments(self.work / "fitted.safetensors", array=array)
             found = json.loads(self.succeed(*arguments, "--json"))["circuit"]
@@ -136,8 +161,12 @@ class Workflow(SmallArray):
         self.assertEqual(list(lines[0])[:7], ["time_s", "id", "phase", "x_mm", "y_mm", "sigma_x_mm", "sigma_y_mm"])
         phases = {}
         for line in lines:
-            self.assertTrue(all(math.isfinite(float(cell)) for name, cell in line.items()
-                                if name not in ("phase", "sigma_force_n")), line)
+            self.assertTrue(
+                all(
+                    math.isfinite(float(cell)) for name, cell in line.items() if name not in ("phase", "sigma_force_n")
+                ),
+                line,
+            )
             self.assertEqual(float(line["force_n"]) == 0, line["phase"] == "release")
             phases.setdefault(line["id"], []).append(line["phase"])
         for phase in phases.values():
@@ -211,8 +240,10 @@ class Paper(SmallArray):
         found = json.loads(self.succeed("paper", "--quick", "--json"))
         self.assertEqual(found["unknowns"], 2 * 16**3 + 16**2 + 2 * 16**2 + 16)
         self.assertGreater(found["peaks"]["hidden_5"]["best_mse"], 0.001)
-        self.assertAlmostEqual(found["peaks"]["hidden_5"]["best_mse_normalised"],
-                               found["peaks"]["hidden_5"]["best_mse"] / found["peaks"]["range"]**2)
+        self.assertAlmostEqual(
+            found["peaks"]["hidden_5"]["best_mse_normalised"],
+            found["peaks"]["hidden_5"]["best_mse"] / found["peaks"]["range"] ** 2,
+        )
         self.assertEqual(set(found["peaks"]["smallest_hidden"]), {"raw", "normalised"})
         self.assertEqual(len(found["convergence"]), 3)
         self.assertLess(found["points"]["dermis"]["max_relative_error"], 0.05)
@@ -252,8 +283,9 @@ class Loads(SmallArray):
         model = self.work / "model.safetensors"
         text = self.succeed(*self.calibrate_arguments(model, frames=frames_csv, loads=loads_csv))
         self.assertIn("share one network", text)
-        result = json.loads(self.succeed(*self.evaluate_arguments(model=model, frames=frames_csv, loads=loads_csv),
-                                         "--json"))
+        result = json.loads(
+            self.succeed(*self.evaluate_arguments(model=model, frames=frames_csv, loads=loads_csv), "--json")
+        )
         dermis_result = result["estimators"][0]
         self.assertEqual(dermis_result["totals_judged"], 180)
         self.assertEqual(dermis_result["taxels_judged"], 0)
@@ -282,8 +314,10 @@ class Temperature(SmallArray):
         model = self.work / "model.safetensors"
         report = json.loads(self.succeed(*self.calibrate_arguments(model, frames=calibration), "--json"))
         self.assertFalse(report["uses_temperature"])
-        for frames in (self.contacts / "frames.csv",
-                       self.without_temperature("frames.csv", self.contacts / "frames.csv")):
+        for frames in (
+            self.contacts / "frames.csv",
+            self.without_temperature("frames.csv", self.contacts / "frames.csv"),
+        ):
             self.assertEqual({flag for flag in self.statuses(model, frames) if "temperature" in flag}, set())
 
 
@@ -303,17 +337,25 @@ class Memory(SmallArray):
         self.assertEqual({int(load[0]) for load in loads}, set(range(500)))
 
     def test_two_weights_lie_on_the_taxels_asked(self):
-        frames, loads = self.simulated("weights", "two_weights", "--taxels", 2, "--rate", 20, "--memory", "rubber",
-                                       "--touch-gain", 0)
+        frames, loads = self.simulated(
+            "weights", "two_weights", "--taxels", 2, "--rate", 20, "--memory", "rubber", "--touch-gain", 0
+        )
         self.assertEqual(len(frames), 20 * (10 + 2 * 2 * 55))
         self.assertEqual({float(load[3]) for load in loads}, {0.0, 5.0, 15.0})
         self.assertEqual(len({load[2] for load in loads}), 3)  # two taxels and "all" that is unloaded
 
     def test_the_memory_is_that_of_the_options(self):
         seen = set()
-        for options in ((), ("--memory", "simple"), ("--memory", "rubber"), ("--memory", "rubber", "--touch-gain", 0),
-                        ("--memory", "rubber", "--creep-per-decade", 0.2)):
-            frames, _ = self.simulated("o" + str(len(options)) + str(options[-1:]), "touches", "--frames", 600, *options)
+        for options in (
+            (),
+            ("--memory", "simple"),
+            ("--memory", "rubber"),
+            ("--memory", "rubber", "--touch-gain", 0),
+            ("--memory", "rubber", "--creep-per-decade", 0.2),
+        ):
+            frames, _ = self.simulated(
+                "o" + str(len(options)) + str(options[-1:]), "touches", "--frames", 600, *options
+            )
             seen.add(str(frames))
         self.assertEqual(len(seen), 4)  # simple is what it is without an option
 
@@ -321,8 +363,19 @@ class Memory(SmallArray):
 class Determinism(SmallArray):
     def simulated(self, name, *options, prefix=()):
         folder = self.work / name
-        self.succeed("simulate", "--array", self.array, "--scene", "multitouch", "--frames", 50, *options,
-                     "--out", folder, prefix=prefix)
+        self.succeed(
+            "simulate",
+            "--array",
+            self.array,
+            "--scene",
+            "multitouch",
+            "--frames",
+            50,
+            *options,
+            "--out",
+            folder,
+            prefix=prefix,
+        )
         return (folder / "frames.csv").read_bytes() + (folder / "loads.csv").read_bytes()
 
     def test_simulation_depends_on_its_seed_alone(self):
@@ -344,8 +397,9 @@ class Determinism(SmallArray):
         self.succeed(*self.run_arguments(one_core), prefix=("taskset", "-c", "0"))
         self.assertEqual(again.read_bytes(), one_core.read_bytes())
         first = self.succeed(*self.evaluate_arguments(), "--json", "--report", self.work / "first")
-        second = self.succeed(*self.evaluate_arguments(), "--json", "--report", self.work / "second",
-                              prefix=("taskset", "-c", "0"))
+        second = self.succeed(
+            *self.evaluate_arguments(), "--json", "--report", self.work / "second", prefix=("taskset", "-c", "0")
+        )
         self.assertEqual(first, second)
         self.assertEqual((self.work / "first/index.html").read_bytes(), (self.work / "second/index.html").read_bytes())
 

@@ -2,6 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Usage: check_compile_fail.py SOURCE COMPILER [FLAGS...]
 The source compiles as it is; with MISTAKE defined it must not, with the error of its line "// expected error: REGEX"."""
+
 import re
 import subprocess
 import sys

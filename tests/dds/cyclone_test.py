@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """What a subscriber of another vendor gets of a suit is what 'dermis run' makes of its recording, field by field."""
+
 import csv
 import json
 import os
@@ -22,7 +23,7 @@ READER = sys.argv.pop(2)
 DOMAIN = 100 + os.getpid() % 100
 SECONDS = 5
 ROWS, COLS = 4, 5
-HALF = 0.5 ** 0.5
+HALF = 0.5**0.5
 SUIT = """[suit]
 name = "pair"
 
@@ -37,12 +38,20 @@ name = "right"
 model = "{model}"
 from = "sim:contacts?rows=4&cols=5&rate=100&seed=2"
 """
-TOPICS = {"/contacts": "dermis_msgs/Contacts", "/suit/points": "sensor_msgs/PointCloud2",
-          "/suit/wrench": "geometry_msgs/WrenchStamped", "/diagnostics": "diagnostic_msgs/DiagnosticArray",
-          "/tf_static": "tf2_msgs/TFMessage"}
+TOPICS = {
+    "/contacts": "dermis_msgs/Contacts",
+    "/suit/points": "sensor_msgs/PointCloud2",
+    "/suit/wrench": "geometry_msgs/WrenchStamped",
+    "/diagnostics": "diagnostic_msgs/DiagnosticArray",
+    "/tf_static": "tf2_msgs/TFMessage",
+}
 for array in ("left", "right"):
-    TOPICS |= {f"/{array}/raw": "sensor_msgs/Image", f"/{array}/force": "sensor_msgs/Image",
-               f"/{array}/force_sigma": "sensor_msgs/Image", f"/{array}/wrench": "geometry_msgs/WrenchStamped"}
+    TOPICS |= {
+        f"/{array}/raw": "sensor_msgs/Image",
+        f"/{array}/force": "sensor_msgs/Image",
+        f"/{array}/force_sigma": "sensor_msgs/Image",
+        f"/{array}/wrench": "geometry_msgs/WrenchStamped",
+    }
 
 
 def nanos(stamp):
@@ -96,10 +105,26 @@ class Cyclone(SmallArray):
         suit = cls.root / "suit.toml"
         suit.write_text(SUIT.format(model=cls.model))
         cls.recording = cls.root / "rec.mcap"
-        serve = [support.BINARY, "serve", "--suit", suit, "--port", 0, "--record", cls.recording, "--dds", "--domain", DOMAIN]
+        serve = [
+            support.BINARY,
+            "serve",
+            "--suit",
+            suit,
+            "--port",
+            0,
+            "--record",
+            cls.recording,
+            "--dds",
+            "--domain",
+            DOMAIN,
+        ]
         subscriptions = [subscription(*topic) for topic in TOPICS.items()]
-        reader = subprocess.Popen([READER, str(DOMAIN), str(SECONDS), "reliable", *subscriptions], env=ENVIRONMENT,
-                                  stdout=subprocess.PIPE, text=True)
+        reader = subprocess.Popen(
+            [READER, str(DOMAIN), str(SECONDS), "reliable", *subscriptions],
+            env=ENVIRONMENT,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
         server = subprocess.Popen(list(map(str, serve)), env=ENVIRONMENT, stderr=subprocess.DEVNULL)
         lines, _ = reader.communicate(timeout=300)
         server.send_signal(signal.SIGINT)
@@ -137,7 +162,9 @@ class Cyclone(SmallArray):
                 counts = np.frombuffer(bytes.fromhex(message["data"]), "<u2")
                 np.testing.assert_array_equal(counts, taxels(frames[k]))
                 image = {name: value for name, value in message.items() if name not in ("header", "data")}
-                self.assertEqual(image, {"height": ROWS, "width": COLS, "encoding": "16UC1", "is_bigendian": 0, "step": 2 * COLS})
+                self.assertEqual(
+                    image, {"height": ROWS, "width": COLS, "encoding": "16UC1", "is_bigendian": 0, "step": 2 * COLS}
+                )
 
     def test_forces_and_their_sigmas_have_the_bits_of_the_command_line(self):
         for array in ("left", "right"):
@@ -146,19 +173,32 @@ class Cyclone(SmallArray):
                     [row] = self.tables[array][table].at(time_of(message))
                     values = np.frombuffer(bytes.fromhex(message["data"]), "<f4")
                     np.testing.assert_array_equal(values, taxels(row))
-                    self.assertEqual((message["height"], message["width"], message["encoding"], message["step"]),
-                                     (ROWS, COLS, "32FC1", 4 * COLS))
+                    self.assertEqual(
+                        (message["height"], message["width"], message["encoding"], message["step"]),
+                        (ROWS, COLS, "32FC1", 4 * COLS),
+                    )
                     self.assertEqual(message["header"]["frame_id"], array)
 
     def expect_contact(self, contact, row):
-        expected = {"id": contact["id"], "phase": ["onset", "held", "release"][contact["phase"]], "taxels": contact["taxels"],
-                    "x_mm": 1e3 * contact["x"], "y_mm": 1e3 * contact["y"], "sigma_x_mm": 1e3 * contact["sigma_x"],
-                    "sigma_y_mm": 1e3 * contact["sigma_y"], "velocity_x_mm_per_s": 1e3 * contact["velocity_x"],
-                    "velocity_y_mm_per_s": 1e3 * contact["velocity_y"], "force_n": contact["force_n"],
-                    "sigma_force_n": contact["sigma_force_n"], "area_mm2": 1e6 * contact["area_m2"],
-                    "peak_pressure_kpa": 1e-3 * contact["peak_pressure_pa"],
-                    "mean_pressure_kpa": 1e-3 * contact["mean_pressure_pa"], "major_axis_mm": 1e3 * contact["major_axis_m"],
-                    "minor_axis_mm": 1e3 * contact["minor_axis_m"], "angle_rad": contact["angle_rad"]}
+        expected = {
+            "id": contact["id"],
+            "phase": ["onset", "held", "release"][contact["phase"]],
+            "taxels": contact["taxels"],
+            "x_mm": 1e3 * contact["x"],
+            "y_mm": 1e3 * contact["y"],
+            "sigma_x_mm": 1e3 * contact["sigma_x"],
+            "sigma_y_mm": 1e3 * contact["sigma_y"],
+            "velocity_x_mm_per_s": 1e3 * contact["velocity_x"],
+            "velocity_y_mm_per_s": 1e3 * contact["velocity_y"],
+            "force_n": contact["force_n"],
+            "sigma_force_n": contact["sigma_force_n"],
+            "area_mm2": 1e6 * contact["area_m2"],
+            "peak_pressure_kpa": 1e-3 * contact["peak_pressure_pa"],
+            "mean_pressure_kpa": 1e-3 * contact["mean_pressure_pa"],
+            "major_axis_mm": 1e3 * contact["major_axis_m"],
+            "minor_axis_mm": 1e3 * contact["minor_axis_m"],
+            "angle_rad": contact["angle_rad"],
+        }
         self.assertEqual(set(expected), set(row) - {"time_s"})
         for name, value in expected.items():
             if isinstance(value, float):
@@ -179,7 +219,9 @@ class Cyclone(SmallArray):
                 if array == "left":  # turned about y by a right angle
                     place = np.array([0.1, 0.2, 0.3]) + [place[2], place[1], -place[0]]
                 np.testing.assert_allclose(vector(contact["position"]), place, atol=1e-12)
-                np.testing.assert_allclose(vector(contact["normal"]), [1, 0, 0] if array == "left" else [0, 0, 1], atol=1e-12)
+                np.testing.assert_allclose(
+                    vector(contact["normal"]), [1, 0, 0] if array == "left" else [0, 0, 1], atol=1e-12
+                )
         self.assertGreater(found, 100)
 
     def test_wrenches_are_those_of_the_contacts(self):
@@ -205,7 +247,9 @@ class Cyclone(SmallArray):
     def test_the_wrench_of_the_suit_is_the_sum_of_what_its_arrays_had_last(self):
         (times_l, left), (times_r, right) = self.wrenches_of("left"), self.wrenches_of("right")
         place, turn = np.array([0.1, 0.2, 0.3]), np.array([[0, 0, 1], [0, 1, 0], [-1, 0, 0]])
-        left = np.array([[turn @ force, turn @ torque + np.cross(place, turn @ force)] for force, torque in left]).reshape(-1, 6)
+        left = np.array(
+            [[turn @ force, turn @ torque + np.cross(place, turn @ force)] for force, torque in left]
+        ).reshape(-1, 6)
         right = np.array(right).reshape(-1, 6)
         last = 500e6  # [ns]
         compared = 0
@@ -227,9 +271,13 @@ class Cyclone(SmallArray):
         kind = np.dtype([("xyz", "<f4", 3), ("newtons", "<f4"), ("status", "u1"), ("padding", "u1", 3)])
         for message in self.of("/suit/points", 50):
             points = np.frombuffer(bytes.fromhex(message["data"]), kind)
-            self.assertEqual((message["height"], message["width"], message["point_step"], message["row_step"]), (1, 40, 20, 800))
-            self.assertEqual([(field["name"], field["offset"], field["datatype"], field["count"]) for field in message["fields"]],
-                             [("x", 0, 7, 1), ("y", 4, 7, 1), ("z", 8, 7, 1), ("newtons", 12, 7, 1), ("status", 16, 2, 1)])
+            self.assertEqual(
+                (message["height"], message["width"], message["point_step"], message["row_step"]), (1, 40, 20, 800)
+            )
+            self.assertEqual(
+                [(field["name"], field["offset"], field["datatype"], field["count"]) for field in message["fields"]],
+                [("x", 0, 7, 1), ("y", 4, 7, 1), ("z", 8, 7, 1), ("newtons", 12, 7, 1), ("status", 16, 2, 1)],
+            )
             np.testing.assert_allclose(points["xyz"], np.concatenate([left, place]), atol=1e-6)
         last = self.messages["/suit/points"][-1]
         points = np.frombuffer(bytes.fromhex(last["data"]), kind)
@@ -254,14 +302,28 @@ class Cyclone(SmallArray):
 
 class OtherSubscribers(SmallArray):
     def serve(self, *options, environment=ENVIRONMENT):
-        command = [support.BINARY, "serve", "--from", "sim:contacts?rows=4&cols=5&rate=100", "--model", self.model, "--port", 0,
-                   "--dds", *options]
+        command = [
+            support.BINARY,
+            "serve",
+            "--from",
+            "sim:contacts?rows=4&cols=5&rate=100",
+            "--model",
+            self.model,
+            "--port",
+            0,
+            "--dds",
+            *options,
+        ]
         return subprocess.Popen(list(map(str, command)), env=environment, stderr=subprocess.PIPE, text=True)
 
     def test_subscribers_for_the_data_of_sensors_are_heard_and_the_domain_is_that_of_ros(self):
         domain = DOMAIN - 100
-        reader = subprocess.Popen([READER, str(domain), "1", "best_effort", subscription("/small/force", "sensor_msgs/Image")],
-                                  env=ENVIRONMENT, stdout=subprocess.PIPE, text=True)
+        reader = subprocess.Popen(
+            [READER, str(domain), "1", "best_effort", subscription("/small/force", "sensor_msgs/Image")],
+            env=ENVIRONMENT,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
         server = self.serve(environment={**ENVIRONMENT, "ROS_DOMAIN_ID": str(domain)})
         lines, _ = reader.communicate(timeout=300)
         server.send_signal(signal.SIGINT)
@@ -271,8 +333,9 @@ class OtherSubscribers(SmallArray):
 
     def test_what_is_no_domain_is_refused(self):
         for options, environment, line in (
-                (["--domain", "233"], ENVIRONMENT, r"domain: must be 0 to 232, is 233"),
-                ([], {**ENVIRONMENT, "ROS_DOMAIN_ID": "x"}, r"ROS_DOMAIN_ID: must be 0 to 232, is 'x'")):
+            (["--domain", "233"], ENVIRONMENT, r"domain: must be 0 to 232, is 233"),
+            ([], {**ENVIRONMENT, "ROS_DOMAIN_ID": "x"}, r"ROS_DOMAIN_ID: must be 0 to 232, is 'x'"),
+        ):
             server = self.serve(*options, environment=environment)
             _, error = server.communicate(timeout=60)
             self.assertEqual(server.returncode, 2)

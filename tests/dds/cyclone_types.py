@@ -3,15 +3,31 @@
 """cyclone_types.py MSG_FOLDER... OUT: what Cyclone DDS knows of the messages, from their .msg files alone.
 
 OUT/ros.idl is for its IDL compiler; OUT/print_ros.h prints what comes as JSON, arrays of bytes as text in hex."""
+
 import re
 import sys
 from pathlib import Path
 
-IDL = {"bool": "boolean", "byte": "octet", "uint8": "octet", "uint16": "unsigned short", "uint32": "unsigned long",
-       "uint64": "unsigned long long", "int32": "long", "int64": "long long", "float32": "float", "float64": "double",
-       "string": "string"}
-PRINT = {"string": "print_text", "float32": "print_number", "float64": "print_number", "bool": "print_bool",
-         "uint64": "print_unsigned"}
+IDL = {
+    "bool": "boolean",
+    "byte": "octet",
+    "uint8": "octet",
+    "uint16": "unsigned short",
+    "uint32": "unsigned long",
+    "uint64": "unsigned long long",
+    "int32": "long",
+    "int64": "long long",
+    "float32": "float",
+    "float64": "double",
+    "string": "string",
+}
+PRINT = {
+    "string": "print_text",
+    "float32": "print_number",
+    "float64": "print_number",
+    "bool": "print_bool",
+    "uint64": "print_unsigned",
+}
 FIELD = re.compile(r"^([\w/]+)(\[\])? (\w+)\s*(?:#.*)?$", re.MULTILINE)
 
 
@@ -57,8 +73,14 @@ def c_printer(message, text):
         if sequence and used in ("uint8", "byte"):
             lines.append(f"  print_bytes(value->{field}_value._buffer, value->{field}_value._length);")
         elif sequence:
-            lines += ["  putchar('[');", f"  for (uint32_t i = 0; i < value->{field}_value._length; ++i) {{", "    if (i) putchar(',');",
-                      f"    {print_one}({by_address}value->{field}_value._buffer[i]);", "  }", "  putchar(']');"]
+            lines += [
+                "  putchar('[');",
+                f"  for (uint32_t i = 0; i < value->{field}_value._length; ++i) {{",
+                "    if (i) putchar(',');",
+                f"    {print_one}({by_address}value->{field}_value._buffer[i]);",
+                "  }",
+                "  putchar(']');",
+            ]
         else:
             lines.append(f"  {print_one}({by_address}value->{field}_value);")
     body = "\n".join(lines)
@@ -67,11 +89,18 @@ def c_printer(message, text):
 
 if __name__ == "__main__":
     *folders, out = map(Path, sys.argv[1:])
-    texts = {path.relative_to(folder).with_suffix("").as_posix(): path.read_text() for folder in folders
-             for path in folder.glob("*/*.msg")}
+    texts = {
+        path.relative_to(folder).with_suffix("").as_posix(): path.read_text()
+        for folder in folders
+        for path in folder.glob("*/*.msg")
+    }
     messages = in_order(texts)
     (out / "ros.idl").write_text("".join(idl(message, texts[message]) for message in messages))
-    rows = "".join(f'    {{"{dds_name(message, "::")}", &{dds_name(message, "_")}_desc, print_{dds_name(message, "_")}}},\n'
-                   for message in messages)
-    (out / "print_ros.h").write_text("".join(c_printer(message, texts[message]) for message in messages)
-                                     + f"static const struct type types[] = {{\n{rows}}};\n")
+    rows = "".join(
+        f'    {{"{dds_name(message, "::")}", &{dds_name(message, "_")}_desc, print_{dds_name(message, "_")}}},\n'
+        for message in messages
+    )
+    (out / "print_ros.h").write_text(
+        "".join(c_printer(message, texts[message]) for message in messages)
+        + f"static const struct type types[] = {{\n{rows}}};\n"
+    )

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Publishers and subscribers of DDS that no other machine hears."""
+
 import os
 
 # Of ROS 2, and of Cyclone DDS.

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """ros/dermis_msgs is a package of ROS 2 whose messages are those that dermis is built from; the launch file launches."""
+
 import re
 import runpy
 import sys
@@ -13,8 +14,10 @@ ROOT = Path(__file__).parents[2]
 PACKAGE = ROOT / "ros/dermis_msgs"
 MESSAGES = ROOT / "src/messages/msg/dermis_msgs"
 # The grammar of ROS 2, but for what we do not use: bounds, defaults and arrays of fixed size.
-FIELD = re.compile(r"(?:bool|byte|u?int(?:8|16|32|64)|float(?:32|64)|string|[a-z][a-z0-9_]*/[A-Z][A-Za-z0-9]*)(?:\[\])? "
-                   r"[a-z](?:_?[a-z0-9]+)*")
+FIELD = re.compile(
+    r"(?:bool|byte|u?int(?:8|16|32|64)|float(?:32|64)|string|[a-z][a-z0-9_]*/[A-Z][A-Za-z0-9]*)(?:\[\])? "
+    r"[a-z](?:_?[a-z0-9]+)*"
+)
 CONSTANT = re.compile(r"uint(?:8|16) [A-Z](?:_?[A-Z0-9]+)*=\d+")
 
 
@@ -32,7 +35,9 @@ class Package(unittest.TestCase):
                 self.assertTrue(not line or FIELD.fullmatch(line) or CONSTANT.fullmatch(line), f"{path.name}: {line}")
 
     def test_the_package_depends_on_what_its_messages_use(self):
-        used = {package for path in MESSAGES.iterdir() for package in re.findall(r"^(\w+)/", path.read_text(), re.MULTILINE)}
+        used = {
+            package for path in MESSAGES.iterdir() for package in re.findall(r"^(\w+)/", path.read_text(), re.MULTILINE)
+        }
         used.discard("dermis_msgs")
         package = ElementTree.parse(PACKAGE / "package.xml").getroot()
         self.assertEqual({element.text for element in package.iter("depend")}, used)
@@ -50,11 +55,15 @@ class Launch(unittest.TestCase):
 
     def test_the_launch_file_starts_the_server_for_ros(self):
         started = []
-        stand_ins = {"launch": {"LaunchDescription": list},
-                     "launch.actions": {"DeclareLaunchArgument": lambda name, **_: name,
-                                        "ExecuteProcess": lambda cmd, **_: started.append(cmd)},
-                     "launch.conditions": {"IfCondition": str},
-                     "launch.substitutions": {"LaunchConfiguration": lambda name: f"<{name}>"}}
+        stand_ins = {
+            "launch": {"LaunchDescription": list},
+            "launch.actions": {
+                "DeclareLaunchArgument": lambda name, **_: name,
+                "ExecuteProcess": lambda cmd, **_: started.append(cmd),
+            },
+            "launch.conditions": {"IfCondition": str},
+            "launch.substitutions": {"LaunchConfiguration": lambda name: f"<{name}>"},
+        }
         for name, members in stand_ins.items():
             sys.modules[name] = types.ModuleType(name)
             vars(sys.modules[name]).update(members)

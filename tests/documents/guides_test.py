@@ -3,6 +3,7 @@
 """Runs the commands of README and the guides as printed, in the order in which a newcomer reads them.
 
 Usage: guides_test.py DERMIS"""
+
 import re
 import shlex
 import subprocess
@@ -15,8 +16,10 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent.parent
 BLOCK = re.compile(r"^( *)```(\w+)\n(.*?)^\1```$", re.MULTILINE | re.DOTALL)
 # What a page tells the reader to write: the language of the block, and its number among those of the page.
-WRITTEN = {"first-suit.md": {"suit.toml": ("toml", 0)},
-           "connect-a-robot.md": {"robot.py": ("python", 0), "move.py": ("python", 1)}}
+WRITTEN = {
+    "first-suit.md": {"suit.toml": ("toml", 0)},
+    "connect-a-robot.md": {"robot.py": ("python", 0), "move.py": ("python", 1)},
+}
 # The device is the simulator, ports are free ones, and after some seconds somebody presses Ctrl-C. The threat of a watch ends it.
 DERMIS = r"""#!/bin/bash
 arguments=("${@//serial:\/\/\/dev\/ttyACM0/sim:contacts?rate=100}")
@@ -39,7 +42,9 @@ def blocks(page, language):
 def commands(page):
     """All but those of make and what it builds, which scripts/bare_machine runs, and what needs a terminal."""
     lines = "".join(blocks(page, "sh")).splitlines(keepends=True)
-    return "".join(line for line in lines if not re.match(r"(make|sudo|git|cd dermis|pip|export PATH|dermis top)\b", line))
+    return "".join(
+        line for line in lines if not re.match(r"(make|sudo|git|cd dermis|pip|export PATH|dermis top)\b", line)
+    )
 
 
 class Guides(unittest.TestCase):
@@ -59,8 +64,12 @@ class Guides(unittest.TestCase):
     def follow(self, page, folder):
         for name, (language, number) in WRITTEN.get(Path(page).name, {}).items():
             (folder / name).write_text(blocks(page, language)[number])
-        script = f'export PATH="{self.home}/bin:$PATH" DEVICE="sim:contacts?rate=100"\nset -exo pipefail\n{commands(page)}'
-        result = subprocess.run(["bash", "-c", script], cwd=folder, capture_output=True, text=True, timeout=1200, check=False)
+        script = (
+            f'export PATH="{self.home}/bin:$PATH" DEVICE="sim:contacts?rate=100"\nset -exo pipefail\n{commands(page)}'
+        )
+        result = subprocess.run(
+            ["bash", "-c", script], cwd=folder, capture_output=True, text=True, timeout=1200, check=False
+        )
         self.assertEqual(result.returncode, 0, f"{page}:\n{result.stdout[-2000:]}\n{result.stderr[-4000:]}")
 
     def test_1_first_array(self):
@@ -81,9 +90,14 @@ class Guides(unittest.TestCase):
 
     def test_6_readme(self):
         """The files that it names are those of a newcomer's own array: here, the ones of the guides."""
-        for name, place in {"array.toml": "chest.toml", "frames.csv": "cal/frames.csv", "loads.csv": "cal/loads.csv",
-                            "new_frames.csv": "test/frames.csv", "test.csv": "test/frames.csv",
-                            "test_loads.csv": "test/loads.csv"}.items():
+        for name, place in {
+            "array.toml": "chest.toml",
+            "frames.csv": "cal/frames.csv",
+            "loads.csv": "cal/loads.csv",
+            "new_frames.csv": "test/frames.csv",
+            "test.csv": "test/frames.csv",
+            "test_loads.csv": "test/loads.csv",
+        }.items():
             (self.work / name).symlink_to(place)
         self.follow("README.md", self.work)
 

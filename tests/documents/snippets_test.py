@@ -3,6 +3,7 @@
 """What README, a guide and docs/c.md show of C++ and C compiles as printed.
 
 Usage: snippets_test.py C++-COMPILER C-COMPILER GENERATED-HEADERS"""
+
 import re
 import subprocess
 import sys
@@ -20,15 +21,25 @@ def snippet(page, language):
 
 class Snippets(unittest.TestCase):
     def compile(self, compiler, *options, text):
-        result = subprocess.run([compiler, *options, *WARNINGS, "-"], input=text, capture_output=True, text=True, check=False)
+        result = subprocess.run(
+            [compiler, *options, *WARNINGS, "-"], input=text, capture_output=True, text=True, check=False
+        )
         self.assertEqual(result.returncode, 0, result.stderr)
 
     def test_lines_of_cpp_name_their_header_and_are_the_body_of_a_function_that_may_fail(self):
         for page in ("README.md", "docs/guides/connect-a-robot.md"):
             with self.subTest(page):
                 includes, body = snippet(page, "cpp").split("\n\n", 1)
-                self.compile(CXX, "-std=c++20", "-x", "c++", f"-I{ROOT}/include", f"-I{GENERATED}", text=f"{includes}\n"
-                             f"dermis::Status work(const dermis::RawFrame& raw) {{\n{body}return dermis::Done{{}};\n}}\n")
+                self.compile(
+                    CXX,
+                    "-std=c++20",
+                    "-x",
+                    "c++",
+                    f"-I{ROOT}/include",
+                    f"-I{GENERATED}",
+                    text=f"{includes}\n"
+                    f"dermis::Status work(const dermis::RawFrame& raw) {{\n{body}return dermis::Done{{}};\n}}\n",
+                )
 
     def test_the_program_of_the_page_on_c_is_whole(self):
         self.compile(CC, "-std=c99", "-x", "c", f"-I{ROOT}/c", text=snippet("docs/c.md", "c"))

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Reads a safetensors file with nothing but the standard library and prints it as JSON: an independent reader."""
+
 import array
 import json
 import struct

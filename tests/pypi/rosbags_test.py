@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """The package rosbags of PyPI reads a recording. Usage: rosbags_test.py DERMIS FRAMES_CSV"""
+
 import subprocess
 import sys
 import tempfile
@@ -17,7 +18,9 @@ COLUMNS_BEFORE_COUNTS = 3  # time, temperature, supply
 def messages_of(recording, topic):
     with AnyReader([recording]) as reader:
         connections = [connection for connection in reader.connections if connection.topic == topic]
-        return [reader.deserialize(content, connection.msgtype) for connection, _, content in reader.messages(connections)]
+        return [
+            reader.deserialize(content, connection.msgtype) for connection, _, content in reader.messages(connections)
+        ]
 
 
 class Recording(unittest.TestCase):

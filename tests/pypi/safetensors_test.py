@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """The package safetensors of PyPI reads a model file. Usage: safetensors_test.py MODEL"""
+
 import json
 import subprocess
 import sys
@@ -21,9 +22,17 @@ class ModelFile(unittest.TestCase):
             tensors = {name: model.get_tensor(name) for name in model.keys()}
             self.assertEqual(model.metadata(), expected["metadata"])
         self.assertGreater(len(tensors), 10)
-        self.assertEqual({name: {"dtype": NAMES[str(values.dtype)], "shape": list(values.shape),
-                                 "values": values.ravel().tolist()} for name, values in tensors.items()},
-                         expected["tensors"])
+        self.assertEqual(
+            {
+                name: {
+                    "dtype": NAMES[str(values.dtype)],
+                    "shape": list(values.shape),
+                    "values": values.ravel().tolist(),
+                }
+                for name, values in tensors.items()
+            },
+            expected["tensors"],
+        )
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@
 
 Without a test it makes their virtual environment, where that is not there. Where PyPI cannot be reached it says so, and
 each of the tests says that it is skipped."""
+
 import os
 import subprocess
 import sys
@@ -20,7 +21,17 @@ def is_made(venv):
 
 def make(venv):
     subprocess.run([sys.executable, "-m", "venv", "--clear", venv], check=True)
-    install = [venv / "bin/pip", "install", "--quiet", "--retries", "1", "--timeout", "15", "--requirement", REQUIREMENTS]
+    install = [
+        venv / "bin/pip",
+        "install",
+        "--quiet",
+        "--retries",
+        "1",
+        "--timeout",
+        "15",
+        "--requirement",
+        REQUIREMENTS,
+    ]
     pip = subprocess.run(install, capture_output=True, text=True)
     if pip.returncode != 0:
         sys.exit(f"{'skipped: PyPI cannot be reached' if NO_ANSWER in pip.stderr else 'pip fails'}\n{pip.stderr}")

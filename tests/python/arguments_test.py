@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Whatever Python hands over, the answer is a result or an exception that says what was expected."""
+
 import concurrent.futures
 import random
 import subprocess
@@ -36,11 +37,45 @@ class Arguments(workspace.CalibratedArray):
         dtype = choose.choice(["f4", "f8", ">f4", "u1", "i8", "f2", "c8", "O", "S3", "M8[ns]", "?", "u2"])
         with np.errstate(all="ignore"):
             array = values.astype("i8").astype(dtype) if dtype == "M8[ns]" else values.astype(dtype)
-        return choose.choice([array, array.T, np.flip(array), np.full((5, 4), choose.choice([np.nan, np.inf, -np.inf, 1e300])),
-                              None, True, -1, 2**70, 1.5, float("nan"), "", "\0", "nothing", b"bytes", [], [[1, 2], [3]], {},
-                              object(), self.model, self.array, str(self.frames), self.made["model"], self.made["recording"],
-                              self.made["closed"], self.made["force"], (0, 0), (9, 9), (0, 0, 4, 3), (4, 3, 0, 0), lambda *_: 1,
-                              slice(1, 5), slice(None, None, -1), slice(0, 1, 0), slice(2**70), np.ma.masked_all((5, 4))])
+        return choose.choice(
+            [
+                array,
+                array.T,
+                np.flip(array),
+                np.full((5, 4), choose.choice([np.nan, np.inf, -np.inf, 1e300])),
+                None,
+                True,
+                -1,
+                2**70,
+                1.5,
+                float("nan"),
+                "",
+                "\0",
+                "nothing",
+                b"bytes",
+                [],
+                [[1, 2], [3]],
+                {},
+                object(),
+                self.model,
+                self.array,
+                str(self.frames),
+                self.made["model"],
+                self.made["recording"],
+                self.made["closed"],
+                self.made["force"],
+                (0, 0),
+                (9, 9),
+                (0, 0, 4, 3),
+                (4, 3, 0, 0),
+                lambda *_: 1,
+                slice(1, 5),
+                slice(None, None, -1),
+                slice(0, 1, 0),
+                slice(2**70),
+                np.ma.masked_all((5, 4)),
+            ]
+        )
 
     def make(self):
         """Objects of every kind, and what can be called of them."""
@@ -52,17 +87,51 @@ class Arguments(workspace.CalibratedArray):
         self.made = {"model": model, "recording": recording, "closed": closed, "force": pipeline.process(recording[0])}
         source = dermis.open(self.frames)
         self.addCleanup(source.close)
-        return [dermis.read_model, dermis.read_array, dermis.Pipeline, pipeline.process, pipeline.run, tracker.process,
-                dermis.ContactTracker, dermis.Recording, recording.__getitem__, dermis.Load, dermis.circuit.forward,
-                dermis.circuit.invert, dermis.ArrayDescription.from_toml, model.array.taxel_name, dermis.open, next,
-                dermis.Recording.read, dermis.evaluate, lambda array, loads: dermis.calibrate(array, recording, loads),
-                lambda counts, **more: dermis.Recording(counts, rate_hz=10.0, **more), pipeline.tare, lambda: next(source),
-                source.latest, pipeline.run(recording).__getitem__, dermis.ThreatMonitor, dermis.Recogniser, dermis.Suit]
+        return [
+            dermis.read_model,
+            dermis.read_array,
+            dermis.Pipeline,
+            pipeline.process,
+            pipeline.run,
+            tracker.process,
+            dermis.ContactTracker,
+            dermis.Recording,
+            recording.__getitem__,
+            dermis.Load,
+            dermis.circuit.forward,
+            dermis.circuit.invert,
+            dermis.ArrayDescription.from_toml,
+            model.array.taxel_name,
+            dermis.open,
+            next,
+            dermis.Recording.read,
+            dermis.evaluate,
+            lambda array, loads: dermis.calibrate(array, recording, loads),
+            lambda counts, **more: dermis.Recording(counts, rate_hz=10.0, **more),
+            pipeline.tare,
+            lambda: next(source),
+            source.latest,
+            pipeline.run(recording).__getitem__,
+            dermis.ThreatMonitor,
+            dermis.Recogniser,
+            dermis.Suit,
+        ]
 
     def call_at_random(self, calls, choose, count):
         """How many calls were refused, and the errors that are none of ours."""
-        names = ["temperature", "supply", "time_ns", "rate_hz", "supply_v", "temperature_celsius", "array", "newtons",
-                 "pascals", "onset_sigma", "most_contacts"]
+        names = [
+            "temperature",
+            "supply",
+            "time_ns",
+            "rate_hz",
+            "supply_v",
+            "temperature_celsius",
+            "array",
+            "newtons",
+            "pascals",
+            "onset_sigma",
+            "most_contacts",
+        ]
         refused, wrong = 0, []
         for _ in range(count):
             call = choose.choice(calls)

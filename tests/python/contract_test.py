@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """One contract: Python, C and the messages have the names, units and defaults of the C++ headers."""
+
 import ast
 import inspect
 import re
@@ -25,15 +26,19 @@ def block(text, opening):
 def cpp_struct(header, name):
     """The fields: name, type, default, and the units that its comment gives."""
     text = block((INCLUDE / header).read_text(), rf"struct {name}\b")
-    fields = re.findall(r"^  ([\w:<>, ]+?) (\w+)(?:\{\}| = ([^;]+)|);(?: *///<([^\n]*(?:\n +///<[^\n]*)*))?", text, re.MULTILINE)
+    fields = re.findall(
+        r"^  ([\w:<>, ]+?) (\w+)(?:\{\}| = ([^;]+)|);(?: *///<([^\n]*(?:\n +///<[^\n]*)*))?", text, re.MULTILINE
+    )
     return {field: (kind, default, re.findall(r"\[([\w/ ]+)\]", comment)) for kind, field, default, comment in fields}
 
 
 def cpp_enumerators(header, name):
     """In their order, with the values that are given; shifts are calculated."""
     values, last = {}, -1
-    for enumerator, value in re.findall(r"(\w+)(?: = ([^,\n]+))?,?(?= |\n|$)", re.sub(r"///.*", "", block(
-            (INCLUDE / header).read_text(), rf"enum class {name} : std::uint\d+_t"))):
+    for enumerator, value in re.findall(
+        r"(\w+)(?: = ([^,\n]+))?,?(?= |\n|$)",
+        re.sub(r"///.*", "", block((INCLUDE / header).read_text(), rf"enum class {name} : std::uint\d+_t")),
+    ):
         last = eval(value.replace("U", "")) if value else last + 1
         values[enumerator.upper()] = last
     return values
@@ -45,26 +50,39 @@ def c_enumerators(prefix):
 
 def c_struct(name):
     text = re.sub(r"/\*.*?\*/", "", block(C_HEADER, f"typedef struct {name}"), flags=re.DOTALL)
-    return [field for line in re.findall(r"^ +(?:const )?\w+\*? ([\w, ]+);", text, re.MULTILINE) for field in line.split(", ")]
+    return [
+        field
+        for line in re.findall(r"^ +(?:const )?\w+\*? ([\w, ]+);", text, re.MULTILINE)
+        for field in line.split(", ")
+    ]
 
 
 def message(name):
     text = (ROOT / f"src/messages/msg/dermis_msgs/{name}.msg").read_text()
-    constants = {constant: int(value) for constant, value in re.findall(r"^uint\d+ ([A-Z_]+)=(\d+)", text, re.MULTILINE)}
+    constants = {
+        constant: int(value) for constant, value in re.findall(r"^uint\d+ ([A-Z_]+)=(\d+)", text, re.MULTILINE)
+    }
     return constants, re.findall(r"^[\w/]+(?:\[\])? ([a-z]\w*)", text, re.MULTILINE), text
 
 
 def python_properties(name):
     [node] = [node for node in STUB.body if isinstance(node, ast.ClassDef) and node.name == name]
-    return [member.name for member in node.body if isinstance(member, ast.FunctionDef)
-            and any(getattr(decorator, "id", "") == "property" for decorator in member.decorator_list)]
+    return [
+        member.name
+        for member in node.body
+        if isinstance(member, ast.FunctionDef)
+        and any(getattr(decorator, "id", "") == "property" for decorator in member.decorator_list)
+    ]
 
 
 def python_defaults(name, owner=None):
     body = next(node for node in STUB.body if getattr(node, "name", "") == owner).body if owner else STUB.body
     [function] = [node for node in body if isinstance(node, ast.FunctionDef) and node.name == name]
-    return {argument.arg: ast.literal_eval(default)
-            for argument, default in zip(function.args.kwonlyargs, function.args.kw_defaults) if default is not None}
+    return {
+        argument.arg: ast.literal_eval(default)
+        for argument, default in zip(function.args.kwonlyargs, function.args.kw_defaults)
+        if default is not None
+    }
 
 
 class Enumerations(unittest.TestCase):
@@ -111,7 +129,9 @@ class Fields(unittest.TestCase):
         self.assertEqual(python_properties("Contact"), names)
         flat = []
         for name in names:
-            for axis in "xy" if fields.get(name, fields.get(re.sub(r"_m(_s)?$", "", name), [""]))[0] == "PlaneVector" else [""]:
+            for axis in (
+                "xy" if fields.get(name, fields.get(re.sub(r"_m(_s)?$", "", name), [""]))[0] == "PlaneVector" else [""]
+            ):
                 flat.append(name.replace("position", axis).replace("velocity", f"velocity_{axis}") if axis else name)
         in_c = c_struct("dermis_contact")
         self.assertEqual(in_c, [name for name in flat if name in in_c])
@@ -125,15 +145,17 @@ class Fields(unittest.TestCase):
         self.assertRegex(text, r"float64 velocity_x +# metres per second")
 
     def test_a_frame_of_counts(self):
-        names = self.named({name: field for name, field in cpp_struct("core/frames.hpp", "RawFrame").items()
-                            if name != "acquisition"})
+        names = self.named(
+            {name: field for name, field in cpp_struct("core/frames.hpp", "RawFrame").items() if name != "acquisition"}
+        )
         self.assertEqual(names, ["time_ns", "temperature_celsius", "supply_v", "counts"])
         self.assertEqual(python_properties("RawFrame")[:4], names)
         self.assertEqual(c_struct("dermis_raw_frame"), [*names, "count"])
 
     def test_a_frame_of_forces(self):
-        names = self.named({name: field for name, field in cpp_struct("core/frames.hpp", "ForceFrame").items()
-                            if name != "sums"})
+        names = self.named(
+            {name: field for name, field in cpp_struct("core/frames.hpp", "ForceFrame").items() if name != "sums"}
+        )
         self.assertEqual(len(names), 6)
         self.assertEqual(sorted(python_properties("ForceFrame")), sorted([*names, "total", "total_sigma"]))
         self.assertEqual(sorted(c_struct("dermis_force_frame")), sorted([*names, "count"]))
@@ -143,7 +165,10 @@ class Fields(unittest.TestCase):
 
     def test_how_a_frame_was_acquired(self):
         fields = cpp_struct("core/frames.hpp", "Acquisition") | {
-            name: field for name, field in cpp_struct("core/frames.hpp", "RawFrame").items() if name in ("time", "supply_v")}
+            name: field
+            for name, field in cpp_struct("core/frames.hpp", "RawFrame").items()
+            if name in ("time", "supply_v")
+        }
         expected = set()
         for field, name in zip(fields, self.named(fields)):
             expected |= {name, f"has_{field}"} if fields[field][0].startswith("std::optional") else {name}
@@ -153,8 +178,11 @@ class Fields(unittest.TestCase):
 class Defaults(unittest.TestCase):
     def expect(self, found, header, struct, names=None):
         fields = cpp_struct(header, struct)
-        defaults = {name: ast.literal_eval(default) for name, (_, default, _) in fields.items()
-                    if default and (names is None or name in names)}
+        defaults = {
+            name: ast.literal_eval(default)
+            for name, (_, default, _) in fields.items()
+            if default and (names is None or name in names)
+        }
         self.assertEqual(found, defaults)
 
     def test_of_contacts(self):
@@ -162,7 +190,9 @@ class Defaults(unittest.TestCase):
 
     def test_of_a_server(self):
         found = {name: value for name, value in python_defaults("serve").items() if value is not None}
-        self.expect({name: found[name] for name in ("host", "port")}, "stream/server.hpp", "ServerOptions", ("host", "port"))
+        self.expect(
+            {name: found[name] for name in ("host", "port")}, "stream/server.hpp", "ServerOptions", ("host", "port")
+        )
         self.assertEqual(found["token"], "")
 
     def test_the_stub_has_the_arguments_of_the_module(self):

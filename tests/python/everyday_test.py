@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """What people do with arrays of numpy, notebooks, asyncio and processes."""
+
 import asyncio
 import concurrent.futures
 import copy
@@ -35,8 +36,11 @@ class Everyday(workspace.CalibratedArray):
         cls.forces = dermis.Pipeline(cls.loaded).run(cls.recording)
 
     def test_counts_of_numpy_are_run_as_they_are(self):
-        beside = {"time_ns": self.recording.time_ns, "temperature_celsius": self.recording.temperature_celsius,
-                  "supply_v": self.recording.supply_v}
+        beside = {
+            "time_ns": self.recording.time_ns,
+            "temperature_celsius": self.recording.temperature_celsius,
+            "supply_v": self.recording.supply_v,
+        }
         forces = dermis.Pipeline(self.loaded).run(self.recording.counts, **beside)
         np.testing.assert_array_equal(forces.newtons, self.forces.newtons)
         again = dermis.Pipeline(self.loaded).run(self.recording.counts.tolist(), rate_hz=20.0)
@@ -61,8 +65,12 @@ class Everyday(workspace.CalibratedArray):
         counts = self.recording.counts[:3]
         mask = np.zeros(counts.shape, bool)
         mask[:, 2, 1] = True
-        forces = dermis.Pipeline(self.loaded).run(np.ma.array(counts.astype(np.uint16), mask=mask), rate_hz=10.0, supply_v=5.0)
-        expected = dermis.Pipeline(self.loaded).run(np.where(mask, np.nan, counts.astype(np.uint16)), rate_hz=10.0, supply_v=5.0)
+        forces = dermis.Pipeline(self.loaded).run(
+            np.ma.array(counts.astype(np.uint16), mask=mask), rate_hz=10.0, supply_v=5.0
+        )
+        expected = dermis.Pipeline(self.loaded).run(
+            np.where(mask, np.nan, counts.astype(np.uint16)), rate_hz=10.0, supply_v=5.0
+        )
         np.testing.assert_array_equal(forces.newtons, expected.newtons)
         self.assertTrue((forces.taxels[:, 2, 1] == dermis.TaxelStatus.INVALID).all())
         with self.assertRaisesRegex(TypeError, "time_ns: may not be masked"):
@@ -102,10 +110,12 @@ class Everyday(workspace.CalibratedArray):
 
     def test_wrong_types_are_told_in_one_line(self):
         some = np.array([1, 2])
-        for call, line in ((lambda: dermis.Pipeline(3), "model: is a Model or the path of its file"),
-                           (lambda: dermis.Pipeline(self.loaded).run(self.recording, 100), "name what comes beside, as rate_hz=100"),
-                           (lambda: self.forces[some], r"as in forces\.newtons\[index\]"),
-                           (lambda: self.recording[some], r"as in recording\.counts\[index\]")):
+        for call, line in (
+            (lambda: dermis.Pipeline(3), "model: is a Model or the path of its file"),
+            (lambda: dermis.Pipeline(self.loaded).run(self.recording, 100), "name what comes beside, as rate_hz=100"),
+            (lambda: self.forces[some], r"as in forces\.newtons\[index\]"),
+            (lambda: self.recording[some], r"as in recording\.counts\[index\]"),
+        ):
             with self.assertRaisesRegex(TypeError, f"^[^\\n]*{line}$"):
                 call()
         self.assertEqual(self.recording[np.int64(3)].time_ns, self.recording.time_ns[3])
@@ -120,7 +130,9 @@ class Everyday(workspace.CalibratedArray):
     def test_pipelines_go_to_other_processes(self):
         spawn = multiprocessing.get_context("spawn")
         with concurrent.futures.ProcessPoolExecutor(2, mp_context=spawn) as processes:
-            parts = list(processes.map(newtons_of, 2 * [dermis.Pipeline(self.loaded)], np.array_split(self.recording.counts, 2)))
+            parts = list(
+                processes.map(newtons_of, 2 * [dermis.Pipeline(self.loaded)], np.array_split(self.recording.counts, 2))
+            )
         expected = [newtons_of(dermis.Pipeline(self.loaded), part) for part in np.array_split(self.recording.counts, 2)]
         np.testing.assert_array_equal(np.concatenate(parts), np.concatenate(expected))
 
@@ -132,7 +144,10 @@ class Everyday(workspace.CalibratedArray):
             third = source.latest()
         self.assertGreaterEqual(second.sequence - first.sequence, 50)
         self.assertGreater(third.sequence, second.sequence)
-        with dermis.open("tcp-listen://127.0.0.1:0") as silent, self.assertRaisesRegex(TimeoutError, "tcp-listen://.*no frame"):
+        with (
+            dermis.open("tcp-listen://127.0.0.1:0") as silent,
+            self.assertRaisesRegex(TimeoutError, "tcp-listen://.*no frame"),
+        ):
             silent.latest(0.1)
         with dermis.open(self.frames) as source:
             self.assertEqual([source.latest().time_ns for _ in range(3)], self.recording.time_ns[:3].tolist())
@@ -148,6 +163,7 @@ class Everyday(workspace.CalibratedArray):
                 while True:
                     await asyncio.sleep(0.005)
                     turns += 1
+
             other = asyncio.create_task(turn())
             sequence = []
             with dermis.open("sim:contacts?rate=100", self.array) as source:
@@ -157,6 +173,7 @@ class Everyday(workspace.CalibratedArray):
                         break
             other.cancel()
             return sequence, turns
+
         sequence, turns = asyncio.run(read())
         self.assertEqual(sequence, list(range(sequence[0], sequence[0] + 30)))
         self.assertGreater(turns, 10)
@@ -165,6 +182,7 @@ class Everyday(workspace.CalibratedArray):
         async def read():
             with dermis.open(self.frames) as source:
                 return [raw.time_ns async for raw in source]
+
         self.assertEqual(asyncio.run(read()), self.recording.time_ns.tolist())
 
     def test_a_wait_that_asyncio_gives_up_is_over_at_once(self):
@@ -172,6 +190,7 @@ class Everyday(workspace.CalibratedArray):
             with dermis.open("tcp-listen://127.0.0.1:0") as source:
                 with self.assertRaises(asyncio.TimeoutError):
                     await asyncio.wait_for(anext(source), 0.1)
+
         asyncio.run(give_up())
         self.assertFalse([thread for thread in threading.enumerate() if "asyncio" in thread.name])
 
@@ -179,17 +198,23 @@ class Everyday(workspace.CalibratedArray):
         pipeline = dermis.Pipeline(self.loaded)
         force = pipeline.process(self.recording[5])
         with dermis.open(self.frames) as source:
-            for shown, words in ((self.loaded, "Model of 'pad' 5x4"), (pipeline, "Pipeline of 'pad' 5x4"),
-                                 (self.recording, r"Recording, 60 frames of 5x4, \d+\.\d{3} s"),
-                                 (self.recording[0:0], "Recording, 0 frames of 5x4, 0 s"),
-                                 (self.recording[5], r"RawFrame 5x4, \d+ to \d+ counts, at \d+\.\d{3} s"),
-                                 (force, r"ForceFrame 5x4, [\d.]+ \u00b1 [\d.e-]+ N, OK"),
-                                 (self.forces, r"Forces, 60 frames of 5x4, \d+\.\d{3} s, total at most [\d.]+ N"),
-                                 (source, r"Source '.*frames.csv' 5x4"), (dermis.Load(3, (1, 2), newtons=5), "Load 5 N on r1c2 in frame 3"),
-                                 (dermis.Load(3, (1, 2, 3, 3), pascals=2000), "Load 2000 Pa on r1c2:r3c3 in frame 3")):
+            for shown, words in (
+                (self.loaded, "Model of 'pad' 5x4"),
+                (pipeline, "Pipeline of 'pad' 5x4"),
+                (self.recording, r"Recording, 60 frames of 5x4, \d+\.\d{3} s"),
+                (self.recording[0:0], "Recording, 0 frames of 5x4, 0 s"),
+                (self.recording[5], r"RawFrame 5x4, \d+ to \d+ counts, at \d+\.\d{3} s"),
+                (force, r"ForceFrame 5x4, [\d.]+ \u00b1 [\d.e-]+ N, OK"),
+                (self.forces, r"Forces, 60 frames of 5x4, \d+\.\d{3} s, total at most [\d.]+ N"),
+                (source, r"Source '.*frames.csv' 5x4"),
+                (dermis.Load(3, (1, 2), newtons=5), "Load 5 N on r1c2 in frame 3"),
+                (dermis.Load(3, (1, 2, 3, 3), pascals=2000), "Load 2000 Pa on r1c2:r3c3 in frame 3"),
+            ):
                 self.assertRegex(repr(shown), f"^<dermis.{words}>$")
         some = np.concatenate([self.recording.counts[:3], np.full((2, 5, 4), np.nan)])
-        self.assertRegex(repr(dermis.Pipeline(self.loaded).run(some, rate_hz=10.0, supply_v=5.0)), "total at most .* N, 2 rejected>$")
+        self.assertRegex(
+            repr(dermis.Pipeline(self.loaded).run(some, rate_hz=10.0, supply_v=5.0)), "total at most .* N, 2 rejected>$"
+        )
         rejected = pipeline.process(np.full((5, 4), np.nan))
         self.assertRegex(repr(rejected), "^<dermis.ForceFrame 5x4, nan .* N, .*REJECTED.*>$")
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Every example of examples/python does what it says."""
+
 import os
 import subprocess
 import sys
@@ -15,8 +16,13 @@ EXAMPLES = workspace.Path(__file__).parents[2] / "examples/python"
 
 class Examples(workspace.CalibratedArray):
     def run_example(self, name, *arguments):
-        run = subprocess.run([sys.executable, EXAMPLES / name, *map(str, arguments)], capture_output=True, text=True,
-                             env=os.environ, timeout=120)
+        run = subprocess.run(
+            [sys.executable, EXAMPLES / name, *map(str, arguments)],
+            capture_output=True,
+            text=True,
+            env=os.environ,
+            timeout=120,
+        )
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
         return run.stdout
 
@@ -43,16 +49,23 @@ class Examples(workspace.CalibratedArray):
             self.run_example("imitation_dataset.py", self.frames, self.model, joints, self.folder / name)
         dataset = np.load(self.folder / "session.npz")
         recording = dermis.Recording.read(self.frames)
-        np.testing.assert_array_equal(dataset["newtons"], dermis.Pipeline(dermis.read_model(self.model)).run(recording).newtons)
+        np.testing.assert_array_equal(
+            dataset["newtons"], dermis.Pipeline(dermis.read_model(self.model)).run(recording).newtons
+        )
         np.testing.assert_allclose(dataset["joint_angles"][:, 0], np.minimum(recording.time_ns * 0.5e-9, 50), rtol=1e-6)
         self.assertGreater(dataset["contacts"]["force_n"].max(), 1.0)
         import h5py
+
         with h5py.File(self.folder / "session.h5") as file:
             np.testing.assert_array_equal(file["newtons"][()], dataset["newtons"])
 
     def test_calibrate_array(self):
-        names = {"frames.csv": "calibration/frames.csv", "loads.csv": "calibration/loads.csv",
-                 "test.csv": "multitouch/frames.csv", "test_loads.csv": "multitouch/loads.csv"}
+        names = {
+            "frames.csv": "calibration/frames.csv",
+            "loads.csv": "calibration/loads.csv",
+            "test.csv": "multitouch/frames.csv",
+            "test_loads.csv": "multitouch/loads.csv",
+        }
         for name, source in names.items():
             (self.folder / name).write_bytes((self.folder / source).read_bytes())
         said = self.run_example("calibrate_array.py", self.folder)

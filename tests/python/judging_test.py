@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Threats, recognition and suits give what the commands give."""
+
 import csv
 import io
 import json
@@ -47,13 +48,32 @@ class Judging(workspace.CalibratedArray):
         return path
 
     def test_threats_are_those_of_dermis_watch(self):
-        watch = subprocess.run([workspace.DERMIS, "watch", "--threats", self.threats(), "--model", self.model, "--in", self.frames,
-                                "--json"], capture_output=True, text=True)
-        expected = [(line["event"], line["threat"], line["quantity"]) for line in map(json.loads, watch.stdout.splitlines())
-                    if "threat" in line]
+        watch = subprocess.run(
+            [
+                workspace.DERMIS,
+                "watch",
+                "--threats",
+                self.threats(),
+                "--model",
+                self.model,
+                "--in",
+                self.frames,
+                "--json",
+            ],
+            capture_output=True,
+            text=True,
+        )
+        expected = [
+            (line["event"], line["threat"], line["quantity"])
+            for line in map(json.loads, watch.stdout.splitlines())
+            if "threat" in line
+        ]
         monitor = dermis.ThreatMonitor(self.threats(), self.loaded)
-        found = [("begins" if threat.stands else "ends", threat.name, threat.quantity)
-                 for force in self.forces() for threat in monitor.process(force)]
+        found = [
+            ("begins" if threat.stands else "ends", threat.name, threat.quantity)
+            for force in self.forces()
+            for threat in monitor.process(force)
+        ]
         self.assertEqual(found, expected)
         self.assertIn(("ends", "heavy", "total_force"), found)
 
@@ -73,8 +93,9 @@ class Judging(workspace.CalibratedArray):
         with self.assertRaisesRegex(dermis.BadInput, "edge"):
             dermis.ThreatMonitor(self.folder / "threats.toml", self.loaded)
         with self.assertRaisesRegex(ValueError, "another shape"):
-            other = dermis.ArrayDescription.from_toml('[array]\nrows = 1\ncols = 1\n[readout]\ncircuit = "force"\n'
-                                                      'adc_noise_counts = 0.1\n')
+            other = dermis.ArrayDescription.from_toml(
+                '[array]\nrows = 1\ncols = 1\n[readout]\ncircuit = "force"\nadc_noise_counts = 0.1\n'
+            )
             (self.folder / "one.toml").write_text(other.to_toml())
             force = dermis.Pipeline(dermis.read_model(self.folder / "one.toml")).process([[1.0]])
             dermis.ThreatMonitor(self.threats(), self.loaded).process(force)
@@ -96,8 +117,10 @@ class Judging(workspace.CalibratedArray):
         lines = list(csv.DictReader(io.StringIO(said)))
         self.assertEqual(len(lines), len(found))
         for line, answer in zip(lines, found):
-            self.assertEqual((line["class"], line["likeliest"], line["reason"], int(line["last"])),
-                             (answer.name, answer.likeliest, answer.reason, answer.frames[1]))
+            self.assertEqual(
+                (line["class"], line["likeliest"], line["reason"], int(line["last"])),
+                (answer.name, answer.likeliest, answer.reason, answer.frames[1]),
+            )
             self.assertAlmostEqual(float(line["probability"]), answer.probabilities[answer.likeliest], delta=1e-4)
         self.assertRegex(repr(found[0]), r"^<dermis.Recognition '\w+'.* in frames 0 to 0>$")
         with self.assertRaisesRegex(dermis.BadInput, "is not|holds no classes"):
@@ -105,16 +128,23 @@ class Judging(workspace.CalibratedArray):
 
     def test_all_arrays_of_a_suit_are_at_work(self):
         suit_toml = self.folder / "suit.toml"
-        suit_toml.write_text("".join(
-            f'[[array]]\nname = "{name}"\nfrom = "sim:contacts?rate=100&seed={seed}"\nmodel = "pad.safetensors"\n'
-            for name, seed in (("left", 1), ("right", 2))))
+        suit_toml.write_text(
+            "".join(
+                f'[[array]]\nname = "{name}"\nfrom = "sim:contacts?rate=100&seed={seed}"\nmodel = "pad.safetensors"\n'
+                for name, seed in (("left", 1), ("right", 2))
+            )
+        )
         with dermis.Suit(suit_toml) as suit:
-            self.assertEqual(([array.name for array in suit], len(suit), repr(suit)),
-                             (["left", "right"], 2, "<dermis.Suit of left, right>"))
+            self.assertEqual(
+                ([array.name for array in suit], len(suit), repr(suit)),
+                (["left", "right"], 2, "<dermis.Suit of left, right>"),
+            )
             suit.tare(force=True)
             self.assertTrue(suit["left"].pipeline.taring)
             forces = suit.latest(5.0)
-            self.assertEqual({name: force.newtons.shape for name, force in forces.items()}, {"left": (5, 4), "right": (5, 4)})
+            self.assertEqual(
+                {name: force.newtons.shape for name, force in forces.items()}, {"left": (5, 4), "right": (5, 4)}
+            )
             contacts = suit["right"].contacts.process(forces["right"])
             self.assertIsInstance(contacts, list)
         with self.assertRaisesRegex(ValueError, "closed"):

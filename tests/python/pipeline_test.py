@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Forces from Python are those of the command line, whatever holds the counts; what cannot be used is refused."""
+
 import csv
 import pickle
 import re
@@ -70,8 +71,14 @@ class Pipeline(workspace.CalibratedArray):
         expected = dermis.Pipeline(self.loaded).process(raw).newtons
         strided = np.zeros((10, 8))
         strided[::2, ::2] = raw.counts
-        for counts in (raw.counts.astype(np.uint16), raw.counts.astype(np.float64), raw.counts.tolist(),
-                       np.asfortranarray(raw.counts), strided[::2, ::2], raw.counts.astype(">f4")):
+        for counts in (
+            raw.counts.astype(np.uint16),
+            raw.counts.astype(np.float64),
+            raw.counts.tolist(),
+            np.asfortranarray(raw.counts),
+            strided[::2, ::2],
+            raw.counts.astype(">f4"),
+        ):
             force = dermis.Pipeline(self.loaded).process(counts, raw.temperature_celsius, raw.supply_v, raw.time_ns)
             np.testing.assert_array_equal(force.newtons, expected)
 
@@ -95,11 +102,14 @@ class Pipeline(workspace.CalibratedArray):
 
     def test_unusable_counts_are_refused_by_their_name(self):
         pipeline = dermis.Pipeline(self.loaded)
-        for counts, error, text in ((np.zeros((4, 5)), ValueError, "counts: has the shape (4, 5), expected is (5, 4)"),
-                                    (np.zeros(20), ValueError, "counts: has the shape (20,)"),
-                                    (np.zeros((5, 4), complex), TypeError, "dtype complex128"),
-                                    ("counts", TypeError, "counts: "), (None, TypeError, "counts: "),
-                                    ([[1, 2], [3]], TypeError, "counts: ")):
+        for counts, error, text in (
+            (np.zeros((4, 5)), ValueError, "counts: has the shape (4, 5), expected is (5, 4)"),
+            (np.zeros(20), ValueError, "counts: has the shape (20,)"),
+            (np.zeros((5, 4), complex), TypeError, "dtype complex128"),
+            ("counts", TypeError, "counts: "),
+            (None, TypeError, "counts: "),
+            ([[1, 2], [3]], TypeError, "counts: "),
+        ):
             with self.subTest(counts=counts), self.assertRaisesRegex(error, "^.*" + re.escape(text)):
                 pipeline.process(counts)
 
@@ -111,7 +121,11 @@ class Pipeline(workspace.CalibratedArray):
     def test_a_supply_that_cannot_be_is_told_with_what_is_expected(self):
         pipeline = dermis.Pipeline(self.loaded)
         counts = self.recording.counts[0]
-        for supply, flag in ((5.0, 0), (2.0, dermis.FrameStatus.SUPPLY_IMPLAUSIBLE), (5.7, dermis.FrameStatus.SUPPLY_CLAMPED)):
+        for supply, flag in (
+            (5.0, 0),
+            (2.0, dermis.FrameStatus.SUPPLY_IMPLAUSIBLE),
+            (5.7, dermis.FrameStatus.SUPPLY_CLAMPED),
+        ):
             status = pipeline.process(counts, temperature=25.0, supply=supply).status
             flags = dermis.FrameStatus.SUPPLY_IMPLAUSIBLE | dermis.FrameStatus.SUPPLY_CLAMPED
             self.assertEqual((status & flags, pipeline.why_rejected), (flag, ""), supply)
@@ -169,13 +183,13 @@ class Pipeline(workspace.CalibratedArray):
         copied = pickle.loads(pickle.dumps(contacts))
         self.assertEqual(copied, contacts)
         self.assertEqual((copied[0].force_n, copied[0].position_m), (contacts[0].force_n, contacts[0].position_m))
-        for result, members in ((force, ("time_ns", "status", "newtons", "sigma_newtons", "signal_to_noise", "taxels",
-                                         "total")),
-                                (self.recording[3], ("time_ns", "temperature_celsius", "supply_v", "counts")),
-                                (self.recording, ("time_ns", "temperature_celsius", "supply_v", "counts", "name")),
-                                (pipeline.run(self.recording), ("time_ns", "status", "newtons", "taxels", "total",
-                                                                "total_sigma")),
-                                (self.loaded.array, ("name", "rows", "cols", "circuit", "taxel_area_m2"))):
+        for result, members in (
+            (force, ("time_ns", "status", "newtons", "sigma_newtons", "signal_to_noise", "taxels", "total")),
+            (self.recording[3], ("time_ns", "temperature_celsius", "supply_v", "counts")),
+            (self.recording, ("time_ns", "temperature_celsius", "supply_v", "counts", "name")),
+            (pipeline.run(self.recording), ("time_ns", "status", "newtons", "taxels", "total", "total_sigma")),
+            (self.loaded.array, ("name", "rows", "cols", "circuit", "taxel_area_m2")),
+        ):
             back = pickle.loads(pickle.dumps(result))
             for member in members:
                 np.testing.assert_array_equal(getattr(back, member), getattr(result, member), member)

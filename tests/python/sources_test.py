@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Frames of devices, recordings and the simulator, and a server in the background."""
+
 import os
 import signal
 import threading
@@ -63,8 +64,13 @@ class Sources(workspace.CalibratedArray):
 class Recordings(workspace.CalibratedArray):
     def test_every_format_gives_back_what_was_written(self):
         recording = dermis.Recording.read(self.frames)
-        described = dermis.Recording(recording.counts, time_ns=recording.time_ns, supply_v=recording.supply_v,
-                                     temperature_celsius=recording.temperature_celsius, array=self.array)
+        described = dermis.Recording(
+            recording.counts,
+            time_ns=recording.time_ns,
+            supply_v=recording.supply_v,
+            temperature_celsius=recording.temperature_celsius,
+            array=self.array,
+        )
         for name in ("a.mcap", "a.h5", "a.csv"):
             described.write(self.folder / name)
             back = dermis.Recording.read(self.folder / name)
@@ -98,8 +104,14 @@ class Recordings(workspace.CalibratedArray):
         counts = np.zeros((3, 5, 4))
         np.testing.assert_array_equal(dermis.Recording(counts, rate_hz=200.0).time_ns, [0, 5_000_000, 10_000_000])
         self.assertTrue(np.isnan(dermis.Recording(counts, rate_hz=1.0).supply_v).all())
-        for wrong in ({}, {"rate_hz": 1.0, "time_ns": [0, 1, 2]}, {"rate_hz": 0.0}, {"time_ns": [0, 1]},
-                      {"rate_hz": 1.0, "supply_v": [5.0, 5.0]}, {"rate_hz": 1.0, "array": self.array, "counts": counts[:, 1:]}):
+        for wrong in (
+            {},
+            {"rate_hz": 1.0, "time_ns": [0, 1, 2]},
+            {"rate_hz": 0.0},
+            {"time_ns": [0, 1]},
+            {"rate_hz": 1.0, "supply_v": [5.0, 5.0]},
+            {"rate_hz": 1.0, "array": self.array, "counts": counts[:, 1:]},
+        ):
             arguments = {"counts": counts, **wrong}
             with self.subTest(wrong=wrong), self.assertRaises(ValueError):
                 dermis.Recording(**arguments)

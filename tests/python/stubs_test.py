@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """The stubs say what is there: mypy holds them to the module, and the examples to the stubs."""
+
 import ast
 import re
 import subprocess
@@ -22,19 +23,25 @@ class Stubs(unittest.TestCase):
         self.run_mypy("mypy.stubtest", "dermis", "--allowlist", str(Path(__file__).with_name("stubtest_allowed.txt")))
 
     def test_examples_agree_with_the_stubs(self):
-        self.run_mypy("mypy", "--strict", "--ignore-missing-imports", *map(str, sorted((ROOT / "examples/python").glob("*.py"))))
+        self.run_mypy(
+            "mypy", "--strict", "--ignore-missing-imports", *map(str, sorted((ROOT / "examples/python").glob("*.py")))
+        )
 
     def test_defaults_of_the_stubs_are_those_of_the_library(self):
         compared = 0
         for function, owner in functions(ast.parse((ROOT / "python/dermis/__init__.pyi").read_text())):
             bound = getattr(getattr(dermis, owner) if owner else dermis, function.name)
-            defaults = [*zip(function.args.args[::-1], function.args.defaults[::-1]),
-                        *zip(function.args.kwonlyargs, function.args.kw_defaults)]
+            defaults = [
+                *zip(function.args.args[::-1], function.args.defaults[::-1]),
+                *zip(function.args.kwonlyargs, function.args.kw_defaults),
+            ]
             for argument, default in defaults:
                 if default is None or not isinstance(bound.__doc__, str) or "->" not in bound.__doc__:
                     continue
                 said = re.findall(rf"\b{argument.arg}: [^=]+? = ([^,)]+)", bound.__doc__)
-                self.assertIn(ast.literal_eval(default), [ast.literal_eval(value) for value in said], f"{owner} {function.name}")
+                self.assertIn(
+                    ast.literal_eval(default), [ast.literal_eval(value) for value in said], f"{owner} {function.name}"
+                )
                 compared += 1
         self.assertGreater(compared, 20)
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """A calibrated array in a folder that goes when the test ends."""
+
 import os
 import subprocess
 import sys
@@ -27,8 +28,12 @@ supply_v = 5.0
 
 
 def dermis(*arguments):
-    environment = {name: value for name, value in os.environ.items() if name != "LD_PRELOAD"}  # of the sanitizers: it has them
-    return subprocess.run([DERMIS, *map(str, arguments)], check=True, capture_output=True, text=True, env=environment).stdout
+    environment = {
+        name: value for name, value in os.environ.items() if name != "LD_PRELOAD"
+    }  # of the sanitizers: it has them
+    return subprocess.run(
+        [DERMIS, *map(str, arguments)], check=True, capture_output=True, text=True, env=environment
+    ).stdout
 
 
 class CalibratedArray(unittest.TestCase):
@@ -45,8 +50,17 @@ class CalibratedArray(unittest.TestCase):
         cls.model = cls.folder / "pad.safetensors"
         cls.frames = cls.folder / "multitouch/frames.csv"
         cls.loads = cls.folder / "multitouch/loads.csv"
-        dermis("calibrate", "--array", cls.array, "--frames", cls.folder / "calibration/frames.csv",
-               "--loads", cls.folder / "calibration/loads.csv", "--out", cls.model)
+        dermis(
+            "calibrate",
+            "--array",
+            cls.array,
+            "--frames",
+            cls.folder / "calibration/frames.csv",
+            "--loads",
+            cls.folder / "calibration/loads.csv",
+            "--out",
+            cls.model,
+        )
 
     @classmethod
     def tearDownClass(cls):

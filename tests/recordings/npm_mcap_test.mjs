@@ -19,7 +19,10 @@ execFileSync(sample, ["write", folder]);
 const expected = JSON.parse(readFileSync(join(folder, "expected.json"), "utf8"));
 
 const lines = (...command) =>
-  execFileSync(sample, command, { encoding: "utf8", maxBuffer: 1 << 28, stdio: "pipe" }).split("\n").filter(Boolean).map(JSON.parse);
+  execFileSync(sample, command, { encoding: "utf8", maxBuffer: 1 << 28, stdio: "pipe" })
+    .split("\n")
+    .filter(Boolean)
+    .map(JSON.parse);
 
 const nanos = (stamp) => BigInt(stamp.sec) * 1_000_000_000n + BigInt(stamp.nanosec);
 
@@ -34,9 +37,7 @@ const decoded = {
     assert.ok(words || message.encoding === "32FC1");
     assert.equal(message.step, 9 * (words ? 2 : 4));
     const buffer = message.data.slice().buffer;
-    const bits = words
-      ? new Uint32Array(Float32Array.from(new Uint16Array(buffer)).buffer)
-      : new Uint32Array(buffer);
+    const bits = words ? new Uint32Array(Float32Array.from(new Uint16Array(buffer)).buffer) : new Uint32Array(buffer);
     assert.deepEqual(Array.from(bits), frame.counts);
     assert.equal(String(nanos(message.header.stamp)), frame.time);
   },
@@ -59,14 +60,29 @@ const decoded = {
     assert.deepEqual({ ...message.cell_size }, { x: 0.005, y: 0.004 });
     assert.deepEqual({ ...message.pose.orientation }, { x: 0, y: 0, z: 0, w: 1 });
     assert.equal(message.row_stride, 9 * message.cell_stride);
-    assert.deepEqual(message.fields.map((field) => [field.name, field.type]),
-                     [["newtons", 7], ["sigma_newtons", 7], ["status", 1]]);
+    assert.deepEqual(
+      message.fields.map((field) => [field.name, field.type]),
+      [
+        ["newtons", 7],
+        ["sigma_newtons", 7],
+        ["status", 1],
+      ],
+    );
     const view = new DataView(message.data.buffer, message.data.byteOffset, message.data.byteLength);
     const cells = Array.from({ length: 63 }, (_, i) => i * message.cell_stride);
     const [newtons, sigma, status] = message.fields.map((field) => field.offset);
-    assert.deepEqual(cells.map((cell) => view.getUint32(cell + newtons, true)), frame.newtons);
-    assert.deepEqual(cells.map((cell) => view.getUint32(cell + sigma, true)), frame.sigma_newtons);
-    assert.deepEqual(cells.map((cell) => view.getUint8(cell + status)), frame.status);
+    assert.deepEqual(
+      cells.map((cell) => view.getUint32(cell + newtons, true)),
+      frame.newtons,
+    );
+    assert.deepEqual(
+      cells.map((cell) => view.getUint32(cell + sigma, true)),
+      frame.sigma_newtons,
+    );
+    assert.deepEqual(
+      cells.map((cell) => view.getUint8(cell + status)),
+      frame.status,
+    );
   },
   "dermis_msgs/msg/FrameStatus": (message, frame) => {
     assert.equal(message.status, frame.force_status);
@@ -129,7 +145,10 @@ for (const compression of ["none", "lz4", "zstd"]) {
     const streamed = npm.readStreamed(bytes);
     const { reader, messages } = await npm.readIndexed(path);
     assert.ok(streamed.complete);
-    assert.deepEqual(streamed.map((message) => message.data), messages.map((message) => message.data));
+    assert.deepEqual(
+      streamed.map((message) => message.data),
+      messages.map((message) => message.data),
+    );
     const dataEnd = Number(reader.footer.summaryStart) - 13;
     assert.equal(bytes[dataEnd], 0x0f);
     assert.notEqual(streamed.dataCrc, 0);
@@ -177,14 +196,29 @@ async function written(messages, options) {
   await writer.start({ profile: "ros2", library: "npm" });
   const definition = "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\n";
   const schemaId = await writer.registerSchema({
-    name: "sensor_msgs/msg/Image", encoding: "ros2msg", data: new TextEncoder().encode(definition) });
+    name: "sensor_msgs/msg/Image",
+    encoding: "ros2msg",
+    data: new TextEncoder().encode(definition),
+  });
   const channels = new Map();
   for (const topic of new Set(messages.map(([name]) => name))) {
-    channels.set(topic, await writer.registerChannel({
-      schemaId, topic, messageEncoding: "cdr", metadata: new Map([["offered_qos_profiles", ""]]) }));
+    channels.set(
+      topic,
+      await writer.registerChannel({
+        schemaId,
+        topic,
+        messageEncoding: "cdr",
+        metadata: new Map([["offered_qos_profiles", ""]]),
+      }),
+    );
   }
   await writer.addAttachment({
-    name: "note.txt", mediaType: "text/plain", logTime: 1n, createTime: 2n, data: new TextEncoder().encode("note") });
+    name: "note.txt",
+    mediaType: "text/plain",
+    logTime: 1n,
+    createTime: 2n,
+    data: new TextEncoder().encode("note"),
+  });
   for (const [sequence, [topic, logTime, data]] of messages.entries()) {
     await writer.addMessage({ channelId: channels.get(topic), sequence, logTime, publishTime: logTime + 1n, data });
   }
@@ -199,14 +233,14 @@ function image(number) {
   const bytes = new Uint8Array(4 + 16 + 8 + 12 + 4 + 4 + 4 + 12);
   const view = new DataView(bytes.buffer);
   bytes.set([0, 1, 0, 0]);
-  view.setUint32(4, 5, true);  // stamp
+  view.setUint32(4, 5, true); // stamp
   view.setUint32(12, 2, true);
   bytes.set(new TextEncoder().encode("f"), 16);
-  view.setUint32(20, 2, true);  // height
+  view.setUint32(20, 2, true); // height
   view.setUint32(24, 3, true);
   view.setUint32(28, 7, true);
   bytes.set(new TextEncoder().encode("mono16"), 32);
-  view.setUint32(40, 6, true);  // step, after is_bigendian at 39
+  view.setUint32(40, 6, true); // step, after is_bigendian at 39
   view.setUint32(44, 12, true);
   bytes.set(new Uint8Array(words.buffer), 48);
   return [bytes.subarray(0, 60), Array.from(new Uint32Array(Float32Array.from(words).buffer))];
@@ -220,8 +254,14 @@ const compressors = {
 
 const layouts = { "with summary": {}, "without chunks": { useChunks: false } };
 layouts["without summary"] = {
-  useStatistics: false, useSummaryOffsets: false, repeatSchemas: false, repeatChannels: false,
-  useAttachmentIndex: false, useMetadataIndex: false, useMessageIndex: false, useChunkIndex: false,
+  useStatistics: false,
+  useSummaryOffsets: false,
+  repeatSchemas: false,
+  repeatChannels: false,
+  useAttachmentIndex: false,
+  useMetadataIndex: false,
+  useMessageIndex: false,
+  useChunkIndex: false,
 };
 
 for (const [layout, options] of Object.entries(layouts)) {
@@ -237,13 +277,24 @@ for (const [layout, options] of Object.entries(layouts)) {
       assert.equal(ours.length, messages.length);
       for (const [sequence, [topic, logTime, data]] of messages.entries()) {
         assert.deepEqual(ours[sequence], {
-          topic, schema: "sensor_msgs/msg/Image", sequence, log_time: String(logTime),
-          publish_time: String(logTime + 1n), data: Array.from(data) });
+          topic,
+          schema: "sensor_msgs/msg/Image",
+          sequence,
+          log_time: String(logTime),
+          publish_time: String(logTime + 1n),
+          data: Array.from(data),
+        });
       }
       const frames = lines("frames", path);
       const camera = messages.map((message, i) => [message, i]).filter(([[topic]]) => topic === "/camera");
-      assert.deepEqual(frames.map((frame) => frame.counts), camera.map(([, i]) => image(i)[1]));
-      assert.deepEqual(frames.map((frame) => frame.time), camera.map(([message]) => String(message[1])));
+      assert.deepEqual(
+        frames.map((frame) => frame.counts),
+        camera.map(([, i]) => image(i)[1]),
+      );
+      assert.deepEqual(
+        frames.map((frame) => frame.time),
+        camera.map(([message]) => String(message[1])),
+      );
       const [recovery] = lines("recover", path, join(folder, "again.mcap"));
       assert.equal(recovery.messages, messages.length);
       assert.equal(recovery.lost_bytes, 0);
@@ -257,11 +308,15 @@ for (const [layout, options] of Object.entries(layouts)) {
 
 test("npm's file whose chunks stand in another order than their times: read by time", async () => {
   const messages = [3, 1, 2, 0].flatMap((block) =>
-    Array.from({ length: 10 }, (_, i) => ["/camera", BigInt(1000 * block + i), image(10 * block + i)[0]]));
+    Array.from({ length: 10 }, (_, i) => ["/camera", BigInt(1000 * block + i), image(10 * block + i)[0]]),
+  );
   const path = join(folder, "unordered.mcap");
   writeFileSync(path, await written(messages, { chunkSize: 1 }));
   const times = lines("messages", path).map((message) => Number(message.log_time));
-  assert.deepEqual(times, times.slice().sort((a, b) => a - b));
+  assert.deepEqual(
+    times,
+    times.slice().sort((a, b) => a - b),
+  );
   assert.equal(times.length, 40);
 });
 
@@ -272,7 +327,8 @@ test("our definitions have the fields of those of ROS 2 and Foxglove", async () 
     return npm.parseDefinition(new TextDecoder().decode(schema.data), { ros2: true });
   };
   const fields = (definition) =>
-    definition.definitions.filter((field) => !field.isConstant)
+    definition.definitions
+      .filter((field) => !field.isConstant)
       .map((field) => [field.name, field.type.replace("/msg/", "/"), field.isArray ?? false]);
   const named = (definitions, name) =>
     definitions.find((definition) => definition.name?.replace("/msg/", "/") === name);
@@ -283,7 +339,9 @@ test("our definitions have the fields of those of ROS 2 and Foxglove", async () 
   }
   const grid = own("foxglove_msgs/msg/Grid");
   const theirs = npm.parseDefinition(
-    npm.foxglove.generateRosMsgMergedSchema(npm.foxglove.foxgloveMessageSchemas.Grid, { rosVersion: 2 }), { ros2: true });
+    npm.foxglove.generateRosMsgMergedSchema(npm.foxglove.foxgloveMessageSchemas.Grid, { rosVersion: 2 }),
+    { ros2: true },
+  );
   assert.deepEqual(fields(grid[0]), fields(theirs[0]));
   for (const definition of theirs.slice(1)) {
     assert.deepEqual(fields(named(grid, definition.name)), fields(definition), definition.name);

@@ -49,8 +49,17 @@ function table(name) {
 function prepare() {
   writeFileSync(path("array.toml"), ARRAY);
   run("simulate", "--array", path("array.toml"), "--scene", "calibration", "--out", path("cal"));
-  run("calibrate", "--array", path("array.toml"), "--frames", path("cal/frames.csv"), "--loads", path("cal/loads.csv"),
-    "--out", path("model.safetensors"));
+  run(
+    "calibrate",
+    "--array",
+    path("array.toml"),
+    "--frames",
+    path("cal/frames.csv"),
+    "--loads",
+    path("cal/loads.csv"),
+    "--out",
+    path("model.safetensors"),
+  );
   run("simulate", "--array", path("array.toml"), "--scene", "contacts", "--frames", "6000", "--out", path("in"));
   run("convert", path("in/frames.csv"), path("rec.mcap"), "--array", path("array.toml"));
   run("run", "--model", path("model.safetensors"), "--in", path("rec.mcap"), "--out", path("forces.csv"));
@@ -58,8 +67,11 @@ function prepare() {
 
 /** The server and the port that it says. */
 async function serve() {
-  const server = spawn(dermis, ["serve", "--from", path("rec.mcap"), "--model", path("model.safetensors"), "--port", "0"],
-    { stdio: ["ignore", "ignore", "pipe"], cwd: folder });
+  const server = spawn(
+    dermis,
+    ["serve", "--from", path("rec.mcap"), "--model", path("model.safetensors"), "--port", "0"],
+    { stdio: ["ignore", "ignore", "pipe"], cwd: folder },
+  );
   let said = "";
   for await (const chunk of server.stderr) {
     said += chunk;
@@ -70,7 +82,9 @@ async function serve() {
 }
 
 function connect(port) {
-  const client = new FoxgloveClient({ ws: new WebSocket(`ws://127.0.0.1:${port}/`, [FoxgloveClient.SUPPORTED_SUBPROTOCOL]) });
+  const client = new FoxgloveClient({
+    ws: new WebSocket(`ws://127.0.0.1:${port}/`, [FoxgloveClient.SUPPORTED_SUBPROTOCOL]),
+  });
   const channels = new Map();
   const services = new Map();
   client.on("advertise", (some) => some.forEach((channel) => channels.set(channel.topic, channel)));
@@ -90,29 +104,41 @@ const nanos = ({ sec, nanosec }) => sec * 1e9 + nanosec;
 
 function gridFields(grid) {
   const view = new DataView(grid.data.buffer, grid.data.byteOffset, grid.data.byteLength);
-  return Object.fromEntries(grid.fields.map(({ name, offset, type }) => [name,
-    Array.from({ length: TAXELS }, (_, taxel) => {
-      const place = taxel * grid.cell_stride + offset;
-      return type === 7 ? view.getFloat32(place, true) : view.getUint8(place);
-    })]));
+  return Object.fromEntries(
+    grid.fields.map(({ name, offset, type }) => [
+      name,
+      Array.from({ length: TAXELS }, (_, taxel) => {
+        const place = taxel * grid.cell_stride + offset;
+        return type === 7 ? view.getFloat32(place, true) : view.getUint8(place);
+      }),
+    ]),
+  );
 }
 
 async function call({ client, services }, name, request) {
   const service = services.get(name);
   const answer = new Promise((resolve, reject) => {
-    client.on("serviceCallResponse", (response) => resolve(JSON.parse(Buffer.from(response.data.buffer, response.data.byteOffset, response.data.byteLength))));
+    client.on("serviceCallResponse", (response) =>
+      resolve(JSON.parse(Buffer.from(response.data.buffer, response.data.byteOffset, response.data.byteLength))),
+    );
     client.on("serviceCallFailure", ({ message }) => reject(new Error(message)));
   });
-  client.sendServiceCallRequest({ serviceId: service.id, callId: 1, encoding: "json",
-    data: new Uint8Array(Buffer.from(JSON.stringify(request))) });
+  client.sendServiceCallRequest({
+    serviceId: service.id,
+    callId: 1,
+    encoding: "json",
+    data: new Uint8Array(Buffer.from(JSON.stringify(request))),
+  });
   return answer;
 }
 
 /** All parameters as the server tells them after these were set. */
 async function setParameters({ client }, parameters) {
-  const answer = new Promise((resolve) => client.on("parameterValues", ({ parameters: values, id }) => {
-    if (id === "told") resolve(new Map(values.map(({ name, value }) => [name, value])));
-  }));
+  const answer = new Promise((resolve) =>
+    client.on("parameterValues", ({ parameters: values, id }) => {
+      if (id === "told") resolve(new Map(values.map(({ name, value }) => [name, value])));
+    }),
+  );
   client.setParameters(parameters);
   client.getParameters([], "told");
   return answer;
@@ -120,7 +146,8 @@ async function setParameters({ client }, parameters) {
 
 function checkImages(seen, frames, forces, suit) {
   const rowAt = new Map(forces.times.map((time, row) => [Math.round(time * 1e4), row]));
-  const rowOf = (message) => rowAt.get(Math.round(nanos(message.header?.stamp ?? message.timestamp ?? message.stamp) / 1e5));
+  const rowOf = (message) =>
+    rowAt.get(Math.round(nanos(message.header?.stamp ?? message.timestamp ?? message.stamp) / 1e5));
   for (const image of seen.get("/small/raw")) {
     const counts = new Uint16Array(image.data.slice().buffer);
     assert.deepEqual(Array.from(counts), frames.rows[rowOf(image)], "counts");
@@ -156,7 +183,10 @@ async function checkRecording(connection, frames) {
   const after = await setParameters(connection, [{ name: "/recording", value: false }]);
   assert.equal(after.get("/recording"), false);
   const file = after.get("/recording/file");
-  assert.deepEqual(readdirSync(folder).filter((name) => name.startsWith("dermis-")), [file]);
+  assert.deepEqual(
+    readdirSync(folder).filter((name) => name.startsWith("dermis-")),
+    [file],
+  );
   await until("the end of the recording", () => JSON.parse(run("info", "--json", path(file))).complete);
   run("convert", path(file), path("recorded.csv"));
   const recorded = table("recorded.csv");
@@ -168,9 +198,16 @@ async function checkRecording(connection, frames) {
 async function checkRefusals(connection) {
   const lines = [];
   connection.client.on("status", ({ message }) => lines.push(message));
-  const values = await setParameters(connection, [{ name: "/contacts/onset_sigma", value: -1 }, { name: "/stream/rate_hz", value: 0 },
-    { name: "/nothing", value: 1 }, { name: "/recording/file", value: "elsewhere.mcap" }]);
-  assert.deepEqual([values.get("/contacts/onset_sigma"), values.get("/stream/rate_hz"), values.has("/nothing")], [5, 1000, false]);
+  const values = await setParameters(connection, [
+    { name: "/contacts/onset_sigma", value: -1 },
+    { name: "/stream/rate_hz", value: 0 },
+    { name: "/nothing", value: 1 },
+    { name: "/recording/file", value: "elsewhere.mcap" },
+  ]);
+  assert.deepEqual(
+    [values.get("/contacts/onset_sigma"), values.get("/stream/rate_hz"), values.has("/nothing")],
+    [5, 1000, false],
+  );
   await until("the reasons", () => lines.length >= 4);
   assert.match(lines.join("\n"), /onset_sigma.*\n.*rate_hz.*\n.*nothing/);
 }
@@ -184,9 +221,15 @@ async function test() {
     const connection = connect(port);
     const { client, channels } = connection;
     await until("channels", () => channels.size >= 9 && connection.services.size >= 6);
-    const values = await setParameters(connection, [{ name: "/drift/track", value: false }, { name: "/tare", value: false },
-      { name: "/stream/rate_hz", value: 1000 }]);
-    assert.deepEqual([values.get("/drift/track"), values.get("/stream/rate_hz"), values.get("/recording")], [false, 1000, false]);
+    const values = await setParameters(connection, [
+      { name: "/drift/track", value: false },
+      { name: "/tare", value: false },
+      { name: "/stream/rate_hz", value: 1000 },
+    ]);
+    assert.deepEqual(
+      [values.get("/drift/track"), values.get("/stream/rate_hz"), values.get("/recording")],
+      [false, 1000, false],
+    );
     await new Promise((resolve) => setTimeout(resolve, 200)); // the frame under way may have the old ones
 
     const seen = new Map();
@@ -194,15 +237,22 @@ async function test() {
     for (const channel of channels.values()) {
       assert.deepEqual([channel.encoding, channel.schemaEncoding], ["cdr", "ros2msg"], channel.topic);
       seen.set(channel.topic, []);
-      readers.set(client.subscribe(channel.id), { topic: channel.topic, reader: new MessageReader(parse(channel.schema, { ros2: true })) });
+      readers.set(client.subscribe(channel.id), {
+        topic: channel.topic,
+        reader: new MessageReader(parse(channel.schema, { ros2: true })),
+      });
     }
     client.on("message", ({ subscriptionId, data }) => {
       const { topic, reader } = readers.get(subscriptionId);
       seen.get(topic).push(reader.readMessage(data));
     });
     assert.deepEqual(await call(connection, "/calibration/start", { array: "small", weights_n: [1, 5] }), {});
-    await until("messages", () => [...seen].every(([topic, messages]) =>
-      messages.length >= (topic.startsWith("/small") || topic === "/contacts" ? FRAMES_WANTED : 2)));
+    await until("messages", () =>
+      [...seen].every(
+        ([topic, messages]) =>
+          messages.length >= (topic.startsWith("/small") || topic === "/contacts" ? FRAMES_WANTED : 2),
+      ),
+    );
     assert.deepEqual(await call(connection, "/calibration/cancel", {}), {});
     await assert.rejects(call(connection, "/calibration/skip", {}), /no calibration/);
     const frames = table("in/frames.csv");

@@ -9,7 +9,10 @@ import { createServer } from "node:net";
 import { describe, it } from "node:test";
 import { arrayToml, bench, browser, openPage, shown, useBench, VIEWS } from "./harness.mjs";
 
-const AXE = readFileSync(createRequire(new URL("../npm/package.json", import.meta.url)).resolve("axe-core/axe.min.js"), "utf8");
+const AXE = readFileSync(
+  createRequire(new URL("../npm/package.json", import.meta.url)).resolve("axe-core/axe.min.js"),
+  "utf8",
+);
 const MOST_TABS = 200;
 
 useBench();
@@ -20,7 +23,9 @@ async function findings(page) {
   return page.evaluate(async () => {
     const { violations } = await globalThis.axe.run(document, { resultTypes: ["violations"] });
     const grave = violations.filter(({ impact }) => impact === "serious" || impact === "critical");
-    return grave.flatMap(({ id, nodes }) => nodes.map(({ target, failureSummary }) => `${id}: ${target.join(" ")}: ${failureSummary.split("\n")[1]?.trim()}`));
+    return grave.flatMap(({ id, nodes }) =>
+      nodes.map(({ target, failureSummary }) => `${id}: ${target.join(" ")}: ${failureSummary.split("\n")[1]?.trim()}`),
+    );
   });
 }
 
@@ -86,10 +91,14 @@ for (const colorScheme of ["light", "dark"]) {
 
     it("finds nothing serious where an array is not calibrated, or not described", async () => {
       writeFileSync(bench.path("plain.toml"), arrayToml("plain", 4, 5));
-      await showArray(["--from", "sim:contacts?rate=100", "--model", bench.path("plain.toml")], colorScheme, async (page) => {
-        await page.locator("[data-role=uncalibrated]").waitFor();
-        assert.deepEqual(await findings(page), []);
-      });
+      await showArray(
+        ["--from", "sim:contacts?rate=100", "--model", bench.path("plain.toml")],
+        colorScheme,
+        async (page) => {
+          await page.locator("[data-role=uncalibrated]").waitFor();
+          assert.deepEqual(await findings(page), []);
+        },
+      );
       const nothing = await bench.serve("--port", "0");
       try {
         const page = await openPage(browser, nothing.url);
@@ -118,7 +127,9 @@ for (const colorScheme of ["light", "dark"]) {
 
 /** In the page: what the Tab key must reach, each with a number; a group of radio buttons is one stop. */
 function numberStops() {
-  const stops = [...document.querySelectorAll("a[href], button:enabled, input:enabled, select:enabled, summary, [tabindex='0']")].filter((stop) => stop.checkVisibility({ visibilityProperty: true }));
+  const stops = [
+    ...document.querySelectorAll("a[href], button:enabled, input:enabled, select:enabled, summary, [tabindex='0']"),
+  ].filter((stop) => stop.checkVisibility({ visibilityProperty: true }));
   const groups = new Set();
   let count = 0;
   const names = [];
@@ -136,7 +147,11 @@ function focused() {
   const target = document.activeElement;
   const stop = target.type === "radio" ? document.querySelector(`input[name="${target.name}"][data-stop]`) : target;
   const { outlineStyle, outlineWidth } = getComputedStyle(target);
-  return { stop: stop?.dataset.stop, isSeen: outlineStyle !== "none" && parseFloat(outlineWidth) >= 1, what: target.outerHTML.slice(0, 80) };
+  return {
+    stop: stop?.dataset.stop,
+    isSeen: outlineStyle !== "none" && parseFloat(outlineWidth) >= 1,
+    what: target.outerHTML.slice(0, 80),
+  };
 }
 
 describe("the keyboard", () => {
@@ -168,7 +183,8 @@ describe("the keyboard", () => {
       await page.keyboard.press("1");
       await page.locator("[data-role=draw-region]").press("Enter");
       await page.locator("[data-role=maps]").focus();
-      for (const key of ["ArrowDown", "ArrowRight", "Enter", "ArrowDown", "ArrowRight", "Enter"]) await page.keyboard.press(key);
+      for (const key of ["ArrowDown", "ArrowRight", "Enter", "ArrowDown", "ArrowRight", "Enter"])
+        await page.keyboard.press(key);
       await page.waitForFunction(() => / N$/.test(document.querySelector("dd[data-role=region]").textContent));
       assert.equal(await page.locator(".summary").getAttribute("data-region"), "r0c1 \u2013 r1c2");
     });

@@ -21,7 +21,8 @@ function hasDrawnColours() {
       pen.drawImage(canvas, 0, 0);
       const bytes = pen.getImageData(0, 0, copy.width, copy.height).data;
       const found = new Set();
-      for (let at = 0; at < bytes.length; at += 4) if (bytes[at + 3] > 0) found.add((bytes[at] << 16) | (bytes[at + 1] << 8) | bytes[at + 2]);
+      for (let at = 0; at < bytes.length; at += 4)
+        if (bytes[at + 3] > 0) found.add((bytes[at] << 16) | (bytes[at + 1] << 8) | bytes[at + 2]);
       resolve(found.size > 2);
     }),
   );
@@ -33,7 +34,9 @@ function contrast(colors) {
   const luminance = (color) => {
     pen.fillStyle = color;
     pen.fillRect(0, 0, 1, 1);
-    const [red, green, blue] = [...pen.getImageData(0, 0, 1, 1).data].map((byte) => (byte <= 10 ? byte / 3294.6 : ((byte / 255 + 0.055) / 1.055) ** 2.4));
+    const [red, green, blue] = [...pen.getImageData(0, 0, 1, 1).data].map((byte) =>
+      byte <= 10 ? byte / 3294.6 : ((byte / 255 + 0.055) / 1.055) ** 2.4,
+    );
     return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
   };
   const [dark, light] = colors.map(luminance).sort((a, b) => a - b);
@@ -52,10 +55,14 @@ describe("a recording", () => {
       const seen = new Set();
       for (const place of [100, 500, 900]) {
         await page.locator("[data-role=scrub]").fill(String(place));
-        await eventually(page, (before) => {
-          const stamp = document.querySelector("[data-view=array]").dataset.stamp;
-          return stamp !== undefined && stamp !== before && Number(stamp) > 0;
-        }, [...seen].at(-1));
+        await eventually(
+          page,
+          (before) => {
+            const stamp = document.querySelector("[data-view=array]").dataset.stamp;
+            return stamp !== undefined && stamp !== before && Number(stamp) > 0;
+          },
+          [...seen].at(-1),
+        );
         await page.waitForTimeout(200);
         const stamp = await page.locator("[data-view=array]").getAttribute("data-stamp");
         seen.add(stamp);
@@ -68,7 +75,10 @@ describe("a recording", () => {
         const field = async (name) => number(await row.locator(`[data-field=${name}]`).textContent());
         assert.equal(await field("counts"), Number(bench.counts[frame][taxel]));
         const newtons = Number(bench.forces[frame][taxel]);
-        assert.ok(Math.abs((await field("newtons")) - newtons) <= 0.0006 + 0.02 * newtons, `${taxel} at ${stamp}: ${await field("newtons")}, not ${newtons}`);
+        assert.ok(
+          Math.abs((await field("newtons")) - newtons) <= 0.0006 + 0.02 * newtons,
+          `${taxel} at ${stamp}: ${await field("newtons")}, not ${newtons}`,
+        );
       }
       assert.equal(seen.size, 3);
     });
@@ -115,8 +125,11 @@ describe("each view", () => {
       const still = await figures();
       await page.waitForTimeout(500);
       assert.equal(await figures(), still);
-      const [ink, ground] = await pause.evaluate((button) => [getComputedStyle(button).color, getComputedStyle(button).backgroundColor]);
-      assert.ok(await page.evaluate(contrast, [ink, ground]) >= 4.5, `${ink} on ${ground}`);
+      const [ink, ground] = await pause.evaluate((button) => [
+        getComputedStyle(button).color,
+        getComputedStyle(button).backgroundColor,
+      ]);
+      assert.ok((await page.evaluate(contrast, [ink, ground])) >= 4.5, `${ink} on ${ground}`);
       await pause.click();
       await eventually(page, (before) => document.querySelector(".readouts").innerText !== before, still);
     });
@@ -157,7 +170,10 @@ describe("the bar", () => {
       await force.fill("0.75");
       await force.press("Tab");
       const other = await openPage(browser, page.url());
-      await eventually(other, () => document.querySelector("[data-parameter='/contacts/onset_force_n']").value === "0.75");
+      await eventually(
+        other,
+        () => document.querySelector("[data-parameter='/contacts/onset_force_n']").value === "0.75",
+      );
       await other.close();
     });
   });

@@ -20,7 +20,10 @@ async function hears(page, pattern) {
 }
 
 async function reaches(page, presses) {
-  await page.waitForFunction((least) => document.querySelector("[data-role=progress]").value >= least, presses, { polling: 30, timeout: WAIT_MS });
+  await page.waitForFunction((least) => document.querySelector("[data-role=progress]").value >= least, presses, {
+    polling: 30,
+    timeout: WAIT_MS,
+  });
 }
 
 async function fullScale(server) {
@@ -38,16 +41,19 @@ async function walk(page, server) {
   await begin.click();
 
   await reaches(page, 2);
-  assert.match(await page.locator(".calibration-picture canvas").getAttribute("aria-label"), /2 rows, 3 columns, \d+ presses/);
+  assert.match(
+    await page.locator(".calibration-picture canvas").getAttribute("aria-label"),
+    /2 rows, 3 columns, \d+ presses/,
+  );
   await page.keyboard.press("b");
   await hears(page, /That is r\dc\d: put/);
   await reaches(page, 8);
-  await hears(page, /^Put/);  // before, the press is to be released: it is kept, and nothing is there to skip
+  await hears(page, /^Put/); // before, the press is to be released: it is kept, and nothing is there to skip
   await page.keyboard.press("n");
   await hears(page, /^17 presses of 1 to 10 N\./);
   assert.match(await part(page, "instruction").textContent(), /median error \d+\.\d %.*It holds for about 22 C/);
   const quality = await part(page, "quality").textContent();
-  assert.ok(Number.parseFloat(quality) < 15, quality);  // one of three weights is left out: two are left for a law
+  assert.ok(Number.parseFloat(quality) < 15, quality); // one of three weights is left out: two are left for a law
 
   await page.keyboard.press("Enter");
   await hears(page, /Saved as palm-\d{8}-\d{6}\.safetensors and in use/);
@@ -57,7 +63,14 @@ async function walk(page, server) {
 }
 
 it("walks through the calibration of an array without a model and takes the model into use", async () => {
-  const server = await bench.serve("--port", "0", "--from", "sim:rehearsal?rate=200", "--model", bench.path("palm.toml"));
+  const server = await bench.serve(
+    "--port",
+    "0",
+    "--from",
+    "sim:rehearsal?rate=200",
+    "--model",
+    bench.path("palm.toml"),
+  );
   try {
     const page = await openPage(browser, `${server.url}#/calibration`);
     await becomes(page, "live");
@@ -69,19 +82,35 @@ it("walks through the calibration of an array without a model and takes the mode
   const [model, ...more] = readdirSync(bench.folder).filter((name) => /^palm-.*\.safetensors$/.test(name));
   assert.deepEqual(more, []);
   const saved = bench.path(model.replace(".safetensors", ""));
-  bench.run("calibrate", "--array", `${saved}.array.toml`, "--frames", `${saved}.frames.csv`, "--loads", `${saved}.loads.csv`, "--out", bench.path("again.safetensors"));
+  bench.run(
+    "calibrate",
+    "--array",
+    `${saved}.array.toml`,
+    "--frames",
+    `${saved}.frames.csv`,
+    "--loads",
+    `${saved}.loads.csv`,
+    "--out",
+    bench.path("again.safetensors"),
+  );
   bench.run("run", "--model", bench.path(model), "--in", `${saved}.frames.csv`, "--out", bench.path("forces.csv"));
   const forces = readCsv(bench.path("forces.csv"));
   const presses = readCsv(`${saved}.loads.csv`).filter(({ value }) => Number(value) > 0);
   assert.equal(presses.length, 4 * 17);
   for (const { frame, where, value } of presses) {
-    assert.ok(Math.abs(Number(forces[frame][where]) / Number(value) - 1) < 0.1, `${value} N on ${where}: ${forces[frame][where]} N`);
+    assert.ok(
+      Math.abs(Number(forces[frame][where]) / Number(value) - 1) < 0.1,
+      `${value} N on ${where}: ${forces[frame][where]} N`,
+    );
   }
 });
 
 it("shows both taxels of a pair, names what is wrong with it, and ends by itself with an unknown circuit", async () => {
   const readout = (lines) => arrayToml("pair", 4, 4).replace(/\[readout\][^]*/, `[readout]\nadc_bits = 10\n${lines}\n`);
-  writeFileSync(bench.path("true.toml"), readout('circuit = "divider"\nidle_columns = "floating"\ndrive_ohm = 20.0\nload_ohm = 200.0'));
+  writeFileSync(
+    bench.path("true.toml"),
+    readout('circuit = "divider"\nidle_columns = "floating"\ndrive_ohm = 20.0\nload_ohm = 200.0'),
+  );
   writeFileSync(bench.path("unknown.toml"), readout('circuit = "auto"'));
   const from = `sim:rehearsal?rate=200&seed=6&array=${bench.path("true.toml")}`;
   const server = await bench.serve("--port", "0", "--from", from, "--model", bench.path("unknown.toml"));
@@ -95,7 +124,9 @@ it("shows both taxels of a pair, names what is wrong with it, and ends by itself
     await part(page, "start").click();
 
     await hears(page, /To be sure of the circuit, put 20 N \(2\.04 kg\) on r\dc\d and as much on r\dc\d/);
-    const [first, second] = (await page.locator(".calibration-picture canvas").getAttribute("aria-label")).match(/press (r\dc\d) and (r\dc\d)$/).slice(1);
+    const [first, second] = (await page.locator(".calibration-picture canvas").getAttribute("aria-label"))
+      .match(/press (r\dc\d) and (r\dc\d)$/)
+      .slice(1);
     assert.notEqual(first, second);
     assert.match(await page.locator(".readings").textContent(), /Reading of r\dc\d.*Reading of r\dc\d/);
     assert.equal(await page.locator(".reading:visible").count(), 2);
@@ -110,7 +141,14 @@ it("shows both taxels of a pair, names what is wrong with it, and ends by itself
 });
 
 it("has room for the array and for the guide on a narrow page", async () => {
-  const server = await bench.serve("--port", "0", "--from", "sim:rehearsal?rate=200", "--model", bench.path("palm.toml"));
+  const server = await bench.serve(
+    "--port",
+    "0",
+    "--from",
+    "sim:rehearsal?rate=200",
+    "--model",
+    bench.path("palm.toml"),
+  );
   try {
     const page = await openPage(browser, `${server.url}#/calibration`);
     await becomes(page, "live");
@@ -126,7 +164,14 @@ it("has room for the array and for the guide on a narrow page", async () => {
 });
 
 it("asks before it forgets presses, and says what the server refuses", async () => {
-  const server = await bench.serve("--port", "0", "--from", "sim:rehearsal?rate=200", "--model", bench.path("palm.toml"));
+  const server = await bench.serve(
+    "--port",
+    "0",
+    "--from",
+    "sim:rehearsal?rate=200",
+    "--model",
+    bench.path("palm.toml"),
+  );
   try {
     const page = await openPage(browser, `${server.url}#/calibration`);
     await becomes(page, "live");

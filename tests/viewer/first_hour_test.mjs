@@ -27,7 +27,8 @@ after(async () => {
   rmSync(folder, { recursive: true, force: true });
 });
 
-const serve = (...command) => Bench.prototype.serve.call({ binary: process.argv[2], folder }, "--port", "0", ...command);
+const serve = (...command) =>
+  Bench.prototype.serve.call({ binary: process.argv[2], folder }, "--port", "0", ...command);
 const part = (page, role) => page.locator(`[data-role=${role}]`);
 
 /** A person at the page, whose actions are counted. */
@@ -66,7 +67,10 @@ async function csvMat() {
     let millis = 1000;
     const timer = setInterval(() => {
       millis += 20;
-      const readings = Array.from({ length: 120 }, (_, taxel) => 100 + ((7 * taxel) % 23) + Math.round(3 * Math.random()));
+      const readings = Array.from(
+        { length: 120 },
+        (_, taxel) => 100 + ((7 * taxel) % 23) + Math.round(3 * Math.random()),
+      );
       if (server.pressed !== undefined) readings[server.pressed] += 900;
       if (!socket.destroyed) socket.write(`${millis},${readings.join(",")}\r\n`);
     }, 20);
@@ -94,7 +98,11 @@ it("shows the counts of a CSV mat of which nothing is known but its rows and col
     await becomes(page, "live");
     await part(page, "maps").focus();
     await page.keyboard.press("ArrowDown");
-    await page.waitForFunction(() => Number(document.querySelector("[data-role=cursor] [data-field=counts]").textContent) >= 100, null, { timeout: WAIT_MS });
+    await page.waitForFunction(
+      () => Number(document.querySelector("[data-role=cursor] [data-field=counts]").textContent) >= 100,
+      null,
+      { timeout: WAIT_MS },
+    );
     assert.match(await part(page, "highest-taxel").textContent(), /^1[0-2]\d {2}r/);
     assert.ok(await page.locator("section[aria-label='Force map']").isHidden());
     assertUnhurt(page);
@@ -150,7 +158,11 @@ it("finds out which way round the lines are sent from two touches", async () => 
 
 it("lists the serial ports where no device is named, and opens the one that is chosen", async (test) => {
   const port = `/dev/ttyACM_of_test_${process.pid}`;
-  const board = spawn(process.argv[2], ["emulate", "--in", "sim:idle?rate=50&rows=3&cols=4", "--protocol", "dermis", "--to", "pty:"], { stdio: ["ignore", "pipe", "pipe"] });
+  const board = spawn(
+    process.argv[2],
+    ["emulate", "--in", "sim:idle?rate=50&rows=3&cols=4", "--protocol", "dermis", "--to", "pty:"],
+    { stdio: ["ignore", "pipe", "pipe"] },
+  );
   let server;
   try {
     const terminal = await new Promise((found) => {
@@ -202,7 +214,11 @@ it("goes from a mat of unknown circuit to newtons in few actions, and writes no 
     await person.click("start");
     await page.locator("[data-role=walk][data-stage='4']").waitFor({ timeout: FIT_MS });
     await person.click("save");
-    await page.waitForFunction(() => document.querySelector("[data-role=instruction]").textContent.includes("in use"), null, { timeout: WAIT_MS });
+    await page.waitForFunction(
+      () => document.querySelector("[data-role=instruction]").textContent.includes("in use"),
+      null,
+      { timeout: WAIT_MS },
+    );
     await person.open("array");
     await page.locator("section[aria-label='Force map']").waitFor();
     assert.match(await part(page, "faulty-taxels").textContent(), /none/);

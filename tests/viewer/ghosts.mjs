@@ -19,7 +19,8 @@ const [binary, array, model, folder, out] = process.argv.slice(2);
 /** The forces of each frame by the names of taxels. */
 function readTruth() {
   const truth = [];
-  for (const { frame, where, value } of readCsv(join(folder, "loads.csv"))) (truth[Number(frame)] ??= new Map()).set(where, Number(value));
+  for (const { frame, where, value } of readCsv(join(folder, "loads.csv")))
+    (truth[Number(frame)] ??= new Map()).set(where, Number(value));
   return truth;
 }
 
@@ -36,11 +37,16 @@ function strongestGhost(frames, truth) {
       const share = Number(line[taxel]) / most;
       if (share <= best.share) continue;
       let isQuiet = true;
-      for (let r = row - REACH; r <= row + REACH; ++r) for (let c = col - REACH; c <= col + REACH; ++c) isQuiet &&= force(frame, r, c) < QUIET_N;
+      for (let r = row - REACH; r <= row + REACH; ++r)
+        for (let c = col - REACH; c <= col + REACH; ++c) isQuiet &&= force(frame, r, c) < QUIET_N;
       if (isQuiet) best = { share, frame };
     }
   });
-  return { ...best, counts: Math.max(...taxels.map((taxel) => Number(frames[best.frame][taxel]))), newtons: Math.max(...truth[best.frame].values()) };
+  return {
+    ...best,
+    counts: Math.max(...taxels.map((taxel) => Number(frames[best.frame][taxel]))),
+    newtons: Math.max(...truth[best.frame].values()),
+  };
 }
 
 /** A recording in which that frame stands still. */

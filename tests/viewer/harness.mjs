@@ -62,7 +62,18 @@ export class Bench {
     writeFileSync(this.path("array.toml"), arrayToml("small", 4, 5));
     const array = ["--array", this.path("array.toml")];
     this.run("simulate", ...array, "--scene", "calibration", "--out", this.path("calibration"));
-    this.run("simulate", ...array, "--scene", "multitouch", "--frames", "200", "--seed", "2", "--out", this.path("contacts"));
+    this.run(
+      "simulate",
+      ...array,
+      "--scene",
+      "multitouch",
+      "--frames",
+      "200",
+      "--seed",
+      "2",
+      "--out",
+      this.path("contacts"),
+    );
     const samples = ["--frames", this.path("calibration/frames.csv"), "--loads", this.path("calibration/loads.csv")];
     this.run("calibrate", ...array, ...samples, "--out", this.path("model.safetensors"));
     this.run("convert", this.path("contacts/frames.csv"), this.path("recording.mcap"), ...array);

@@ -6,7 +6,18 @@ import assert from "node:assert/strict";
 import { writeFileSync } from "node:fs";
 import { createServer } from "node:net";
 import { it } from "node:test";
-import { arrayToml, assertUnhurt, becomes, bench, browser, openPage, readCsv, useBench, VIEWS, WAIT_MS } from "./harness.mjs";
+import {
+  arrayToml,
+  assertUnhurt,
+  becomes,
+  bench,
+  browser,
+  openPage,
+  readCsv,
+  useBench,
+  VIEWS,
+  WAIT_MS,
+} from "./harness.mjs";
 
 const SIZES = [
   { width: 390, height: 844 },
@@ -29,11 +40,17 @@ useBench(() => {
 /** A device that sends an array with twelve contacts at once, 50 times a second. */
 async function crowdedDevice() {
   const [idle] = readCsv(bench.path("idle/frames.csv"));
-  const rest = Object.keys(idle).filter((column) => column.startsWith("r")).map((column) => Number(idle[column]));
-  const pressed = new Set(Array.from({ length: CONTACTS }, (_, contact) => SIDE * (2 + 5 * Math.floor(contact / 4)) + 2 + 4 * (contact % 4)));
+  const rest = Object.keys(idle)
+    .filter((column) => column.startsWith("r"))
+    .map((column) => Number(idle[column]));
+  const pressed = new Set(
+    Array.from({ length: CONTACTS }, (_, contact) => SIDE * (2 + 5 * Math.floor(contact / 4)) + 2 + 4 * (contact % 4)),
+  );
   const server = createServer((socket) => {
     const timer = setInterval(() => {
-      const counts = rest.map((count, taxel) => Math.max(0, Math.round(count + (pressed.has(taxel) ? 400 : 0) + Math.random())));
+      const counts = rest.map((count, taxel) =>
+        Math.max(0, Math.round(count + (pressed.has(taxel) ? 400 : 0) + Math.random())),
+      );
       if (!socket.destroyed) socket.write(`${counts.join(",")}\n`);
     }, 20);
     socket.on("error", () => undefined);
@@ -72,7 +89,8 @@ function faultsOfBoxes() {
   };
   const faults = [];
   const boxes = [];
-  const words = (target) => `<${target.tagName.toLowerCase()} ${target.className}> ${(target.value ?? target.textContent).trim().slice(0, 30)}`;
+  const words = (target) =>
+    `<${target.tagName.toLowerCase()} ${target.className}> ${(target.value ?? target.textContent).trim().slice(0, 30)}`;
   /** What is seen of a box; undefined where it is scrolled away. */
   const seen = (box, owner) => {
     let { left, top, right, bottom } = box;
@@ -96,7 +114,9 @@ function faultsOfBoxes() {
     if (part.right > innerWidth + SLACK || part.left < -SLACK) faults.push(`beyond the page: ${words(owner)}`);
     boxes.push({ ...part, owner });
   };
-  const isLeftOut = (target) => target.closest(".only-spoken, .suit-room, .uplot, dialog, option, [hidden]") !== null || style(target).visibility === "hidden";
+  const isLeftOut = (target) =>
+    target.closest(".only-spoken, .suit-room, .uplot, dialog, option, [hidden]") !== null ||
+    style(target).visibility === "hidden";
   const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   for (let text = texts.nextNode(); text !== null; text = texts.nextNode()) {
     const owner = text.parentElement;
@@ -105,7 +125,8 @@ function faultsOfBoxes() {
     range.selectNodeContents(text);
     for (const box of range.getClientRects()) add(box, owner);
   }
-  for (const control of document.querySelectorAll("input, select, button")) if (!isLeftOut(control)) add(control.getBoundingClientRect(), control);
+  for (const control of document.querySelectorAll("input, select, button"))
+    if (!isLeftOut(control)) add(control.getBoundingClientRect(), control);
   boxes.forEach((one, index) => {
     for (const other of boxes.slice(index + 1)) {
       if (one.owner.contains(other.owner) || other.owner.contains(one.owner)) continue;
@@ -115,10 +136,12 @@ function faultsOfBoxes() {
     }
   });
   const map = document.querySelector(".map-panel:not([hidden]) .map-plot, .calibration-picture");
-  if (map !== null && Math.min(map.clientWidth, map.clientHeight) < 150) faults.push(`the map has ${map.clientWidth}x${map.clientHeight} px`);
+  if (map !== null && Math.min(map.clientWidth, map.clientHeight) < 150)
+    faults.push(`the map has ${map.clientWidth}x${map.clientHeight} px`);
   const { scrollHeight } = document.documentElement;
   if (innerWidth > 700 && scrollHeight > innerHeight) faults.push(`the page is ${scrollHeight} px high`);
-  if (document.documentElement.scrollWidth > innerWidth) faults.push(`the page is ${document.documentElement.scrollWidth} px wide`);
+  if (document.documentElement.scrollWidth > innerWidth)
+    faults.push(`the page is ${document.documentElement.scrollWidth} px wide`);
   return [...new Set(faults)];
 }
 
@@ -132,7 +155,8 @@ function keepLabels() {
     return clearRect.apply(this, area);
   };
   pen.fillText = function (text, x, y, ...rest) {
-    if (text.startsWith("#")) window.labels.push({ text, left: x, right: x + this.measureText(text).width, top: y - 8, bottom: y + 8 });
+    if (text.startsWith("#"))
+      window.labels.push({ text, left: x, right: x + this.measureText(text).width, top: y - 8, bottom: y + 8 });
     return fillText.call(this, text, x, y, ...rest);
   };
 }
@@ -195,7 +219,11 @@ for (const size of SIZES) {
         await page.emulateMedia({ colorScheme });
         await page.setViewportSize(size);
         await becomes(page, "live");
-        await page.waitForFunction((most) => Number(document.querySelector("dd[data-role=contacts]").textContent) >= most, CONTACTS, { timeout: WAIT_MS });
+        await page.waitForFunction(
+          (most) => Number(document.querySelector("dd[data-role=contacts]").textContent) >= most,
+          CONTACTS,
+          { timeout: WAIT_MS },
+        );
         const found = {};
         for (const view of VIEWS) {
           await page.locator(`[data-tab=${view}]`).click();

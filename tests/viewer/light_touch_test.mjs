@@ -50,7 +50,9 @@ it("steps a scale by itself where that is chosen, and says so", async () => {
     await scale.selectOption("fit now");
     assert.match(await scale.locator("option:checked").textContent(), /^0 \u2013 [\d.]+ N$/);
     await scale.selectOption("in steps, by itself");
-    await eventually(page, () => /^was [\d.]+$/.test(document.querySelector("[aria-label='Force map'] [data-role=scale-said]").textContent));
+    await eventually(page, () =>
+      /^was [\d.]+$/.test(document.querySelector("[aria-label='Force map'] [data-role=scale-said]").textContent),
+    );
     assert.match(await scale.locator("option:checked").textContent(), /^steps: 0 \u2013 [\d.]+ N$/);
   });
 });
@@ -78,10 +80,20 @@ it("marks values beyond the scale", async () => {
 it("shows the pressure of a taxel: its force over its area", async () => {
   await showMaps(async (page) => {
     await pointAt(page);
-    await eventually(page, () => parseFloat(document.querySelector("[data-role=cursor] [data-field=newtons]").textContent) > 0.05);
+    await eventually(
+      page,
+      () => parseFloat(document.querySelector("[data-role=cursor] [data-field=newtons]").textContent) > 0.05,
+    );
     await part(page, "pause").click();
-    const [newtons, kilopascals] = await page.evaluate(() => ["newtons", "pressure"].map((field) => document.querySelector(`[data-role=cursor] [data-field=${field}]`).textContent));
-    assert.ok(Math.abs(numberIn(kilopascals) - (1e-3 * numberIn(newtons)) / AREA_M2) < 0.07, `${newtons}: ${kilopascals}`);
+    const [newtons, kilopascals] = await page.evaluate(() =>
+      ["newtons", "pressure"].map(
+        (field) => document.querySelector(`[data-role=cursor] [data-field=${field}]`).textContent,
+      ),
+    );
+    assert.ok(
+      Math.abs(numberIn(kilopascals) - (1e-3 * numberIn(newtons)) / AREA_M2) < 0.07,
+      `${newtons}: ${kilopascals}`,
+    );
     await part(page, "show-pressure").check();
     await page.locator("[aria-label='Pressure map']").waitFor();
     assert.ok(await page.locator("[aria-label='Force map']").isHidden());
@@ -93,7 +105,10 @@ it("holds the highest value of a taxel until it is reset", async () => {
     await pointAt(page);
     await part(page, "share").selectOption("highest since reset");
     const newtons = () => page.locator("[data-role=cursor] [data-field=newtons]").textContent().then(numberIn);
-    await eventually(page, () => parseFloat(document.querySelector("[data-role=cursor] [data-field=newtons]").textContent) > 0.2);
+    await eventually(
+      page,
+      () => parseFloat(document.querySelector("[data-role=cursor] [data-field=newtons]").textContent) > 0.2,
+    );
     let held = 0;
     for (let look = 0; look < 20; ++look) {
       const now = await newtons();
@@ -101,10 +116,14 @@ it("holds the highest value of a taxel until it is reset", async () => {
       held = now;
       await page.waitForTimeout(50);
     }
-    await eventually(page, (before) => {
-      document.querySelector("[data-role=reset-share]").click();
-      return parseFloat(document.querySelector("[data-role=cursor] [data-field=newtons]").textContent) < before;
-    }, held);
+    await eventually(
+      page,
+      (before) => {
+        document.querySelector("[data-role=reset-share]").click();
+        return parseFloat(document.querySelector("[data-role=cursor] [data-field=newtons]").textContent) < before;
+      },
+      held,
+    );
   });
 });
 
@@ -125,11 +144,16 @@ it("plots the force on a region that was drawn, and events", async () => {
     await page.locator("[data-role=plot-totals] .legend", { hasText: `region ${name}` }).waitFor();
     await part(page, "last-event").evaluate((line) => {
       window.said = "";
-      new MutationObserver(() => (window.said += `${line.textContent}\n`)).observe(line, { subtree: true, childList: true, characterData: true });
+      new MutationObserver(() => (window.said += `${line.textContent}\n`)).observe(line, {
+        subtree: true,
+        childList: true,
+        characterData: true,
+      });
     });
     await page.keyboard.press("m");
     await part(page, "tare").click();
-    for (const words of ["last: mark 1, ", "last: tare, ", "last: contact "]) await eventually(page, (wanted) => window.said.includes(wanted), words);
+    for (const words of ["last: mark 1, ", "last: tare, ", "last: contact "])
+      await eventually(page, (wanted) => window.said.includes(wanted), words);
     await page.locator("[data-tab=array]").click();
     await part(page, "draw-region").click();
     await page.locator(".summary[data-region='']").waitFor();

@@ -18,7 +18,8 @@ async function load(view) {
   const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
   await page.addInitScript(() => {
     const look = () => {
-      if (Number(document.querySelector("[data-view=array]")?.dataset.stamp ?? 0) > 0) window.firstMapMs = performance.now();
+      if (Number(document.querySelector("[data-view=array]")?.dataset.stamp ?? 0) > 0)
+        window.firstMapMs = performance.now();
       else requestAnimationFrame(look);
     };
     requestAnimationFrame(look);
@@ -28,7 +29,11 @@ async function load(view) {
   else await page.locator(".array-label").first().waitFor();
   const loaded = await page.evaluate(() => {
     const files = [...performance.getEntriesByType("navigation"), ...performance.getEntriesByType("resource")];
-    return { ms: window.firstMapMs, sent: files.reduce((sum, file) => sum + file.encodedBodySize, 0), whole: files.reduce((sum, file) => sum + file.decodedBodySize, 0) };
+    return {
+      ms: window.firstMapMs,
+      sent: files.reduce((sum, file) => sum + file.encodedBodySize, 0),
+      whole: files.reduce((sum, file) => sum + file.decodedBodySize, 0),
+    };
   });
   await page.close();
   return loaded;
@@ -38,9 +43,13 @@ try {
   const loads = [];
   for (let time = 0; time < LOADS; ++time) loads.push(await load("array"));
   const times = loads.map(({ ms }) => ms).sort((a, b) => a - b);
-  console.log(`first map: ${times[Math.floor(LOADS / 2)].toFixed(0)} ms after the load (median of ${LOADS}; ${times[0].toFixed(0)} ... ${times.at(-1).toFixed(0)})`);
+  console.log(
+    `first map: ${times[Math.floor(LOADS / 2)].toFixed(0)} ms after the load (median of ${LOADS}; ${times[0].toFixed(0)} ... ${times.at(-1).toFixed(0)})`,
+  );
   const suit = await load("suit");
-  console.log(`page: ${loads[0].sent} bytes sent, ${loads[0].whole} unpacked; with the suit ${suit.sent}, ${suit.whole}`);
+  console.log(
+    `page: ${loads[0].sent} bytes sent, ${loads[0].whole} unpacked; with the suit ${suit.sent}, ${suit.whole}`,
+  );
   const page = await openPage(browser, `${server.url}#/array`);
   await becomes(page, "live");
   await page.waitForTimeout(3000);
@@ -49,7 +58,10 @@ try {
   const sample = async () => {
     await client.send("HeapProfiler.collectGarbage");
     const { metrics } = await client.send("Performance.getMetrics");
-    const drawn = await page.evaluate(() => [Number(document.querySelector("[data-view=array]").dataset.frames), performance.now()]);
+    const drawn = await page.evaluate(() => [
+      Number(document.querySelector("[data-view=array]").dataset.frames),
+      performance.now(),
+    ]);
     return { heap: metrics.find(({ name }) => name === "JSHeapUsedSize").value, frames: drawn[0], ms: drawn[1] };
   };
   const before = await sample();

@@ -16,7 +16,10 @@ try {
   await page.setViewportSize({ width: 1440, height: 900 });
   await page.emulateMedia({ colorScheme: "dark" });
   await becomes(page, "live");
-  await page.waitForFunction(([marks, contacts]) => document.querySelectorAll(marks).length >= contacts, [MARKS[view], CONTACTS]);
+  await page.waitForFunction(
+    ([marks, contacts]) => document.querySelectorAll(marks).length >= contacts,
+    [MARKS[view], CONTACTS],
+  );
   await page.screenshot({ path: out });
 } finally {
   await browser.close();

@@ -69,9 +69,20 @@ async function watchAges(lookMs) {
 
 // Without thinning, frames wait in a queue that grows by a second in each: they are seconds old at the end. A picture that a
 // busy machine draws late is none of that, so the typical one counts.
-for (const [kbits, leastFrames] of [[100, 4], [750, 8], [Infinity, 8]]) {
+for (const [kbits, leastFrames] of [
+  [100, 4],
+  [750, 8],
+  [Infinity, 8],
+]) {
   it(`shows frames that are typically no older than 1 s at ${kbits} kbit/s, and says how it is`, async () => {
-    const server = await bench.serve("--port", "0", "--from", "sim:contacts?rate=100", "--model", bench.path("whole.toml"));
+    const server = await bench.serve(
+      "--port",
+      "0",
+      "--from",
+      "sim:contacts?rate=100",
+      "--model",
+      bench.path("whole.toml"),
+    );
     const line = await lineTo(server.port);
     try {
       const page = await openPage(browser, `http://127.0.0.1:${line.port}/#/array`);
@@ -105,7 +116,9 @@ async function over(kbits, command, look) {
   try {
     const page = await openPage(browser, `http://127.0.0.1:${line.port}/#/array`);
     line.kbits = kbits;
-    await look(page, (words) => page.locator("[data-role=connection]", { hasText: words }).waitFor({ timeout: SAID_MS }));
+    await look(page, (words) =>
+      page.locator("[data-role=connection]", { hasText: words }).waitFor({ timeout: SAID_MS }),
+    );
     assertUnhurt(page);
     await page.close();
   } finally {
@@ -132,7 +145,13 @@ for (const kbits of [100, 750, Infinity]) {
   it(`says within a second that a device has gone silent and is back, at ${kbits} kbit/s`, async () => {
     let isSilent = false;
     const device = createServer((socket) => {
-      const timer = setInterval(() => isSilent || socket.destroyed || socket.write("11,12,13,14,15\n21,22,23,24,25\n31,32,33,34,35\n41,42,43,44,45\n\n"), 20);
+      const timer = setInterval(
+        () =>
+          isSilent ||
+          socket.destroyed ||
+          socket.write("11,12,13,14,15\n21,22,23,24,25\n31,32,33,34,35\n41,42,43,44,45\n\n"),
+        20,
+      );
       socket.on("error", () => undefined);
       socket.on("close", () => clearInterval(timer));
     });
@@ -166,11 +185,21 @@ it("says that what comes is not readable, and why", async () => {
     socket.on("close", () => clearInterval(timer));
   });
   await new Promise((listening) => device.listen(0, "127.0.0.1", listening));
-  const server = await bench.serve("--port", "0", "--from", `tcp://127.0.0.1:${device.address().port}`, "--model", bench.path("whole.toml"));
+  const server = await bench.serve(
+    "--port",
+    "0",
+    "--from",
+    `tcp://127.0.0.1:${device.address().port}`,
+    "--model",
+    bench.path("whole.toml"),
+  );
   try {
     const page = await openPage(browser, `${server.url}#/array`);
     await page.locator("[data-role=connection]", { hasText: "Not readable" }).waitFor();
-    assert.match(await page.locator("[data-role=connection]").getAttribute("title"), /these bytes are of no known protocol/);
+    assert.match(
+      await page.locator("[data-role=connection]").getAttribute("title"),
+      /these bytes are of no known protocol/,
+    );
     await page.locator("[data-tab=health]").click();
     const faults = page.locator("[data-role=faults]", { hasText: "these bytes are of no known protocol" });
     await faults.waitFor();

@@ -48,7 +48,17 @@ function glb() {
     return bytes;
   };
   const total = 12 + 8 + json.length + 8 + positions.length;
-  return Buffer.concat([Buffer.from("glTF"), word(2), word(total), word(json.length), Buffer.from("JSON"), Buffer.from(json), word(36), Buffer.from("BIN\0"), positions]);
+  return Buffer.concat([
+    Buffer.from("glTF"),
+    word(2),
+    word(total),
+    word(json.length),
+    Buffer.from("JSON"),
+    Buffer.from(json),
+    word(36),
+    Buffer.from("BIN\0"),
+    positions,
+  ]);
 }
 
 function urdf(mesh) {
@@ -74,7 +84,10 @@ from = "sim:contacts?rate=100&seed=${seed}"
 model = "model.safetensors"
 ${links ? `link = "${link}"\n` : ""}base_from_array = {translation_mm = [${links ? 0 : x}, 0, 0]}
 `;
-  writeFileSync(bench.path("suit.toml"), `[suit]\n${suit}\n${array("chest", 1, "trunk", 0)}${array("arm", 2, "forearm", 200)}`);
+  writeFileSync(
+    bench.path("suit.toml"),
+    `[suit]\n${suit}\n${array("chest", 1, "trunk", 0)}${array("arm", 2, "forearm", 200)}`,
+  );
 }
 
 const showSuit = (test) =>
@@ -90,7 +103,8 @@ function faultsOfLabels() {
   const boxes = labels.map((label) => ({ words: label.textContent, box: label.getBoundingClientRect() }));
   const faults = [];
   boxes.forEach(({ words, box }, index) => {
-    if (box.left < room.left || box.right > room.right || box.top < room.top || box.bottom > room.bottom) faults.push(`${words} is cut`);
+    if (box.left < room.left || box.right > room.right || box.top < room.top || box.bottom > room.bottom)
+      faults.push(`${words} is cut`);
     for (const other of boxes.slice(index + 1)) {
       const width = Math.min(box.right, other.box.right) - Math.max(box.left, other.box.left);
       const height = Math.min(box.bottom, other.box.bottom) - Math.max(box.top, other.box.top);
@@ -101,7 +115,9 @@ function faultsOfLabels() {
 }
 
 async function labelsAreApart(page) {
-  await page.waitForFunction(() => document.querySelectorAll(".force-label:not([hidden])").length >= 2, undefined, { timeout: WAIT_MS });
+  await page.waitForFunction(() => document.querySelectorAll(".force-label:not([hidden])").length >= 2, undefined, {
+    timeout: WAIT_MS,
+  });
   for (let look = 0; look < 20; ++look) {
     assert.deepEqual(await page.evaluate(faultsOfLabels), []);
     await page.waitForTimeout(50);
@@ -110,21 +126,31 @@ async function labelsAreApart(page) {
 
 /** Calls a service as a robot does, by a client that is not ours. */
 function call(server, name, request) {
-  const client = new FoxgloveClient({ ws: new WebSocket(`ws://127.0.0.1:${server.port}/`, [FoxgloveClient.SUPPORTED_SUBPROTOCOL]) });
+  const client = new FoxgloveClient({
+    ws: new WebSocket(`ws://127.0.0.1:${server.port}/`, [FoxgloveClient.SUPPORTED_SUBPROTOCOL]),
+  });
   return new Promise((resolve, reject) => {
     client.on("error", reject);
     client.on("serviceCallFailure", ({ message }) => reject(new Error(message)));
-    client.on("serviceCallResponse", ({ data }) => resolve(JSON.parse(Buffer.from(data.buffer, data.byteOffset, data.byteLength).toString())));
+    client.on("serviceCallResponse", ({ data }) =>
+      resolve(JSON.parse(Buffer.from(data.buffer, data.byteOffset, data.byteLength).toString())),
+    );
     client.on("advertiseServices", (services) => {
       const service = services.find((one) => one.name === name);
       if (service === undefined) return;
       const data = new Uint8Array(Buffer.from(JSON.stringify(request)));
-      client.sendServiceCallRequest({ serviceId: service.id, callId: 1, encoding: "json", data: new DataView(data.buffer) });
+      client.sendServiceCallRequest({
+        serviceId: service.id,
+        callId: 1,
+        encoding: "json",
+        data: new DataView(data.buffer),
+      });
     });
   }).finally(() => client.close());
 }
 
-const leftOf = (page, name) => page.locator(`.array-label[data-array=${name}]`).evaluate((label) => label.getBoundingClientRect().left);
+const leftOf = (page, name) =>
+  page.locator(`.array-label[data-array=${name}]`).evaluate((label) => label.getBoundingClientRect().left);
 
 it("shows a body, and its labels are apart", async () => {
   writeSuit('body = "arm.urdf"', true);
@@ -142,7 +168,13 @@ it("shows a body, and its labels are apart", async () => {
     assert.ok(before > 20, String(before));
     await page.selectOption("[aria-label='End of the force scale']", "2");
     assert.equal(await page.locator(".arrow-scale").innerText(), "2 N");
-    assert.deepEqual(await page.locator(".orientation text").allTextContents().then((letters) => letters.sort()), ["x", "y", "z"]);
+    assert.deepEqual(
+      await page
+        .locator(".orientation text")
+        .allTextContents()
+        .then((letters) => letters.sort()),
+      ["x", "y", "z"],
+    );
   });
 });
 
@@ -153,7 +185,8 @@ it("moves a link and its array as a client of the stream says", async () => {
     const [arm, chest] = [await leftOf(page, "arm"), await leftOf(page, "chest")];
     assert.deepEqual(await call(server, "/body/joints", { name: ["slide"], position: [0.1] }), {});
     await page.waitForFunction(
-      ([name, from]) => Math.abs(document.querySelector(`.array-label[data-array=${name}]`).getBoundingClientRect().left - from) > 20,
+      ([name, from]) =>
+        Math.abs(document.querySelector(`.array-label[data-array=${name}]`).getBoundingClientRect().left - from) > 20,
       ["arm", arm],
       { timeout: WAIT_MS },
     );
@@ -182,7 +215,10 @@ async function lookAtPicture(page) {
     const ink = canvas.getContext("2d");
     ink.drawImage(image, 0, 0);
     const { data: pixels, width, height } = ink.getImageData(0, 0, canvas.width, canvas.height);
-    const isDrawn = (x, y) => [0, 1, 2].some((channel) => Math.abs(pixels[4 * (y * width + x) + channel] - pixels[4 * (3 * width + 3) + channel]) > 12);
+    const isDrawn = (x, y) =>
+      [0, 1, 2].some(
+        (channel) => Math.abs(pixels[4 * (y * width + x) + channel] - pixels[4 * (3 * width + 3) + channel]) > 12,
+      );
     let [inside, atBorder] = [0, 0];
     for (let y = 2; y < height - 2; ++y) {
       for (let x = 2; x < width - 2; ++x) {
@@ -197,7 +233,10 @@ async function lookAtPicture(page) {
 
 it("has the whole body in view when it is opened", async () => {
   writeSuit('body = "tall.urdf"', true);
-  writeFileSync(bench.path("tall.urdf"), urdf("head.glb").replace('<box size="0.1 0.1 0.06"/>', '<box size="0.2 0.3 1.8"/>'));
+  writeFileSync(
+    bench.path("tall.urdf"),
+    urdf("head.glb").replace('<box size="0.1 0.1 0.06"/>', '<box size="0.2 0.3 1.8"/>'),
+  );
   await showSuit(async (page) => {
     await page.waitForTimeout(500);
     const { inside, atBorder } = await lookAtPicture(page);

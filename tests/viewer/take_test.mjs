@@ -6,7 +6,18 @@ import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 import { it } from "node:test";
-import { assertUnhurt, becomes, bench, browser, eventually, openPage, readCsv, shown, useBench, WAIT_MS } from "./harness.mjs";
+import {
+  assertUnhurt,
+  becomes,
+  bench,
+  browser,
+  eventually,
+  openPage,
+  readCsv,
+  shown,
+  useBench,
+  WAIT_MS,
+} from "./harness.mjs";
 
 const LIVE = ["--from", "sim:contacts?rate=100&frames=300"];
 
@@ -32,7 +43,11 @@ it("records under a name, shows the size as it grows, plays the recording and sa
     await row.getByText("is being recorded").waitFor();
     const size = row.locator("[data-field=size]");
     const first = await size.textContent();
-    await page.waitForFunction((before) => document.querySelector("[data-recording='walk.mcap'] [data-field=size]").textContent !== before, first, { timeout: WAIT_MS });
+    await page.waitForFunction(
+      (before) => document.querySelector("[data-recording='walk.mcap'] [data-field=size]").textContent !== before,
+      first,
+      { timeout: WAIT_MS },
+    );
     await part(page, "begin-recording").click();
     await row.getByText("Play it").waitFor();
     await words(page, "notice", new RegExp(`recorded \\d+ frames: ${bench.path("walk.mcap")}`));
@@ -86,12 +101,15 @@ it("saves a picture and a film that a browser can read", async () => {
       const { name, bytes } = await saved(page, role);
       assert.match(name, /^small-\d{8}-\d{6}\.(png|gif)$/);
       assert.equal(bytes.toString("latin1", 0, magic.length), magic);
-      const [width, height] = await page.evaluate(async ([data, mime]) => {
-        const image = new Image();
-        image.src = `data:${mime};base64,${data}`;
-        await image.decode();
-        return [image.naturalWidth, image.naturalHeight];
-      }, [bytes.toString("base64"), type]);
+      const [width, height] = await page.evaluate(
+        async ([data, mime]) => {
+          const image = new Image();
+          image.src = `data:${mime};base64,${data}`;
+          await image.decode();
+          return [image.naturalWidth, image.naturalHeight];
+        },
+        [bytes.toString("base64"), type],
+      );
       assert.ok(width > 200 && height > 200, `${width} x ${height}`);
     }
   });
@@ -137,9 +155,17 @@ it("refuses a tare under a load, takes it where that is said again, and takes it
     await part(page, "tare-force").click();
     await words(page, "notice", /small was tared by .*: the tare takes .* N on .* as zero/);
     await part(page, "tare-banner").waitFor({ state: "hidden" });
-    await eventually(page, (most) => parseFloat(document.querySelector("[data-role=total-force]").textContent) < most, 0.1 * before);
+    await eventually(
+      page,
+      (most) => parseFloat(document.querySelector("[data-role=total-force]").textContent) < most,
+      0.1 * before,
+    );
     await part(page, "undo-tare").click();
-    await eventually(page, (least) => parseFloat(document.querySelector("[data-role=total-force]").textContent) > least, 0.9 * before);
+    await eventually(
+      page,
+      (least) => parseFloat(document.querySelector("[data-role=total-force]").textContent) > least,
+      0.9 * before,
+    );
     await part(page, "undo-tare").waitFor({ state: "hidden" });
   });
 });

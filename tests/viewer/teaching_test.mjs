@@ -49,18 +49,29 @@ function touch(kind, next) {
     const force = share > 0 && share < 1 ? newtons * Math.min(1, 6 * Math.min(share, 1 - share)) : 0;
     const at = col + slide * Math.min(1, Math.max(0, share));
     const taxel = (index) => Math.hypot(Math.floor(index / COLS) - row, (index % COLS) - at) / wide;
-    return Array.from({ length: ROWS * COLS }, (_, index) => Math.max(0, force * Math.exp(-0.5 * taxel(index) ** 2) + 0.004 * (next() - 0.5)));
+    return Array.from({ length: ROWS * COLS }, (_, index) =>
+      Math.max(0, force * Math.exp(-0.5 * taxel(index) ** 2) + 0.004 * (next() - 0.5)),
+    );
   });
 }
 
 /** Ten of each kind, each ten after a pause, then sixty of all kinds by turns. */
 function recordTouches() {
   const next = chance(7);
-  const rest = Array.from({ length: PAUSE_S * HZ }, () => Array.from({ length: ROWS * COLS }, () => Math.max(0, 0.004 * (next() - 0.5))));
+  const rest = Array.from({ length: PAUSE_S * HZ }, () =>
+    Array.from({ length: ROWS * COLS }, () => Math.max(0, 0.004 * (next() - 0.5))),
+  );
   const some = (count, kindOf) => Array.from({ length: count }, (_, index) => touch(kindOf(index), next)).flat();
-  const frames = [...KINDS.flatMap((kind) => [...rest, ...some(TAUGHT, () => kind)]), ...rest, ...some(NEW, (index) => KINDS[index % 3]), ...rest];
+  const frames = [
+    ...KINDS.flatMap((kind) => [...rest, ...some(TAUGHT, () => kind)]),
+    ...rest,
+    ...some(NEW, (index) => KINDS[index % 3]),
+    ...rest,
+  ];
   const names = Array.from({ length: ROWS * COLS }, (_, taxel) => `r${Math.floor(taxel / COLS)}c${taxel % COLS}`);
-  const lines = frames.map((frame, index) => [(index / HZ).toFixed(3), ...frame.map((newtons) => newtons.toFixed(4))].join());
+  const lines = frames.map((frame, index) =>
+    [(index / HZ).toFixed(3), ...frame.map((newtons) => newtons.toFixed(4))].join(),
+  );
   writeFileSync(bench.path("touches.csv"), [["time_s", ...names].join(), ...lines, ""].join("\n"));
   writeFileSync(bench.path("palm.toml"), ARRAY);
   bench.run("convert", bench.path("touches.csv"), bench.path("touches.mcap"), "--array", bench.path("palm.toml"));
@@ -93,11 +104,14 @@ async function play(page, speed) {
 }
 
 async function seek(page, seconds) {
-  await part(page, "scrub").evaluate((bar, at) => {
-    bar.value = String(at);
-    bar.dispatchEvent(new Event("input"));
-    bar.dispatchEvent(new Event("change"));
-  }, (1000 * seconds) / TOTAL_S);
+  await part(page, "scrub").evaluate(
+    (bar, at) => {
+      bar.value = String(at);
+      bar.dispatchEvent(new Event("input"));
+      bar.dispatchEvent(new Event("change"));
+    },
+    (1000 * seconds) / TOTAL_S,
+  );
 }
 
 const BLOCK_S = PAUSE_S + TAUGHT * TOUCH_S;
@@ -112,7 +126,11 @@ async function teach(page, kind, index) {
   await part(page, "teach-listen").click();
   await part(page, "teach-listen").getByText("Stop").waitFor();
   await play(page, FASTEST);
-  await eventually(page, ([name, count]) => document.querySelectorAll(`[data-taught="${name}"] canvas`).length === count, [kind, TAUGHT]);
+  await eventually(
+    page,
+    ([name, count]) => document.querySelectorAll(`[data-taught="${name}"] canvas`).length === count,
+    [kind, TAUGHT],
+  );
   await pause(page);
   await part(page, "teach-listen").click();
   await part(page, "teach-listen").getByText("Begin").waitFor();
@@ -120,14 +138,17 @@ async function teach(page, kind, index) {
 
 /** Every answer that the bars show, by the number of its touch among the new ones. */
 async function watchAnswers(page) {
-  await page.evaluate(([firstS, touchS]) => {
-    const bars = document.querySelector("[aria-label='What touches']");
-    window.answers = {};
-    new MutationObserver(() => {
-      const touch = Math.floor((Number(bars.dataset.stamp) - firstS) / touchS);
-      (window.answers[touch] ??= new Set()).add(document.querySelector("[data-role=answer]").textContent);
-    }).observe(bars, { attributes: true, attributeFilter: ["data-stamp"] });
-  }, [NEW_S, TOUCH_S]);
+  await page.evaluate(
+    ([firstS, touchS]) => {
+      const bars = document.querySelector("[aria-label='What touches']");
+      window.answers = {};
+      new MutationObserver(() => {
+        const touch = Math.floor((Number(bars.dataset.stamp) - firstS) / touchS);
+        (window.answers[touch] ??= new Set()).add(document.querySelector("[data-role=answer]").textContent);
+      }).observe(bars, { attributes: true, attributeFilter: ["data-stamp"] });
+    },
+    [NEW_S, TOUCH_S],
+  );
 }
 
 /** Plays the new touches from one of them on, until all have an answer or the recording has ended. What was shown of
@@ -135,17 +156,22 @@ async function watchAnswers(page) {
 async function playNewTouches(page, first, speed) {
   const beginS = NEW_S + first * TOUCH_S - 0.4;
   await pause(page);
-  await page.evaluate((from) => Object.keys(window.answers).forEach((touch) => Number(touch) >= from && delete window.answers[touch]), first);
+  await page.evaluate(
+    (from) => Object.keys(window.answers).forEach((touch) => Number(touch) >= from && delete window.answers[touch]),
+    first,
+  );
   await seek(page, beginS);
   await play(page, speed);
-  const isDone = (count) => Object.keys(window.answers).length >= count || document.querySelector("[data-role=play]").textContent === "Again";
+  const isDone = (count) =>
+    Object.keys(window.answers).length >= count || document.querySelector("[data-role=play]").textContent === "Again";
   await eventually(page, isDone, NEW, WAIT_MS + (1000 * (TOTAL_S - beginS)) / speed);
 }
 
 /** A page that is too busy to show an answer before the next one comes sees the touches again, more slowly. */
 async function answersToNewTouches(page) {
   await watchAnswers(page);
-  const answers = () => page.evaluate(() => Object.entries(window.answers).map(([touch, answers]) => [Number(touch), [...answers].join()]));
+  const answers = () =>
+    page.evaluate(() => Object.entries(window.answers).map(([touch, answers]) => [Number(touch), [...answers].join()]));
   for (const speed of [FASTEST, 4, 2, 1]) {
     const shown = new Map(await answers());
     const missing = Array.from({ length: NEW }, (_, touch) => touch).find((touch) => !shown.has(touch));
@@ -156,7 +182,14 @@ async function answersToNewTouches(page) {
 }
 
 it("teaches three touches, throws an example away, trains, and names new touches", async () => {
-  const server = await bench.serve("--port", "0", "--from", bench.path("touches.mcap"), "--model", bench.path("palm.toml"));
+  const server = await bench.serve(
+    "--port",
+    "0",
+    "--from",
+    bench.path("touches.mcap"),
+    "--model",
+    bench.path("palm.toml"),
+  );
   try {
     const page = await openLesson(server);
     assert.ok(await part(page, "teach-train").isDisabled());
@@ -166,9 +199,14 @@ it("teaches three touches, throws an example away, trains, and names new touches
     await eventually(page, () => document.querySelectorAll("[data-taught=tap] canvas").length === 9);
 
     await part(page, "teach-train").click();
-    await part(page, "teach-result").getByText(/were right when left out\. Saved as palm-touches-\d{8}-\d{6}\.safetensors and in use\./).waitFor();
+    await part(page, "teach-result")
+      .getByText(/were right when left out\. Saved as palm-touches-\d{8}-\d{6}\.safetensors and in use\./)
+      .waitFor();
     const answers = await answersToNewTouches(page);
-    assert.deepEqual([...answers.keys()].sort((a, b) => a - b), Array.from({ length: NEW }, (_, touch) => touch));
+    assert.deepEqual(
+      [...answers.keys()].sort((a, b) => a - b),
+      Array.from({ length: NEW }, (_, touch) => touch),
+    );
     const wrong = [...answers].filter(([touch, answer]) => answer !== KINDS[touch % 3] && answer !== "unknown");
     const right = [...answers].filter(([touch, answer]) => answer === KINDS[touch % 3]).length;
     assert.deepEqual(wrong, []);
@@ -182,13 +220,39 @@ it("teaches three touches, throws an example away, trains, and names new touches
   assert.deepEqual(more, []);
   const saved = bench.path(model.replace(".safetensors", ""));
   assert.equal(readCsv(`${saved}.labels.csv`).length, 3 * TAUGHT - 1);
-  bench.run("learn", "--in", `${saved}.frames.csv`, "--model", `${saved}.array.toml`, "--labels", `${saved}.labels.csv`, "--out", bench.path("again.safetensors"));
-  const again = await bench.serve("--port", "0", "--from", bench.path("touches.mcap"), "--model", bench.path("palm.toml"), "--classes", bench.path("again.safetensors"));
+  bench.run(
+    "learn",
+    "--in",
+    `${saved}.frames.csv`,
+    "--model",
+    `${saved}.array.toml`,
+    "--labels",
+    `${saved}.labels.csv`,
+    "--out",
+    bench.path("again.safetensors"),
+  );
+  const again = await bench.serve(
+    "--port",
+    "0",
+    "--from",
+    bench.path("touches.mcap"),
+    "--model",
+    bench.path("palm.toml"),
+    "--classes",
+    bench.path("again.safetensors"),
+  );
   await again.stop();
 });
 
 it("warns of few examples, and says why there can be no training", async () => {
-  const server = await bench.serve("--port", "0", "--from", bench.path("touches.mcap"), "--model", bench.path("palm.toml"));
+  const server = await bench.serve(
+    "--port",
+    "0",
+    "--from",
+    bench.path("touches.mcap"),
+    "--model",
+    bench.path("palm.toml"),
+  );
   try {
     const page = await openLesson(server);
     await pause(page);
@@ -210,16 +274,29 @@ it("warns of few examples, and says why there can be no training", async () => {
 });
 
 it("goes on another day with what was taught before", async () => {
-  const server = await bench.serve("--port", "0", "--from", bench.path("touches.mcap"), "--model", bench.path("palm.toml"));
+  const server = await bench.serve(
+    "--port",
+    "0",
+    "--from",
+    bench.path("touches.mcap"),
+    "--model",
+    bench.path("palm.toml"),
+  );
   try {
     const page = await openPage(browser, `${server.url}#/recognition`);
     await becomes(page, "live");
     await part(page, "teach-saved").locator("option").waitFor({ state: "attached" });
     await part(page, "teach-load").click();
-    await eventually(page, (count) => document.querySelectorAll("[data-taught] canvas").length === count, KINDS.length * TAUGHT - 1);
+    await eventually(
+      page,
+      (count) => document.querySelectorAll("[data-taught] canvas").length === count,
+      KINDS.length * TAUGHT - 1,
+    );
     await part(page, "teach-before").waitFor({ state: "hidden" });
     await part(page, "teach-train").click();
-    await part(page, "teach-result").getByText(/were right when left out/).waitFor();
+    await part(page, "teach-result")
+      .getByText(/were right when left out/)
+      .waitFor();
     assertUnhurt(page);
     await page.close();
   } finally {

@@ -24,7 +24,8 @@ after(async () => {
   rmSync(folder, { recursive: true, force: true });
 });
 
-const serve = (...command) => Bench.prototype.serve.call({ binary: process.argv[2], folder }, "--port", "0", ...command);
+const serve = (...command) =>
+  Bench.prototype.serve.call({ binary: process.argv[2], folder }, "--port", "0", ...command);
 const part = (page, role) => page.locator(`[data-role=${role}]`);
 
 let noise = 1;
@@ -33,16 +34,49 @@ const random = () => (noise = (noise * 48271) % 2147483647);
 
 /** What a device says every 20 ms; `reason`: what the page must say of it. */
 const STREAMS = [
-  { name: "noise", say: () => Buffer.from(Array.from({ length: 64 }, () => random() % 256)), reason: /no known protocol.*not text/ },
+  {
+    name: "noise",
+    say: () => Buffer.from(Array.from({ length: 64 }, () => random() % 256)),
+    reason: /no known protocol.*not text/,
+  },
   { name: "zeros", say: () => Buffer.alloc(64), reason: /0x00/ },
-  { name: "a log", say: () => "[I][wifi] heap 21340, channel six\r\n", reason: /not numbers alone, such as '\[I\]\[wifi\] heap/ },
-  { name: "names and values", say: () => `temp=${20 + (random() % 9)}.5 hum=41\n`, reason: /not numbers alone, such as 'temp=2/ },
-  { name: "positions", say: () => "$GPGGA,123519,4807.038,N,01131.000,E,1,08\r\n", reason: /not numbers alone, such as '\$GPGGA/ },
-  { name: "other JSON", say: () => `{"celsius": ${random() % 40}, "name": "hall"}\n`, reason: /no known protocol|json/ },
-  { name: "ragged lines", say: () => `${Array.from({ length: 3 + (random() % 7) }, () => random() % 1000).join(",")}\n`, reason: /3 to 9 numbers/ },
+  {
+    name: "a log",
+    say: () => "[I][wifi] heap 21340, channel six\r\n",
+    reason: /not numbers alone, such as '\[I\]\[wifi\] heap/,
+  },
+  {
+    name: "names and values",
+    say: () => `temp=${20 + (random() % 9)}.5 hum=41\n`,
+    reason: /not numbers alone, such as 'temp=2/,
+  },
+  {
+    name: "positions",
+    say: () => "$GPGGA,123519,4807.038,N,01131.000,E,1,08\r\n",
+    reason: /not numbers alone, such as '\$GPGGA/,
+  },
+  {
+    name: "other JSON",
+    say: () => `{"celsius": ${random() % 40}, "name": "hall"}\n`,
+    reason: /no known protocol|json/,
+  },
+  {
+    name: "ragged lines",
+    say: () => `${Array.from({ length: 3 + (random() % 7) }, () => random() % 1000).join(",")}\n`,
+    reason: /3 to 9 numbers/,
+  },
   { name: "lone numbers", say: () => `${random() % 4096}\r\n`, reason: /one number/ },
-  { name: "a page", say: () => "HTTP/1.1 400 Bad Request\r\nServer: esp\r\n\r\n", reason: /not numbers alone, such as/ },
-  { name: "a wrong baud", say: () => Buffer.from(Array.from({ length: 40 }, () => [0x00, 0x80, 0xf8, 0xfe][random() % 4])), reason: /not text/, terminal: true },
+  {
+    name: "a page",
+    say: () => "HTTP/1.1 400 Bad Request\r\nServer: esp\r\n\r\n",
+    reason: /not numbers alone, such as/,
+  },
+  {
+    name: "a wrong baud",
+    say: () => Buffer.from(Array.from({ length: 40 }, () => [0x00, 0x80, 0xf8, 0xfe][random() % 4])),
+    reason: /not text/,
+    terminal: true,
+  },
 ];
 
 /** A port of the network that says it. */
@@ -89,7 +123,12 @@ async function endsAtTheQuestion({ name, say, reason, terminal }) {
     await part(page, "array-setup").waitFor();
     assert.match(await part(page, "found").textContent(), reason, name);
     assert.match(await part(page, "first-bytes").textContent(), /^00 {2}([0-9a-f]{2} ){7}/, name);
-    for (const [id, value] of [["array-name", name.replaceAll(" ", "_")], ["array-rows", "3"], ["array-cols", "5"]]) await page.locator(`#${id}`).fill(value);
+    for (const [id, value] of [
+      ["array-name", name.replaceAll(" ", "_")],
+      ["array-rows", "3"],
+      ["array-cols", "5"],
+    ])
+      await page.locator(`#${id}`).fill(value);
     await page.locator("[data-role=array-setup] button[type=submit]").click();
     await part(page, "setup-problem").waitFor();
     assert.notEqual(await part(page, "setup-problem").textContent(), "", name);

@@ -30,7 +30,8 @@ after(async () => {
   rmSync(folder, { recursive: true, force: true });
 });
 
-const serve = (...command) => Bench.prototype.serve.call({ binary: process.argv[2], folder }, "--port", "0", ...command);
+const serve = (...command) =>
+  Bench.prototype.serve.call({ binary: process.argv[2], folder }, "--port", "0", ...command);
 const part = (page, role) => page.locator(`[data-role=${role}]`);
 
 /** A mat of conductive rubber whose columns are read over 200 ohm while the other rows are grounded. */
@@ -58,14 +59,20 @@ class Mat {
   }
 
   #counts() {
-    const siemens = Array.from({ length: ROWS * COLS }, (_, taxel) => 5e-6 + (this.pressed.has(taxel) ? 1.1e-3 * (this.pressed.get(taxel) / 10) ** 0.9 : 0));
-    const sums = Array.from({ length: COLS }, (_, col) => siemens.reduce((sum, one, taxel) => (taxel % COLS === col ? sum + one : sum), 1 / 200));
+    const siemens = Array.from(
+      { length: ROWS * COLS },
+      (_, taxel) => 5e-6 + (this.pressed.has(taxel) ? 1.1e-3 * (this.pressed.get(taxel) / 10) ** 0.9 : 0),
+    );
+    const sums = Array.from({ length: COLS }, (_, col) =>
+      siemens.reduce((sum, one, taxel) => (taxel % COLS === col ? sum + one : sum), 1 / 200),
+    );
     return siemens.map((one, taxel) => Math.round((4095 * one) / sums[taxel % COLS] + Math.random() - 0.5));
   }
 }
 
 const csv = (counts, millis) => `${1000 + millis},${counts.join(",")}\r\n`;
-const json = (counts) => `${JSON.stringify(Array.from({ length: ROWS }, (_, row) => counts.slice(COLS * row, COLS * (row + 1))))}\n`;
+const json = (counts) =>
+  `${JSON.stringify(Array.from({ length: ROWS }, (_, row) => counts.slice(COLS * row, COLS * (row + 1))))}\n`;
 
 const taxelOf = (name) => {
   const [, row, col] = /r(\d+)c(\d+)/.exec(name);
@@ -75,10 +82,15 @@ const taxelOf = (name) => {
 /** Does with the mat what the page says, until there is a model: a first fit may ask for pairs of taxels. */
 async function obey(page, mat) {
   const end = Date.now() + FIT_MS;
-  for (let stage = 0; stage < DONE && Date.now() < end; stage = Number(await part(page, "walk").getAttribute("data-stage"))) {
+  for (
+    let stage = 0;
+    stage < DONE && Date.now() < end;
+    stage = Number(await part(page, "walk").getAttribute("data-stage"))
+  ) {
     const said = await part(page, "instruction").textContent();
     const press = /put ([\d.]+) N .*? on (r\d+c\d+)(?: and as much on (r\d+c\d+))?/i.exec(said);
-    if (press !== null) mat.pressed = new Map([press[2], press[3]].filter(Boolean).map((name) => [taxelOf(name), Number(press[1])]));
+    if (press !== null)
+      mat.pressed = new Map([press[2], press[3]].filter(Boolean).map((name) => [taxelOf(name), Number(press[1])]));
     else if (!/[Hh]old/.test(said)) mat.pressed.clear();
     await page.waitForTimeout(20);
   }
@@ -88,14 +100,21 @@ async function obey(page, mat) {
 const NEVER = [/undefined/, /NaN/, /\[object/, /\bnull\b/, /\u2013 N\b.*\u2013 N\b.*\u2013 N\b/];
 const UNTRUE = {
   asking: [/\bLive\b/, /\bPaused\b.*Waiting/],
-  uncalibrated: [/(?<!\u2013 )\b\d+\.\d+ N\b/, /Nothing touches this array/, /\bTared\b/, /dead since calibration/, /\bhealthy\b/],
+  uncalibrated: [
+    /(?<!\u2013 )\b\d+\.\d+ N\b/,
+    /Nothing touches this array/,
+    /\bTared\b/,
+    /dead since calibration/,
+    /\bhealthy\b/,
+  ],
   calibrated: [/not calibrated/i, /calibrate first/],
   untouched: [/^#\d+ /m],
 };
 
 async function isTrue(page, ...states) {
   const said = await page.evaluate(() => document.body.innerText);
-  for (const untrue of [...NEVER, ...states.flatMap((state) => UNTRUE[state])]) assert.doesNotMatch(said, untrue, `${states}: ${said}`);
+  for (const untrue of [...NEVER, ...states.flatMap((state) => UNTRUE[state])])
+    assert.doesNotMatch(said, untrue, `${states}: ${said}`);
 }
 
 /** The same of every view, as somebody else sees them. */
@@ -170,7 +189,10 @@ async function walk(choose, mat, check) {
   }
 }
 
-for (const [name, format] of [["CSV", csv], ["JSON", json]]) {
+for (const [name, format] of [
+  ["CSV", csv],
+  ["JSON", json],
+]) {
   it(`leads a ${name} mat on the network to newtons, and says nothing untrue`, async () => {
     const mat = new Mat(format);
     const address = await mat.listen();

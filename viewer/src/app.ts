@@ -60,16 +60,35 @@ export class App implements ViewContext {
   /** Somebody may have calibrated an array, here or on another page. */
   #refreshWhereCalibrated(health: readonly HealthStatus[]): void {
     const isNews = this.suit.description.value.arrays.some(
-      ({ name, calibrated }) => !calibrated && health.some(({ name: of, level, message }) => of === name && level <= DiagnosticLevel.warn && !message.startsWith("not calibrated")),
+      ({ name, calibrated }) =>
+        !calibrated &&
+        health.some(
+          ({ name: of, level, message }) =>
+            of === name && level <= DiagnosticLevel.warn && !message.startsWith("not calibrated"),
+        ),
     );
     if (isNews) void this.stream.refresh();
   }
 
   begin(): void {
-    document.body.append(this.#bar.element, makeTokenForm(this.stream), ...makeArraySetup(this.stream, this.suit, this.theme), this.#notice, makeThreatBanner(this.live.threats, this.stream), makeTareBanner(this.stream), this.#room, this.#transport.element, this.#help, this.#thresholds, this.#take.element);
+    document.body.append(
+      this.#bar.element,
+      makeTokenForm(this.stream),
+      ...makeArraySetup(this.stream, this.suit, this.theme),
+      this.#notice,
+      makeThreatBanner(this.live.threats, this.stream),
+      makeTareBanner(this.stream),
+      this.#room,
+      this.#transport.element,
+      this.#help,
+      this.#thresholds,
+      this.#take.element,
+    );
     window.addEventListener("hashchange", () => this.#route());
     window.addEventListener("keydown", (event) => this.#key(event));
-    this.suit.selected.follow((array) => array !== undefined && this.#shown !== undefined && this.open(this.#shown.name));
+    this.suit.selected.follow(
+      (array) => array !== undefined && this.#shown !== undefined && this.open(this.#shown.name),
+    );
     this.#route();
     this.stream.connect();
     requestAnimationFrame(this.#drawNext);
@@ -102,7 +121,8 @@ export class App implements ViewContext {
 
   #route(): void {
     const [name, array] = this.#address();
-    if (array !== "" && this.suit.indexOf(array) >= 0 && this.suit.selected.value?.name !== array) this.suit.select(array);
+    if (array !== "" && this.suit.indexOf(array) >= 0 && this.suit.selected.value?.name !== array)
+      this.suit.select(array);
     const view = this.#views.find((candidate) => candidate.name === name) ?? this.#views[0];
     if (view === undefined || view === this.#shown) return;
     this.#shown?.hide();
@@ -135,7 +155,9 @@ export class App implements ViewContext {
 
   #key(event: KeyboardEvent): void {
     const target = event.target as Element;
-    const isTyping = target.closest("input:not([type=checkbox]):not([type=radio]):not([type=range]), select, textarea, dialog") !== null;
+    const isTyping =
+      target.closest("input:not([type=checkbox]):not([type=radio]):not([type=range]), select, textarea, dialog") !==
+      null;
     if (event.ctrlKey || event.metaKey || event.altKey || isTyping || event.defaultPrevented) return;
     if (this.#shown?.key?.(event) === true || this.#act(event)) event.preventDefault();
   }

@@ -11,7 +11,11 @@ function read(key: string): unknown {
 }
 
 /** A choice of the user that the browser remembers; one that it may not remember lasts as long as the page. */
-export function setting<T extends string | number | boolean>(name: string, first: T, allowed: (value: T) => boolean): Signal<T> {
+export function setting<T extends string | number | boolean>(
+  name: string,
+  first: T,
+  allowed: (value: T) => boolean,
+): Signal<T> {
   const key = `dermis.${name}`;
   const remembered = read(key);
   const usable = typeof remembered === typeof first && allowed(remembered as T);

@@ -9,4 +9,11 @@ import { createSuitView } from "./views/suit/suit_view";
 import { createTimeView } from "./views/time/time_view";
 
 /** The views in the order of their tabs. */
-export const VIEWS: readonly ViewFactory[] = [createArrayView, createTimeView, createSuitView, createRecognitionView, createHealthView, createCalibrationView];
+export const VIEWS: readonly ViewFactory[] = [
+  createArrayView,
+  createTimeView,
+  createSuitView,
+  createRecognitionView,
+  createHealthView,
+  createCalibrationView,
+];

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Plays an emulated device to `dermis record` and compares what was recorded with what the device measured."""
+
 import contextlib
 import math
 import os
@@ -26,7 +27,9 @@ class Outcome:
     equal: int = 0
     lost: list = field(default_factory=list)  # numbers of undamaged frames that were not recorded
     damaged: int = 0  # frames with a changed byte
-    wrong: list = field(default_factory=list)  # (place in the recording, taxels that differ from the nearest damaged frame)
+    wrong: list = field(
+        default_factory=list
+    )  # (place in the recording, taxels that differ from the nearest damaged frame)
     resynchronisation: int = 0  # most undamaged frames lost in a row
     out_of_order: int = 0  # doubled, or older than the one before
     misreported: int = 0  # equal frames with another number, time, temperature or supply than the device sent
@@ -58,6 +61,7 @@ class Outcome:
 
 def damage(pieces, generator, share):
     """The pieces with that share of their bytes dropped, inserted or flipped, and the frames that it hit."""
+
     def gap():
         return int(math.log(1.0 - generator.random()) / math.log(1.0 - share))
 
@@ -86,7 +90,7 @@ def join_in_the_middle(pieces, generator):
     """The pieces of a device that has been sending for a while: the first one is cut. And the frames that it hit."""
     first = next(number for number, piece in enumerate(pieces) if piece.frames)
     cut = generator.randrange(1, len(pieces[first].data))
-    return [Piece(pieces[first].data[cut:], pieces[first].frames), *pieces[first + 1:]], set(pieces[first].frames)
+    return [Piece(pieces[first].data[cut:], pieces[first].frames), *pieces[first + 1 :]], set(pieces[first].frames)
 
 
 def key(counts):
@@ -100,9 +104,14 @@ def is_reported(frame, record):
     supply = acquisition["supply_v"] if acquisition["has_supply_v"] else None
     sequence = acquisition["sequence"] if acquisition["has_sequence"] else None
     time = acquisition["device_time_ns"] if acquisition["has_device_time"] else None
-    return (all(said is None or heard is not None and abs(said - heard) < 1e-9
-                for said, heard in ((frame.temperature, record.temperature), (frame.supply, supply)))
-            and frame.sequence in (None, sequence) and frame.device_time in (None, time))
+    return (
+        all(
+            said is None or heard is not None and abs(said - heard) < 1e-9
+            for said, heard in ((frame.temperature, record.temperature), (frame.supply, supply))
+        )
+        and frame.sequence in (None, sequence)
+        and frame.device_time in (None, time)
+    )
 
 
 def compare(outcome, frames, hit, recorded):
@@ -138,9 +147,14 @@ class Recorder:
     """`dermis record` at work."""
 
     def __init__(self, binary, uri, out, *arguments, **options):
-        self.process = subprocess.Popen([binary, "record", "--from", uri, "--out", str(out), *map(str, arguments)],
-                                        stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
-                                        text=True, **options)
+        self.process = subprocess.Popen(
+            [binary, "record", "--from", uri, "--out", str(out), *map(str, arguments)],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+            **options,
+        )
 
     def is_running(self):
         return self.process.poll() is None
@@ -188,8 +202,19 @@ def serve_requests(line, device, pieces, is_running, seconds):
     return len(pieces)
 
 
-def record(binary, folder, device, transport, seconds=None, count=None, corrupt=False, auto=False, joined=False,
-           seed=1, share=1e-4):
+def record(
+    binary,
+    folder,
+    device,
+    transport,
+    seconds=None,
+    count=None,
+    corrupt=False,
+    auto=False,
+    joined=False,
+    seed=1,
+    share=1e-4,
+):
     """One run: the device is played on the transport while dermis records it."""
     generator = random.Random(f"{device.name} {transport} {seed}")
     frames, pieces = device.stream(generator, seconds, count)
@@ -210,8 +235,12 @@ def record(binary, folder, device, transport, seconds=None, count=None, corrupt=
     else:
         ends_by_itself = transport in ("serial", "udp") and not corrupt
         with contextlib.closing(open_line(transport, device)) as line:
-            recorder = Recorder(binary, line.uri(device.parameters(auto, shape=joined)), out,
-                                *(("--frames", len(frames)) if ends_by_itself else ()))
+            recorder = Recorder(
+                binary,
+                line.uri(device.parameters(auto, shape=joined)),
+                out,
+                *(("--frames", len(frames)) if ends_by_itself else ()),
+            )
             try:
                 line.wait_for_reader(recorder.is_running)
                 if device.request and transport == "serial":

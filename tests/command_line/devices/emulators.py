@@ -5,6 +5,7 @@ each sends for given frames, and which of its bytes belong to which frame.
 
 Data imitate the marks of their protocol wherever the coding allows it: AA 55 among the readings of a FlexiTac, the
 number of a WiReSens packet that reads "wr", FF FE FE FF on a pressure mat."""
+
 import binascii
 import itertools
 import json
@@ -17,6 +18,7 @@ from typing import Callable, NamedTuple
 
 class Frame(NamedTuple):
     """What the device measured, and what is to be recorded."""
+
     counts: array  # row-major
     temperature: float = None  # [C]
     supply: float = None  # [V]
@@ -27,6 +29,7 @@ class Frame(NamedTuple):
 
 class Piece(NamedTuple):
     """Bytes that are sent together, and the numbers of the frames whose readings they carry."""
+
     data: bytes
     frames: tuple = ()
 
@@ -66,11 +69,12 @@ class Device:
             top, left = random.randint(0, self.rows - height), random.randint(0, self.cols - width)
             for row in range(top, top + height):
                 begin = row * self.cols + left
-                counts[begin:begin + width] = array(self.code, [random.randint(0, self.full_scale)
-                                                                for _ in range(width)])
+                counts[begin : begin + width] = array(
+                    self.code, [random.randint(0, self.full_scale) for _ in range(width)]
+                )
             if self.mark and number % 3 == 0:
                 begin = random.randint(0, len(counts) - len(self.mark))
-                counts[begin:begin + len(self.mark)] = array(self.code, self.mark)
+                counts[begin : begin + len(self.mark)] = array(self.code, self.mark)
             yield Frame(counts)
 
     def stream(self, random, seconds=None, count=None):
@@ -149,7 +153,7 @@ class WireSens:
             frames[index // taxels].counts[index % taxels] = held[index % taxels]
 
     def packet(self, start, values, number):
-        return (struct.pack(f"<bH{len(values)}HI", 1, start, *values, number & 0xFFFFFFFF) + self.delimiter)
+        return struct.pack(f"<bH{len(values)}HI", 1, start, *values, number & 0xFFFFFFFF) + self.delimiter
 
 
 class WireSensNodes(WireSens):
@@ -182,8 +186,13 @@ def stag_request(device, random, frames):
 def stag_stream(device, random, frames):
     shift = device.options["bit_shift"]
     for number, frame in enumerate(frames):
-        yield Piece(b"".join(bytes([number % 200 + 11, index + 11]) + stag_bytes(row, shift) + b"\n"
-                             for index, row in enumerate(rows_of(device, frame))), (number,))
+        yield Piece(
+            b"".join(
+                bytes([number % 200 + 11, index + 11]) + stag_bytes(row, shift) + b"\n"
+                for index, row in enumerate(rows_of(device, frame))
+            ),
+            (number,),
+        )
 
 
 # M1616 (PiezoresistiveArray_SerialMonitor, main.py): AA AB AC, 256 big-endian readings, four bytes of unknown meaning.
@@ -202,8 +211,12 @@ class Wuji:
             sequence, time = 65000 + number, 2**32 - 10**4 + 8 * number
             readings = frame.counts.tobytes()
             size = 4 + len(self.head) + len(readings) + 8
-            body = struct.pack("<H", size) + self.head + readings + struct.pack("<HI", sequence & 0xFFFF,
-                                                                                time & 0xFFFFFFFF)
+            body = (
+                struct.pack("<H", size)
+                + self.head
+                + readings
+                + struct.pack("<HI", sequence & 0xFFFF, time & 0xFFFFFFFF)
+            )
             frames[number] = frame._replace(sequence=sequence, device_time=time * 10**6)
             yield Piece(b"\xaa\x55" + body + struct.pack("<H", binascii.crc_hqx(body, 0xFFFF)), (number,))
 
@@ -228,7 +241,7 @@ class Stuck(Device):
     def frames(self, random, first=0):
         for number, frame in enumerate(Device.frames(self, random, first)):
             if number >= 10:
-                frame.counts[100:100 + len(self.mark)] = array(self.code, self.mark)
+                frame.counts[100 : 100 + len(self.mark)] = array(self.code, self.mark)
             yield frame
 
 
@@ -241,8 +254,13 @@ def pressure_mat(device, random, frames):
 # Bielefeld TactileGlove (SerialInput.cpp): five bytes a taxel.
 def tactileglove(device, random, frames):
     for number, frame in enumerate(frames):
-        yield Piece(b"".join(bytes([0x3C + index, 1, (index % 16) << 4 | value >> 8, value & 0xFF, 0])
-                             for index, value in enumerate(frame.counts)), (number,))
+        yield Piece(
+            b"".join(
+                bytes([0x3C + index, 1, (index % 16) << 4 | value >> 8, value & 0xFF, 0])
+                for index, value in enumerate(frame.counts)
+            ),
+            (number,),
+        )
 
 
 # The Arduino family: text, one dialect a sketch.
@@ -314,8 +332,20 @@ class DermisWire:
             sequence += lost
             temperature, supply = random.randint(-1000, 8000), random.randint(2900, 5100)
             time = self.first_time_us + (sequence - self.first_sequence) * self.period_us
-            packet = struct.pack("<BBIIhHHH", 1, 7, sequence & 0xFFFFFFFF, time & 0xFFFFFFFF, temperature, supply, device.rows,
-                                 device.cols) + frame.counts.tobytes()
+            packet = (
+                struct.pack(
+                    "<BBIIhHHH",
+                    1,
+                    7,
+                    sequence & 0xFFFFFFFF,
+                    time & 0xFFFFFFFF,
+                    temperature,
+                    supply,
+                    device.rows,
+                    device.cols,
+                )
+                + frame.counts.tobytes()
+            )
             packet += struct.pack("<I", zlib.crc32(packet))
             frames[number] = Frame(frame.counts, temperature / 100, supply / 1000, lost, sequence, time * 1000)
             yield Piece(cobs(packet) + b"\x00", (number,))
@@ -332,7 +362,7 @@ class Dense(Device):
 
 
 def rows_of(device, frame):
-    return [frame.counts[row * device.cols:(row + 1) * device.cols] for row in range(device.rows)]
+    return [frame.counts[row * device.cols : (row + 1) * device.cols] for row in range(device.rows)]
 
 
 USB_FULL_SPEED = 1_000_000  # bytes per second, what CDC reaches
@@ -341,56 +371,212 @@ WIRESENS_BOOT = b"Initializing Toolkit\r\nNumber of pins\r\n5\r\n"
 
 DEVICES = [
     Device("flexitac 12x32", "flexitac", 12, 32, baud(2_000_000), flexitac, 255, "B", mark=(0xAA, 0x55)),
-    Device("flexitac 16x32, learnt", "flexitac", 16, 32, baud(2_000_000), flexitac, 255, "B", mark=(0xAA, 0x55),
-           shape_is_known=True),
+    Device(
+        "flexitac 16x32, learnt",
+        "flexitac",
+        16,
+        32,
+        baud(2_000_000),
+        flexitac,
+        255,
+        "B",
+        mark=(0xAA, 0x55),
+        shape_is_known=True,
+    ),
     Stuck("flexitac 16x16, stuck", "flexitac", 16, 16, baud(2_000_000), flexitac, 255, "B", mark=(0xAA, 0x55)),
     Device("3dvitac 16x16", "3dvitac", 16, 16, baud(2_000_000), vitac, 1023, shape_is_known=True),
     Device("3dvitac 16x32", "3dvitac", 16, 32, baud(2_000_000), vitac, 1023),
     Device("wiresens 32x32", "wiresens", 32, 32, baud(250_000), WireSens(120, b"wr", first_packet=0x7277 - 40), 4095),
-    Device("wiresens 32x32, boot", "wiresens", 32, 32, baud(921_600),
-           WireSens(120, b"wr", first_packet=1, boot=WIRESENS_BOOT), 4095),
-    Device("wiresens 16x16, 16 bits", "wiresens", 16, 16, baud(921_600), WireSens(64, b"wr"), 32767, mark=(0x7277,),
-           options={"nodes_per_packet": 64}),
-    Device("wiresens 16x16, skipping", "wiresens", 16, 16, baud(250_000), WireSens(100, b"wr", skipping=0.2), 4095,
-           options={"nodes_per_packet": 100}, is_independent=False),
-    Device("wiresens 16x16, tcp", "wiresens", 16, 16, baud(921_600), WireSens(120, b"", first_packet=0xFFFFFF00), 4095,
-           options={"delimited": "false"}, transports=("tcp-listen", "udp")),
-    Device("wiresens 16x16, nodes", "wiresens", 16, 16, baud(250_000), WireSensNodes(64, b"wr"), 4095,
-           options={"nodes_per_packet": 64}, recognised=False, is_independent=False),
-    Device("stag, request", "stag", 32, 32, baud(1_000_000), stag_request, 4095, options={"bit_shift": 5},
-           shape_is_known=True, request=b"a", request_per_frame=True),
-    Device("stag, request, 6 bits", "stag", 32, 32, baud(1_000_000), stag_request, 4095, options={"bit_shift": 6},
-           shape_is_known=True, request=b"a", request_per_frame=True),
-    Device("stag, stream", "stag", 32, 32, baud(1_000_000), stag_stream, 4095, options={"bit_shift": 5},
-           shape_is_known=True),
+    Device(
+        "wiresens 32x32, boot",
+        "wiresens",
+        32,
+        32,
+        baud(921_600),
+        WireSens(120, b"wr", first_packet=1, boot=WIRESENS_BOOT),
+        4095,
+    ),
+    Device(
+        "wiresens 16x16, 16 bits",
+        "wiresens",
+        16,
+        16,
+        baud(921_600),
+        WireSens(64, b"wr"),
+        32767,
+        mark=(0x7277,),
+        options={"nodes_per_packet": 64},
+    ),
+    Device(
+        "wiresens 16x16, skipping",
+        "wiresens",
+        16,
+        16,
+        baud(250_000),
+        WireSens(100, b"wr", skipping=0.2),
+        4095,
+        options={"nodes_per_packet": 100},
+        is_independent=False,
+    ),
+    Device(
+        "wiresens 16x16, tcp",
+        "wiresens",
+        16,
+        16,
+        baud(921_600),
+        WireSens(120, b"", first_packet=0xFFFFFF00),
+        4095,
+        options={"delimited": "false"},
+        transports=("tcp-listen", "udp"),
+    ),
+    Device(
+        "wiresens 16x16, nodes",
+        "wiresens",
+        16,
+        16,
+        baud(250_000),
+        WireSensNodes(64, b"wr"),
+        4095,
+        options={"nodes_per_packet": 64},
+        recognised=False,
+        is_independent=False,
+    ),
+    Device(
+        "stag, request",
+        "stag",
+        32,
+        32,
+        baud(1_000_000),
+        stag_request,
+        4095,
+        options={"bit_shift": 5},
+        shape_is_known=True,
+        request=b"a",
+        request_per_frame=True,
+    ),
+    Device(
+        "stag, request, 6 bits",
+        "stag",
+        32,
+        32,
+        baud(1_000_000),
+        stag_request,
+        4095,
+        options={"bit_shift": 6},
+        shape_is_known=True,
+        request=b"a",
+        request_per_frame=True,
+    ),
+    Device(
+        "stag, stream",
+        "stag",
+        32,
+        32,
+        baud(1_000_000),
+        stag_stream,
+        4095,
+        options={"bit_shift": 5},
+        shape_is_known=True,
+    ),
     Device("m1616", "m1616", 16, 16, baud(115_200), m1616, 4095, mark=(0xAAAB, 0xACAA, 0xABAC), shape_is_known=True),
-    Fractions("wuji 3088", "wuji", 24, 32, USB_FULL_SPEED, Wuji(b"\x01\x00\x00\x00"), 4095, checksum=True, shape_is_known=True),
-    Device("wuji 1550", "wuji", 24, 32, USB_FULL_SPEED, Wuji(b"\x01\x00"), 4095, "h", mark=(0x55AA, 0x060E, -1), checksum=True,
-           shape_is_known=True),
-    Device("pressure-mat", "pressure-mat", 56, 28, USB_FULL_SPEED / 4, pressure_mat, 207, "B",
-           mark=(0xFF, 0xFE, 0xFE, 0xFF), shape_is_known=True, request=b"start_reading\n"),
+    Fractions(
+        "wuji 3088", "wuji", 24, 32, USB_FULL_SPEED, Wuji(b"\x01\x00\x00\x00"), 4095, checksum=True, shape_is_known=True
+    ),
+    Device(
+        "wuji 1550",
+        "wuji",
+        24,
+        32,
+        USB_FULL_SPEED,
+        Wuji(b"\x01\x00"),
+        4095,
+        "h",
+        mark=(0x55AA, 0x060E, -1),
+        checksum=True,
+        shape_is_known=True,
+    ),
+    Device(
+        "pressure-mat",
+        "pressure-mat",
+        56,
+        28,
+        USB_FULL_SPEED / 4,
+        pressure_mat,
+        207,
+        "B",
+        mark=(0xFF, 0xFE, 0xFE, 0xFF),
+        shape_is_known=True,
+        request=b"start_reading\n",
+    ),
     Device("tactileglove", "tactileglove", 1, 64, baud(115_200), tactileglove, 4095, shape_is_known=True),
     Device("csv, rows", "csv", 8, 10, baud(115_200), Csv(",", "-----\r\n", boot=BOOT), 1023, shape_is_known=True),
     Device("csv, tabs", "csv", 4, 4, baud(9_600), Csv("\t", "\r\n", trailing=True), 1023, shape_is_known=True),
-    Device("csv, spaces", "csv", 16, 16, baud(921_600), Csv(" ", "=====\n", line_end="\n", width=4), 4095,
-           shape_is_known=True),
+    Device(
+        "csv, spaces",
+        "csv",
+        16,
+        16,
+        baud(921_600),
+        Csv(" ", "=====\n", line_end="\n", width=4),
+        4095,
+        shape_is_known=True,
+    ),
     Device("csv, line", "csv", 5, 8, baud(115_200), Csv(" ", boot=BOOT), 1023),
     Device("csv, line, learnt", "csv", 10, 10, baud(230_400), Csv(" ", boot=BOOT), 1023, shape_is_known=True),
     Device("csv, semicolons", "csv", 4, 6, baud(921_600), Csv(";", trailing=True, line_end="\n"), 4095),
     Device("csv, CFG", "csv", 12, 16, baud(921_600), Csv(",", boot=b"CFG,12,16\r\n"), 4095, shape_is_known=True),
     Device("csv, millis and a line", "csv", 12, 10, baud(115_200), Csv(",", boot=BOOT, first_time=1234), 1023),
-    Device("csv, micros and a square line", "csv", 10, 10, baud(230_400),
-           Csv(",", first_time=3_000_000_000, time_step=20_000), 1023, shape_is_known=True),
-    Device("csv, millis and rows", "csv", 12, 10, baud(115_200), Csv(",", "\r\n", first_time=0), 1023,
-           shape_is_known=True),
+    Device(
+        "csv, micros and a square line",
+        "csv",
+        10,
+        10,
+        baud(230_400),
+        Csv(",", first_time=3_000_000_000, time_step=20_000),
+        1023,
+        shape_is_known=True,
+    ),
+    Device(
+        "csv, millis and rows", "csv", 12, 10, baud(115_200), Csv(",", "\r\n", first_time=0), 1023, shape_is_known=True
+    ),
     Device("json, rows", "json", 12, 10, baud(115_200), json_rows, 1023, shape_is_known=True),
     Device("json, a list", "json", 5, 8, baud(115_200), json_list, 4095),
-    Device("dermis 12x32", "dermis", 12, 32, baud(2_000_000), DermisWire(2**32 - 300, 2**32 - 10**6), 65535,
-           checksum=True, shape_is_known=True, transports=("serial", "tcp", "udp")),
-    Device("dermis 16x16, skipping", "dermis", 16, 16, baud(921_600), DermisWire(skipping=0.1), 65535, checksum=True,
-           shape_is_known=True),
-    Dense("dermis 17x19, dense", "dermis", 17, 19, baud(921_600), DermisWire(), 65535, checksum=True,
-          shape_is_known=True),
-    Device("dermis 64x160", "dermis", 64, 160, 2_200_000, DermisWire(period_us=10_000), 4095, checksum=True,
-           shape_is_known=True, transports=("tcp",)),
+    Device(
+        "dermis 12x32",
+        "dermis",
+        12,
+        32,
+        baud(2_000_000),
+        DermisWire(2**32 - 300, 2**32 - 10**6),
+        65535,
+        checksum=True,
+        shape_is_known=True,
+        transports=("serial", "tcp", "udp"),
+    ),
+    Device(
+        "dermis 16x16, skipping",
+        "dermis",
+        16,
+        16,
+        baud(921_600),
+        DermisWire(skipping=0.1),
+        65535,
+        checksum=True,
+        shape_is_known=True,
+    ),
+    Dense(
+        "dermis 17x19, dense", "dermis", 17, 19, baud(921_600), DermisWire(), 65535, checksum=True, shape_is_known=True
+    ),
+    Device(
+        "dermis 64x160",
+        "dermis",
+        64,
+        160,
+        2_200_000,
+        DermisWire(period_us=10_000),
+        4095,
+        checksum=True,
+        shape_is_known=True,
+        transports=("tcp",),
+    ),
 ]

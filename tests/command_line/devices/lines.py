@@ -2,6 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Where an emulated device sends its bytes: a pseudo-terminal, TCP in both directions, UDP, a file. Bytes leave at the
 rate of the device, by absolute deadlines."""
+
 import contextlib
 import os
 import pty
@@ -19,6 +20,7 @@ PATIENCE = 60  # [s] for the reader to open its end
 
 class Line:
     """One connection to a reader, which opens uri()."""
+
     worst_delay = 0.0  # [s] by which bytes left too late, because the reader or this program was slow
 
     def wait_for_reader(self, is_running):
@@ -48,7 +50,7 @@ class Line:
         sent = 0
         while sent < len(data):
             due = int((time.monotonic() + TICK - begin) * bytes_per_second)
-            portion = data[sent:max(due, sent + 1)]
+            portion = data[sent : max(due, sent + 1)]
             yield sent, portion
             sent += len(portion)
 
@@ -61,6 +63,7 @@ class Line:
 
 class Descriptor(Line):
     """A line that is a file descriptor."""
+
     descriptor = None
 
     def send(self, data, is_running):
@@ -68,7 +71,7 @@ class Descriptor(Line):
             _, writable, _ = select.select([], [self.descriptor], [], 0.1)
             if writable:
                 try:
-                    data = data[os.write(self.descriptor, data):]
+                    data = data[os.write(self.descriptor, data) :]
                 except BlockingIOError:
                     pass
 
@@ -201,5 +204,9 @@ def free_port(kind):
 
 
 def open_line(transport, device):
-    return {"serial": lambda: Serial(round(device.bytes_per_second * 10)), "tcp": TcpServer, "tcp-listen": TcpClient,
-            "udp": Udp}[transport]()
+    return {
+        "serial": lambda: Serial(round(device.bytes_per_second * 10)),
+        "tcp": TcpServer,
+        "tcp-listen": TcpClient,
+        "udp": Udp,
+    }[transport]()

@@ -2,6 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Reads a recording: MCAP (mcap.dev/spec) with CDR messages described by their own ros2msg schemas. Nothing here is
 shared with dermis."""
+
 import ctypes
 import struct
 import zlib
@@ -22,10 +23,13 @@ def read_frames(path):
         messages.setdefault(topic.rsplit("/", 1)[1], []).append(decode(schema, data))
     images, acquisitions = messages["raw"], messages["acquisition"]
     assert len(images) == len(acquisitions), f"{len(images)} images, {len(acquisitions)} acquisitions"
-    temperatures = {nanoseconds(message["header"]["stamp"]): message["temperature"]
-                    for message in messages["temperature"]}
-    return [Recorded(counts_of(image), acquisition, temperatures.get(nanoseconds(image["header"]["stamp"])))
-            for image, acquisition in zip(images, acquisitions)]
+    temperatures = {
+        nanoseconds(message["header"]["stamp"]): message["temperature"] for message in messages["temperature"]
+    }
+    return [
+        Recorded(counts_of(image), acquisition, temperatures.get(nanoseconds(image["header"]["stamp"])))
+        for image, acquisition in zip(images, acquisitions)
+    ]
 
 
 def nanoseconds(stamp):
@@ -64,23 +68,24 @@ def messages_in(records, schemas, channels):
 def records_in(data, at):
     while at + 9 <= len(data):
         opcode, size = struct.unpack_from("<BQ", data, at)
-        if data[at:at + 8] == b"\x89MCAP0\r\n" or at + 9 + size > len(data):
+        if data[at : at + 8] == b"\x89MCAP0\r\n" or at + 9 + size > len(data):
             return
-        yield opcode, data[at + 9:at + 9 + size]
+        yield opcode, data[at + 9 : at + 9 + size]
         at += 9 + size
 
 
 def text_at(data, at):
     size = struct.unpack_from("<I", data, at)[0]
-    return data[at + 4:at + 4 + size].decode(), at + 4 + size
+    return data[at + 4 : at + 4 + size].decode(), at + 4 + size
 
 
 def unpacked_chunk(body):
     _, _, size, crc = struct.unpack_from("<QQQI", body)
     compression, at = text_at(body, 28)
-    packed = body[at + 8:]
+    packed = body[at + 8 :]
     data = {"": lambda: packed, "lz4": lambda: unpack_lz4(packed, size), "zstd": lambda: unpack_zstd(packed, size)}[
-        compression]()
+        compression
+    ]()
     assert len(data) == size and crc in (0, zlib.crc32(data)), "chunk"
     return data
 
@@ -92,8 +97,9 @@ def unpack_lz4(packed, size):
     target, begin, written = ctypes.create_string_buffer(size + 1), 0, 0
     while True:
         room, taken = ctypes.c_size_t(size + 1 - written), ctypes.c_size_t(len(packed) - begin)
-        hint = lz4.LZ4F_decompress(context, ctypes.byref(target, written), ctypes.byref(room), packed[begin:],
-                                   ctypes.byref(taken), None)
+        hint = lz4.LZ4F_decompress(
+            context, ctypes.byref(target, written), ctypes.byref(room), packed[begin:], ctypes.byref(taken), None
+        )
         begin, written = begin + taken.value, written + room.value
         if hint == 0 or taken.value == 0:
             break
@@ -109,8 +115,21 @@ def unpack_zstd(packed, size):
     return target.raw
 
 
-PRIMITIVES = {"bool": "?", "byte": "B", "char": "B", "int8": "b", "uint8": "B", "int16": "h", "uint16": "H",
-              "int32": "i", "uint32": "I", "int64": "q", "uint64": "Q", "float32": "f", "float64": "d"}
+PRIMITIVES = {
+    "bool": "?",
+    "byte": "B",
+    "char": "B",
+    "int8": "b",
+    "uint8": "B",
+    "int16": "h",
+    "uint16": "H",
+    "int32": "i",
+    "uint32": "I",
+    "int64": "q",
+    "uint64": "Q",
+    "float32": "f",
+    "float64": "d",
+}
 
 
 def decode(schema, data):
@@ -141,12 +160,12 @@ class Cdr:
             size = self.value("uint32")
             if kind == "uint8[]":
                 self.at += size
-                return self.data[self.at - size:self.at]
+                return self.data[self.at - size : self.at]
             return [self.value(kind[:-2]) for _ in range(size)]
         if kind == "string":
             size = self.value("uint32")
             self.at += size
-            return self.data[self.at - size:self.at - 1].decode()
+            return self.data[self.at - size : self.at - 1].decode()
         if kind not in PRIMITIVES:
             kind = {"time": "builtin_interfaces/Time"}.get(kind, kind)
             return self.message(kind.split("/")[-1])

@@ -71,7 +71,12 @@ export class ArrayPicture {
   #words(array: ArrayDescription): string {
     const state = this.#state;
     const presses = state?.taxelPresses.reduce((sum, count) => sum + count, 0) ?? 0;
-    const target = state?.stage === CalibrationStage.pressing ? `; press ${askedFor(state).map((taxel) => taxelName(taxel, array)).join(" and ")}` : "";
+    const target =
+      state?.stage === CalibrationStage.pressing
+        ? `; press ${askedFor(state)
+            .map((taxel) => taxelName(taxel, array))
+            .join(" and ")}`
+        : "";
     return `${array.rows} rows, ${array.cols} columns, ${presses} presses${target}`;
   }
 
@@ -85,7 +90,10 @@ export class ArrayPicture {
     context.textBaseline = "middle";
     for (let taxel = 0; taxel < rows * cols; ++taxel) {
       const count = presses?.[taxel] ?? 0;
-      context.fillStyle = count === 0 ? cssColor("--raised") : colorOf(FIRST_COLOR + (LAST_COLOR - FIRST_COLOR) * ((count - 1) / Math.max(1, most - 1)));
+      context.fillStyle =
+        count === 0
+          ? cssColor("--raised")
+          : colorOf(FIRST_COLOR + (LAST_COLOR - FIRST_COLOR) * ((count - 1) / Math.max(1, most - 1)));
       const left = area.left + (taxel % cols) * cellWidth;
       const top = area.top + Math.floor(taxel / cols) * cellHeight;
       context.fillRect(left, top, cellWidth - gap, cellHeight - gap);
@@ -129,7 +137,14 @@ export class ArrayPicture {
   }
 
   /** Around a taxel, and its row and column as faint lines, so that it is found on the array; or crossed out. */
-  #ring(context: CanvasRenderingContext2D, area: Area, { rows, cols }: ArrayDescription, taxel: number, color: string, crossed: boolean): void {
+  #ring(
+    context: CanvasRenderingContext2D,
+    area: Area,
+    { rows, cols }: ArrayDescription,
+    taxel: number,
+    color: string,
+    crossed: boolean,
+  ): void {
     const [width, height] = [area.width / cols, area.height / rows];
     const left = area.left + (taxel % cols) * width;
     const top = area.top + Math.floor(taxel / cols) * height;

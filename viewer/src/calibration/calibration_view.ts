@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { element, setHidden, setText } from "../dom";
-import { CalibrationHint, CalibrationStage, readCalibrationState, type CalibrationState } from "../messages/calibration_state";
+import {
+  CalibrationHint,
+  CalibrationStage,
+  readCalibrationState,
+  type CalibrationState,
+} from "../messages/calibration_state";
 import type { ArrayDescription } from "../suit";
 import type { View, ViewContext, ViewFactory } from "../view";
 import { ArrayPicture } from "./array_picture";
@@ -33,7 +38,12 @@ class CalibrationView implements View {
     cancel: () => this.#cancel(),
   });
   readonly #title = element("h2", {}, "Presses of each taxel");
-  readonly #problem = element("p", { class: "calibration-problem", role: "alert", "data-role": "problem", hidden: true });
+  readonly #problem = element("p", {
+    class: "calibration-problem",
+    role: "alert",
+    "data-role": "problem",
+    hidden: true,
+  });
   readonly #sure = element("dialog", { class: "dialog", "aria-label": "Cancel the calibration", "data-role": "sure" });
   readonly #beep = new Beep();
   #state: CalibrationState | undefined;
@@ -46,8 +56,19 @@ class CalibrationView implements View {
     this.element = element(
       "div",
       { class: "view calibration-view", "data-view": "calibration" },
-      element("section", { class: "panel calibration-array", "aria-label": "Array" }, element("header", { class: "panel-title" }, this.#title), this.#picture.element),
-      element("section", { class: "panel calibration-side", "aria-label": "Guide" }, this.#problem, this.#setup.element, this.#walk.element),
+      element(
+        "section",
+        { class: "panel calibration-array", "aria-label": "Array" },
+        element("header", { class: "panel-title" }, this.#title),
+        this.#picture.element,
+      ),
+      element(
+        "section",
+        { class: "panel calibration-side", "aria-label": "Guide" },
+        this.#problem,
+        this.#setup.element,
+        this.#walk.element,
+      ),
       this.#sure,
     );
     this.#sure.append(
@@ -57,7 +78,11 @@ class CalibrationView implements View {
         { method: "dialog" },
         element("button", { class: "button" }, "Go on"),
         " ",
-        element("button", { class: "button primary", "data-role": "forget", onclick: () => this.#call("cancel") }, "Forget them"),
+        element(
+          "button",
+          { class: "button primary", "data-role": "forget", onclick: () => this.#call("cancel") },
+          "Forget them",
+        ),
       ),
     );
   }
@@ -85,7 +110,8 @@ class CalibrationView implements View {
     const action = { n: "skip", b: "repeat" }[event.key];
     const stage = this.#state?.stage;
     if (action !== undefined && stage === CalibrationStage.pressing) this.#call(action);
-    else if (event.key === "Enter" && stage === CalibrationStage.done && !(event.target instanceof HTMLButtonElement)) this.#call("save");
+    else if (event.key === "Enter" && stage === CalibrationStage.done && !(event.target instanceof HTMLButtonElement))
+      this.#call("save");
     else return false;
     return true;
   }
@@ -114,7 +140,8 @@ class CalibrationView implements View {
     setText(this.#title, `Presses of each taxel of ${array?.name ?? ""}`);
     setHidden(this.#setup.element, this.#state !== undefined);
     setHidden(this.#walk.element, this.#state === undefined);
-    if (this.#state === undefined) this.#setup.set(array, this.#context.stream.services.value.has("/calibration/start"));
+    if (this.#state === undefined)
+      this.#setup.set(array, this.#context.stream.services.value.has("/calibration/start"));
     else this.#walk.set(this.#state, array);
     this.#picture.set(array, this.#state, this.#state === undefined ? this.#setup.taxels : this.#planned);
   }

@@ -25,9 +25,13 @@ export interface StartRequest {
 
 /** "1, 2.5 5" as numbers; undefined where it is no list of 1 to 16 different weights. */
 export function readWeights(text: string): number[] | undefined {
-  const weights = text.split(/[\s,;]+/).filter((word) => word !== "").map(Number);
+  const weights = text
+    .split(/[\s,;]+/)
+    .filter((word) => word !== "")
+    .map(Number);
   const isWeight = (weight: number): boolean => weight >= 0.01 && weight <= 1000;
-  const good = weights.length >= 1 && weights.length <= 16 && weights.every(isWeight) && new Set(weights).size === weights.length;
+  const good =
+    weights.length >= 1 && weights.length <= 16 && weights.every(isWeight) && new Set(weights).size === weights.length;
   return good ? weights : undefined;
 }
 

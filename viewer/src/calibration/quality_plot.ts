@@ -44,7 +44,8 @@ export class QualityPlot {
     if (Number.isNaN(error)) return;
     const last = this.#points.at(-1);
     if (last?.error === error && this.#total === total) return;
-    if (last !== undefined && presses < last.presses) this.#points = this.#points.filter((point) => point.presses < presses);
+    if (last !== undefined && presses < last.presses)
+      this.#points = this.#points.filter((point) => point.presses < presses);
     this.#points.push({ presses, error });
     this.#total = total;
     this.#draw();
@@ -58,17 +59,33 @@ export class QualityPlot {
     const parts: SVGElement[] = [];
     for (const error of [0, end / 2, end]) {
       parts.push(svg("line", { class: "quality-grid", x1: LEFT, x2: WIDTH - 8, y1: y(error), y2: y(error) }));
-      parts.push(svg("text", { class: "quality-label", x: LEFT - 6, y: y(error) + 4, "text-anchor": "end" }, `${Number((100 * error).toPrecision(2))} %`));
+      parts.push(
+        svg(
+          "text",
+          { class: "quality-label", x: LEFT - 6, y: y(error) + 4, "text-anchor": "end" },
+          `${Number((100 * error).toPrecision(2))} %`,
+        ),
+      );
     }
     if (this.#total > 0) {
       parts.push(svg("text", { class: "quality-label", x: x(0), y: HEIGHT - 4 }, "0"));
-      parts.push(svg("text", { class: "quality-label", x: x(this.#total), y: HEIGHT - 4, "text-anchor": "end" }, `${this.#total} presses`));
+      parts.push(
+        svg(
+          "text",
+          { class: "quality-label", x: x(this.#total), y: HEIGHT - 4, "text-anchor": "end" },
+          `${this.#total} presses`,
+        ),
+      );
     }
     const line = this.#points.map(({ presses, error }) => `${x(presses).toFixed(1)},${y(error).toFixed(1)}`).join(" ");
     parts.push(svg("polyline", { class: "quality-line", points: line }));
-    for (const { presses, error } of this.#points) parts.push(svg("circle", { class: "quality-point", cx: x(presses), cy: y(error), r: 2.5 }));
+    for (const { presses, error } of this.#points)
+      parts.push(svg("circle", { class: "quality-point", cx: x(presses), cy: y(error), r: 2.5 }));
     this.#picture.replaceChildren(...parts);
     const last = this.#points.at(-1);
-    this.#picture.setAttribute("aria-label", last === undefined ? "no figure yet" : `${(100 * last.error).toFixed(1)} % after ${last.presses} presses`);
+    this.#picture.setAttribute(
+      "aria-label",
+      last === undefined ? "no figure yet" : `${(100 * last.error).toFixed(1)} % after ${last.presses} presses`,
+    );
   }
 }

@@ -2,23 +2,57 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { element, setText } from "../dom";
 import type { ArrayDescription } from "../suit";
-import { DEFAULT_WEIGHTS_N, TAXEL_CHOICES, describeWork, readWeights, strideOf, taxelsOf, type StartRequest, type TaxelChoice } from "./plan";
+import {
+  DEFAULT_WEIGHTS_N,
+  TAXEL_CHOICES,
+  describeWork,
+  readWeights,
+  strideOf,
+  taxelsOf,
+  type StartRequest,
+  type TaxelChoice,
+} from "./plan";
 
 const SECONDS = { min: 0.05, max: 30, step: "any", required: true } as const;
 
 /** Asks for the weights and taxels of a calibration. */
 export class SetupForm {
   readonly element: HTMLElement;
-  readonly #weights = element("input", { id: "weights", class: "field", "data-role": "weights", value: DEFAULT_WEIGHTS_N.join(", "), autocomplete: "off" });
+  readonly #weights = element("input", {
+    id: "weights",
+    class: "field",
+    "data-role": "weights",
+    value: DEFAULT_WEIGHTS_N.join(", "),
+    autocomplete: "off",
+  });
   readonly #taxels = element(
     "select",
     { id: "taxels", class: "field", "data-role": "taxels" },
     ...TAXEL_CHOICES.map(({ name, words }) => element("option", { value: name }, words)),
   );
-  readonly #hold = element("input", { id: "hold", class: "field", type: "number", value: 1, "data-role": "hold", ...SECONDS });
-  readonly #quiet = element("input", { id: "quiet", class: "field", type: "number", value: 3, "data-role": "quiet", ...SECONDS, min: 0.2 });
+  readonly #hold = element("input", {
+    id: "hold",
+    class: "field",
+    type: "number",
+    value: 1,
+    "data-role": "hold",
+    ...SECONDS,
+  });
+  readonly #quiet = element("input", {
+    id: "quiet",
+    class: "field",
+    type: "number",
+    value: 3,
+    "data-role": "quiet",
+    ...SECONDS,
+    min: 0.2,
+  });
   readonly #work = element("p", { "data-role": "work" });
-  readonly #start = element("button", { class: "button primary large-button", type: "submit", "data-role": "start" }, "Begin");
+  readonly #start = element(
+    "button",
+    { class: "button primary large-button", type: "submit", "data-role": "start" },
+    "Begin",
+  );
   readonly #title = element("h2");
   #array: ArrayDescription | undefined;
 
@@ -27,13 +61,21 @@ export class SetupForm {
       "form",
       { class: "calibration-setup", "data-role": "setup", novalidate: true },
       this.#title,
-      element("p", {}, "Put known weights on single taxels; the page tells which and when. A stamp as large as a taxel, weights and a kitchen scale are enough."),
+      element(
+        "p",
+        {},
+        "Put known weights on single taxels; the page tells which and when. A stamp as large as a taxel, weights and a kitchen scale are enough.",
+      ),
       ...this.#field("Weights [N]", this.#weights),
       ...this.#field("Taxels", this.#taxels),
       ...this.#field("Hold [s]", this.#hold),
       ...this.#field("Quiet at the beginning [s]", this.#quiet),
       this.#work,
-      element("p", { class: "dim" }, "Three weights or more give a pressed taxel a law of its own. Forces above the heaviest are less and less sure. Taxels that are not pressed share what the others taught."),
+      element(
+        "p",
+        { class: "dim" },
+        "Three weights or more give a pressed taxel a law of its own. Forces above the heaviest are less and less sure. Taxels that are not pressed share what the others taught.",
+      ),
       this.#start,
     );
     this.element.addEventListener("input", () => {
@@ -65,7 +107,13 @@ export class SetupForm {
 
   #request(): StartRequest | undefined {
     const weights = readWeights(this.#weights.value);
-    if (this.#array === undefined || weights === undefined || !this.#hold.checkValidity() || !this.#quiet.checkValidity()) return undefined;
+    if (
+      this.#array === undefined ||
+      weights === undefined ||
+      !this.#hold.checkValidity() ||
+      !this.#quiet.checkValidity()
+    )
+      return undefined;
     const choice = this.#taxels.value as TaxelChoice;
     return {
       array: this.#array.name,

@@ -19,7 +19,11 @@ export interface WalkActions {
 }
 
 function button(role: string, words: string, key: string, act: () => void): HTMLButtonElement {
-  return element("button", { class: "button", type: "button", "data-role": role, title: key === "" ? "" : `Key ${key}`, onclick: act }, words);
+  return element(
+    "button",
+    { class: "button", type: "button", "data-role": role, title: key === "" ? "" : `Key ${key}`, onclick: act },
+    words,
+  );
 }
 
 function percent(value: number): string {
@@ -40,7 +44,12 @@ export class WalkPanel {
   readonly plot = new QualityPlot();
   readonly #progress = element("progress", { "aria-label": "Presses", "data-role": "progress", max: 1, value: 0 });
   readonly #count = element("span", { class: "figure", "data-role": "count" });
-  readonly #words = element("p", { class: "instruction", role: "status", "aria-live": "assertive", "data-role": "instruction" });
+  readonly #words = element("p", {
+    class: "instruction",
+    role: "status",
+    "aria-live": "assertive",
+    "data-role": "instruction",
+  });
   readonly #ring = new HoldRing();
   readonly #reading = new ReadingBar();
   readonly #togetherReading = new ReadingBar();
@@ -72,11 +81,25 @@ export class WalkPanel {
       element(
         "section",
         { class: "quality", "aria-label": "Quality of the fit so far" },
-        element("div", { class: "reading-head" }, element("h2", {}, "Error on presses the fit did not see"), this.#quality),
+        element(
+          "div",
+          { class: "reading-head" },
+          element("h2", {}, "Error on presses the fit did not see"),
+          this.#quality,
+        ),
         this.plot.element,
         this.#unpressed,
       ),
-      element("div", { class: "walk-buttons" }, this.#save, this.#skip, this.#repeat, this.#finish, element("span", { class: "stretch" }), this.#cancel),
+      element(
+        "div",
+        { class: "walk-buttons" },
+        this.#save,
+        this.#skip,
+        this.#repeat,
+        this.#finish,
+        element("span", { class: "stretch" }),
+        this.#cancel,
+      ),
     );
   }
 
@@ -85,7 +108,10 @@ export class WalkPanel {
     const isFitting = stage === CalibrationStage.fitting;
     this.#progress.max = isFitting ? 1 : Math.max(1, state.pressesTotal);
     this.#progress.value = isFitting ? state.holdShare : state.pressesDone;
-    setText(this.#count, isFitting ? `fit, ${fixed(100 * state.holdShare, 0)} %` : `${state.pressesDone} of ${state.pressesTotal}`);
+    setText(
+      this.#count,
+      isFitting ? `fit, ${fixed(100 * state.holdShare, 0)} %` : `${state.pressesDone} of ${state.pressesTotal}`,
+    );
     this.#say(state);
     setData(this.#words, "level", levelOf(state));
     setData(this.element, "stage", String(stage));
@@ -94,7 +120,12 @@ export class WalkPanel {
     const isKnown = !Number.isNaN(state.medianRelativeError);
     setText(this.#quality, isKnown ? percent(state.medianRelativeError) : "after some presses");
     this.#quality.classList.toggle("dim", !isKnown);
-    setText(this.#unpressed, Number.isNaN(state.unpressedRelativeError) ? "" : `On taxels that were not pressed: about ${percent(state.unpressedRelativeError)}`);
+    setText(
+      this.#unpressed,
+      Number.isNaN(state.unpressedRelativeError)
+        ? ""
+        : `On taxels that were not pressed: about ${percent(state.unpressedRelativeError)}`,
+    );
     this.#setButtons(state);
   }
 
@@ -111,7 +142,12 @@ export class WalkPanel {
     const isPressing = state.stage === CalibrationStage.pressing;
     const isPair = state.togetherWith >= 0;
     setHidden(this.#pressing, !isPressing && state.stage !== CalibrationStage.unloaded);
-    if (isPressing) this.#ring.set(state.holdShare, `${Number(state.weightN.toPrecision(4))} N`, inGrams(state.weightN) + (isPair ? " each" : ""));
+    if (isPressing)
+      this.#ring.set(
+        state.holdShare,
+        `${Number(state.weightN.toPrecision(4))} N`,
+        inGrams(state.weightN) + (isPair ? " each" : ""),
+      );
     else this.#ring.set(state.holdShare, "0 N", "nothing");
     setHidden(this.#readings, !isPressing);
     setHidden(this.#togetherReading.element, !isPair);

@@ -105,7 +105,12 @@ describe("the slots of contacts", () => {
 
   it("are given to so many and no more", () => {
     const slots = new ContactSlots();
-    slots.add(frame(1, Array.from({ length: SLOTS + 3 }, (_, index) => index + 1)));
+    slots.add(
+      frame(
+        1,
+        Array.from({ length: SLOTS + 3 }, (_, index) => index + 1),
+      ),
+    );
     expect(slots.indexOf(SLOTS)).toBe(SLOTS - 1);
     expect(slots.indexOf(SLOTS + 1)).toBe(-1);
   });

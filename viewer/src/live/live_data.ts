@@ -91,7 +91,12 @@ export class LiveData {
 
   #logThreat(threat: Threat): void {
     const isBegin = stands(threat);
-    this.events.add("threat", isBegin ? threat.crossedS : threat.stampS, isBegin ? threat.name : `${threat.name} over`, threat.array);
+    this.events.add(
+      "threat",
+      isBegin ? threat.crossedS : threat.stampS,
+      isBegin ? threat.name : `${threat.name} over`,
+      threat.array,
+    );
   }
 
   /** The first value is the present state, not a change. */
@@ -111,7 +116,8 @@ export class LiveData {
     array.total.add(contacts.stampS, contacts.totalForceN);
     const isRewound = contacts.stampS < Math.min(beforeS, this.latestS) - 1; // an array may lag behind the others
     if (isRewound) this.events.rewind(contacts.stampS);
-    for (const id of array.slots.add(contacts)) this.events.add("contact", contacts.stampS, `contact ${id}`, this.#names[index]);
+    for (const id of array.slots.add(contacts))
+      this.events.add("contact", contacts.stampS, `contact ${id}`, this.#names[index]);
     array.addCentre();
     array.version += 1;
     this.version += 1;

@@ -40,7 +40,10 @@ export class RegionForce {
       this.#end();
       this.history = new ForceHistory();
       this.newtons = NaN;
-      this.#end = region === undefined ? () => undefined : subscribe(`/${region.array}/force`, (message) => this.#receive(message, region));
+      this.#end =
+        region === undefined
+          ? () => undefined
+          : subscribe(`/${region.array}/force`, (message) => this.#receive(message, region));
     });
   }
 

@@ -18,12 +18,15 @@ export class ThreatBoard {
     const before = this.#byLimit.get(key);
     this.#byLimit.set(key, threat);
     this.limits.value = [...this.#byLimit.values()];
-    const wasMissed = before === undefined ? stands(threat) && !this.#isLogged(threat) : stands(before) !== stands(threat);
+    const wasMissed =
+      before === undefined ? stands(threat) && !this.#isLogged(threat) : stands(before) !== stands(threat);
     if (threat.changed || wasMissed) this.log.value = [threat, ...this.log.value].slice(0, MOST_ENTRIES);
   }
 
   #isLogged({ name, array, crossedS }: Threat): boolean {
-    return this.log.value.some((entry) => stands(entry) && entry.name === name && entry.array === array && entry.crossedS === crossedS);
+    return this.log.value.some(
+      (entry) => stands(entry) && entry.name === name && entry.array === array && entry.crossedS === crossedS,
+    );
   }
 
   /** Another connection: what stood before may have ended. The log stays. */

@@ -5,7 +5,17 @@ import { CdrReader } from "./cdr_reader";
 export const CalibrationStage = { none: 0, unloaded: 1, pressing: 2, fitting: 3, done: 4, failed: 5 } as const;
 
 /** The advice to the person besides the wanted press. */
-export const CalibrationHint = { none: 0, press: 1, hold: 2, release: 3, otherTaxel: 4, unsteady: 5, tooShort: 6, several: 7, oneOfTwo: 8 } as const;
+export const CalibrationHint = {
+  none: 0,
+  press: 1,
+  hold: 2,
+  release: 3,
+  otherTaxel: 4,
+  unsteady: 5,
+  tooShort: 6,
+  several: 7,
+  oneOfTwo: 8,
+} as const;
 
 const NO_TAXEL = 4294967295;
 

@@ -13,7 +13,8 @@ export class CdrReader {
   #offset = HEADER_BYTES;
 
   begin(message: DataView): this {
-    if (message.byteLength < HEADER_BYTES || message.getUint8(1) !== 1) throw new RangeError("not CDR in little-endian");
+    if (message.byteLength < HEADER_BYTES || message.getUint8(1) !== 1)
+      throw new RangeError("not CDR in little-endian");
     this.#message = message;
     this.#offset = HEADER_BYTES;
     return this;

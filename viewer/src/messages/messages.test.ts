@@ -36,7 +36,15 @@ describe("contacts", () => {
   it("come with all of their fields", () => {
     const frame = new ContactsFrame();
     readContacts(contacts("left_arm", [7, 9]), frame);
-    expect(frame).toMatchObject({ stampS: 1234.5, totalForceN: 25, sigmaTotalN: 0.5, hasCentreOfPressure: true, count: 2, sumN: -0.25, sigmaSumN: 0.125 });
+    expect(frame).toMatchObject({
+      stampS: 1234.5,
+      totalForceN: 25,
+      sigmaTotalN: 0.5,
+      hasCentreOfPressure: true,
+      count: 2,
+      sumN: -0.25,
+      sigmaSumN: 0.125,
+    });
     expect([...frame.centreOfPressure]).toEqual([1, 2, 3]);
     const [, second] = frame.contacts;
     const { position, normal, onset, velocity: _, ...rest } = contact(9);
@@ -144,11 +152,22 @@ describe("points", () => {
 
 describe("what was recognised", () => {
   const told = (...results: [string, number][]): DataView =>
-    written("vision_msgs/msg/Classification", { header, results: results.map(([class_id, score]) => ({ class_id, score })) });
+    written("vision_msgs/msg/Classification", {
+      header,
+      results: results.map(([class_id, score]) => ({ class_id, score })),
+    });
 
   it("is the likeliest class with the probabilities of all", () => {
-    const classes = [{ name: "tap", probability: 0.75 }, { name: "hug", probability: 0.25 }];
-    expect(readClassification(told(["tap", 0.75], ["hug", 0.25]))).toEqual({ stampS: 1234.5, answer: "tap", reason: "", classes });
+    const classes = [
+      { name: "tap", probability: 0.75 },
+      { name: "hug", probability: 0.25 },
+    ];
+    expect(readClassification(told(["tap", 0.75], ["hug", 0.25]))).toEqual({
+      stampS: 1234.5,
+      answer: "tap",
+      reason: "",
+      classes,
+    });
   });
 
   it("or unknown, with the reason", () => {
@@ -162,7 +181,11 @@ describe("threats", () => {
   it("read as they were written", () => {
     const threat = sample("dermis_msgs/msg/Threat");
     const { sec } = threat["crossed"] as { sec: number };
-    expect(readThreat(written("dermis_msgs/msg/Threat", { ...threat, header }))).toEqual({ ...simpleFields(threat), stampS: 1234.5, crossedS: sec + 0.25 });
+    expect(readThreat(written("dermis_msgs/msg/Threat", { ...threat, header }))).toEqual({
+      ...simpleFields(threat),
+      stampS: 1234.5,
+      crossedS: sec + 0.25,
+    });
   });
 });
 
@@ -178,7 +201,13 @@ describe("statistics, health and calibration", () => {
   });
 
   it("tell faults in words", () => {
-    const status = { level: 1, name: "chest", message: "column 3 is open", hardware_id: "", values: [{ key: "column 3", value: "open line" }] };
+    const status = {
+      level: 1,
+      name: "chest",
+      message: "column 3 is open",
+      hardware_id: "",
+      values: [{ key: "column 3", value: "open line" }],
+    };
     expect(readHealth(written("diagnostic_msgs/msg/DiagnosticArray", { header, status: [status] }))).toEqual([
       { level: 1, name: "chest", message: "column 3 is open", values: [{ key: "column 3", value: "open line" }] },
     ]);
@@ -193,7 +222,11 @@ describe("statistics, health and calibration", () => {
     });
     const none = 4294967295;
     const alone = { ...state, header, pressed_taxel: none, together_with: none, missing_taxel: none };
-    expect(readCalibrationState(written("dermis_msgs/msg/CalibrationState", alone))).toMatchObject({ pressedTaxel: -1, togetherWith: -1, missingTaxel: -1 });
+    expect(readCalibrationState(written("dermis_msgs/msg/CalibrationState", alone))).toMatchObject({
+      pressedTaxel: -1,
+      togetherWith: -1,
+      missingTaxel: -1,
+    });
   });
 });
 
@@ -208,12 +241,17 @@ describe("the .msg files", () => {
   });
 
   it("of ROS are those of ROS", () => {
-    const fields = ({ definitions: all }: Definition): string[] => all.map(({ name, type, isArray }) => `${type} ${name} ${isArray === true}`);
-    const ros = Object.entries(ros2humble as Record<string, Definition>).filter(([name]) => definitions.has(full(name)));
+    const fields = ({ definitions: all }: Definition): string[] =>
+      all.map(({ name, type, isArray }) => `${type} ${name} ${isArray === true}`);
+    const ros = Object.entries(ros2humble as Record<string, Definition>).filter(([name]) =>
+      definitions.has(full(name)),
+    );
     expect(ros.length).toBeGreaterThan(10);
     for (const [name, theirs] of ros) {
       const ours = fields(definitions.get(full(name))!).map((field) => field.replace(/^byte /, "uint8 "));
-      expect(ours, name).toEqual(fields(theirs).map((field) => field.replace("/msg/", "/").replace(/^byte /, "uint8 ")));
+      expect(ours, name).toEqual(
+        fields(theirs).map((field) => field.replace("/msg/", "/").replace(/^byte /, "uint8 ")),
+      );
     }
   });
 });

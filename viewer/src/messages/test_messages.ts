@@ -13,10 +13,12 @@ const FOLDER = fileURLToPath(new URL("../../../src/messages/msg/", import.meta.u
 
 /** By "package/msg/Type". */
 export const definitions = new Map<string, Definition>(
-  (readdirSync(FOLDER, { recursive: true }) as string[]).filter((file) => file.endsWith(".msg")).map((file) => {
-    const name = full(file.slice(0, -".msg".length));
-    return [name, { ...parse(readFileSync(FOLDER + file, "utf8"), { ros2: true, skipTypeFixup: true })[0]!, name }];
-  }),
+  (readdirSync(FOLDER, { recursive: true }) as string[])
+    .filter((file) => file.endsWith(".msg"))
+    .map((file) => {
+      const name = full(file.slice(0, -".msg".length));
+      return [name, { ...parse(readFileSync(FOLDER + file, "utf8"), { ros2: true, skipTypeFixup: true })[0]!, name }];
+    }),
 );
 
 export function full(name: string): string {
@@ -38,7 +40,9 @@ export function constants(name: string): Record<string, unknown> {
 function closure(name: string, found = new Map<string, Definition>()): Definition[] {
   const definition = definitions.get(name);
   if (definition === undefined) throw new Error(`no definition of ${name}`);
-  const complete = definition.definitions.map((field) => (field.isComplex === true ? { ...field, type: full(field.type) } : field));
+  const complete = definition.definitions.map((field) =>
+    field.isComplex === true ? { ...field, type: full(field.type) } : field,
+  );
   found.set(name, { ...definition, definitions: complete });
   for (const field of complete) if (field.isComplex === true && !found.has(field.type)) closure(field.type, found);
   return [...found.values()];
@@ -61,7 +65,8 @@ export function sample(name: string, next = { value: 1 }): Record<string, unknow
     if (field.type === "string") return `text ${value}`;
     return field.type === "uint64" ? BigInt(value) : value;
   };
-  const sequence = (field: Definition["definitions"][number]): unknown => (field.type === "uint8" ? new Uint8Array([++next.value]) : [one(field)]);
+  const sequence = (field: Definition["definitions"][number]): unknown =>
+    field.type === "uint8" ? new Uint8Array([++next.value]) : [one(field)];
   const fields = definitions.get(name)!.definitions.filter((field) => field.isConstant !== true);
   return Object.fromEntries(fields.map((field) => [field.name, field.isArray === true ? sequence(field) : one(field)]));
 }
@@ -69,5 +74,7 @@ export function sample(name: string, next = { value: 1 }): Record<string, unknow
 /** The numbers, flags and texts of a message as an object of TypeScript has them. */
 export function simpleFields(message: Record<string, unknown>): Record<string, unknown> {
   const simple = Object.entries(message).filter(([, value]) => typeof value !== "object");
-  return Object.fromEntries(simple.map(([name, value]) => [camelCase(name), typeof value === "bigint" ? Number(value) : value]));
+  return Object.fromEntries(
+    simple.map(([name, value]) => [camelCase(name), typeof value === "bigint" ? Number(value) : value]),
+  );
 }

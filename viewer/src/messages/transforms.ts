@@ -21,7 +21,11 @@ export function readTransforms(message: DataView): Transform[] {
     reader.header();
     const child = reader.text();
     const [x, y, z] = [reader.float64(), reader.float64(), reader.float64()];
-    transforms.push({ child, position: [x, y, z], rotation: [reader.float64(), reader.float64(), reader.float64(), reader.float64()] });
+    transforms.push({
+      child,
+      position: [x, y, z],
+      rotation: [reader.float64(), reader.float64(), reader.float64(), reader.float64()],
+    });
   }
   return transforms;
 }

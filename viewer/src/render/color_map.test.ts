@@ -6,7 +6,9 @@ import { COEFFICIENTS, colorOf, cssGradient, rgbOf, shaderSource, TOE_COLORS, TO
 
 /** OKLab: distances in it are differences to the eye (Ottosson, 2020). */
 function oklab(share: number, fromLight = false): [number, number, number] {
-  const [red, green, blue] = rgbOf(share, fromLight).map((value) => (value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4)) as [number, number, number];
+  const [red, green, blue] = rgbOf(share, fromLight).map((value) =>
+    value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4,
+  ) as [number, number, number];
   const long = Math.cbrt(0.4122214708 * red + 0.5363325363 * green + 0.0514459929 * blue);
   const medium = Math.cbrt(0.2119034982 * red + 0.6806995451 * green + 0.1073969566 * blue);
   const short = Math.cbrt(0.0883024619 * red + 0.2817188376 * green + 0.6299787005 * blue);
@@ -40,19 +42,24 @@ describe("the colour map", () => {
 
   it("tells the first percent from nothing, dark and light", () => {
     const justSeen = 0.02;
-    for (const fromLight of [false, true]) expect(distance(oklab(0.01, fromLight), oklab(0, fromLight))).toBeGreaterThan(4 * justSeen);
+    for (const fromLight of [false, true])
+      expect(distance(oklab(0.01, fromLight), oklab(0, fromLight))).toBeGreaterThan(4 * justSeen);
     expect(cssGradient(true)).toContain(`${colorOf(0.01, true)} 1.00%`);
   });
 
   it("leaves a sheet at rest the white of its panel in the light theme", () => {
     expect(rgbOf(0, true)).toEqual([1, 1, 1]);
-    expect(rgbOf(TOE_SHARE, true)).toEqual(rgbOf(TOE_SHARE * (1 + 1e-12), true).map((value) => expect.closeTo(value, 6)));
+    expect(rgbOf(TOE_SHARE, true)).toEqual(
+      rgbOf(TOE_SHARE * (1 + 1e-12), true).map((value) => expect.closeTo(value, 6)),
+    );
     expect(shaderSource()).toContain("vec3(1.0), white");
   });
 
   it("is the palette of terminals, pictures and reports", () => {
     const header = readFileSync("../src/report/palette.hpp", "utf8");
-    const rows = [...header.matchAll(/\{(-?[\d.]+), (-?[\d.]+), (-?[\d.]+)\}/g)].map((match) => match.slice(1).map(Number));
+    const rows = [...header.matchAll(/\{(-?[\d.]+), (-?[\d.]+), (-?[\d.]+)\}/g)].map((match) =>
+      match.slice(1).map(Number),
+    );
     expect(rows).toEqual(COEFFICIENTS);
     const constant = (name: string): number => Number(new RegExp(`${name} = ([\\d.]+);`).exec(header)![1]);
     expect([constant("kToeShare"), constant("kToeColours")]).toEqual([TOE_SHARE, TOE_COLORS]);
@@ -66,7 +73,9 @@ describe("the colour map", () => {
 
   it("is the same polynomial in the shader", () => {
     const [source = ""] = shaderSource().split("float opposite");
-    const vectors = [...source.matchAll(/vec3\((-?[\d.]+), (-?[\d.]+), (-?[\d.]+)\)/g)].map((match) => match.slice(1).map(Number));
+    const vectors = [...source.matchAll(/vec3\((-?[\d.]+), (-?[\d.]+), (-?[\d.]+)\)/g)].map((match) =>
+      match.slice(1).map(Number),
+    );
     const share = 0.37;
     const place = TOE_COLORS + ((share - TOE_SHARE) * (1 - TOE_COLORS)) / (1 - TOE_SHARE);
     const green = vectors.reduce((sum, vector, power) => sum + vector[1]! * place ** power, 0);

@@ -24,7 +24,9 @@ export const TOE_COLORS = 0.1;
 
 function toed(share: number): number {
   const inside = Math.min(1, Math.max(0, share));
-  return inside < TOE_SHARE ? (inside * TOE_COLORS) / TOE_SHARE : TOE_COLORS + ((inside - TOE_SHARE) * (1 - TOE_COLORS)) / (1 - TOE_SHARE);
+  return inside < TOE_SHARE
+    ? (inside * TOE_COLORS) / TOE_SHARE
+    : TOE_COLORS + ((inside - TOE_SHARE) * (1 - TOE_COLORS)) / (1 - TOE_SHARE);
 }
 
 function channel(share: number, index: 0 | 1 | 2): number {

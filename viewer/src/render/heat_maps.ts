@@ -148,7 +148,17 @@ export class HeatMaps {
     gl.enable(gl.SCISSOR_TEST);
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
     this.#uniforms = {};
-    for (const name of ["size", "area", "scale_end", "interpolated", "line", "fault", "fault_stripe", "pixel_ratio", "from_light"]) {
+    for (const name of [
+      "size",
+      "area",
+      "scale_end",
+      "interpolated",
+      "line",
+      "fault",
+      "fault_stripe",
+      "pixel_ratio",
+      "from_light",
+    ]) {
       this.#uniforms[name] = gl.getUniformLocation(program, name);
     }
     gl.uniform1i(gl.getUniformLocation(program, "values"), 0);

@@ -23,13 +23,44 @@ export function makeArraySetup(stream: Stream, suit: Suit, theme: Theme): HTMLEl
   const picture = new LivePicture(theme);
   const source = element("p", { class: "dim" });
   const found = element("p", { "data-role": "found" });
-  const bytes = element("pre", { class: "first-bytes", tabindex: 0, "aria-label": "The first bytes", "data-role": "first-bytes", hidden: true });
+  const bytes = element("pre", {
+    class: "first-bytes",
+    tabindex: 0,
+    "aria-label": "The first bytes",
+    "data-role": "first-bytes",
+    hidden: true,
+  });
   const problem = element("p", { class: "attention", role: "alert", "data-role": "setup-problem", hidden: true });
-  const name = element("input", { id: "array-name", class: "field", value: "mat", pattern: "[A-Za-z0-9_\\-]+", required: true, autocomplete: "off" });
+  const name = element("input", {
+    id: "array-name",
+    class: "field",
+    value: "mat",
+    pattern: "[A-Za-z0-9_\\-]+",
+    required: true,
+    autocomplete: "off",
+  });
   const rows = element("input", { id: "array-rows", class: "field", ...LINES });
   const cols = element("input", { id: "array-cols", class: "field", ...LINES });
-  const pitch = element("input", { id: "array-pitch", class: "field", type: "number", min: 0.05, max: 1000, step: "any", value: 10, required: true });
-  const bits = element("input", { id: "array-bits", class: "field", type: "number", min: 1, max: 24, step: 1, value: 12, required: true });
+  const pitch = element("input", {
+    id: "array-pitch",
+    class: "field",
+    type: "number",
+    min: 0.05,
+    max: 1000,
+    step: "any",
+    value: 10,
+    required: true,
+  });
+  const bits = element("input", {
+    id: "array-bits",
+    class: "field",
+    type: "number",
+    min: 1,
+    max: 24,
+    step: 1,
+    value: 12,
+    required: true,
+  });
 
   const tell = (words: string): void => {
     setText(problem, words);
@@ -103,7 +134,10 @@ export function makeArraySetup(stream: Stream, suit: Suit, theme: Theme): HTMLEl
     void ask("/source/leave", {}).then(() => stream.refresh());
   });
 
-  const field = (words: string, input: HTMLElement): HTMLElement[] => [element("label", { for: input.id }, words), input];
+  const field = (words: string, input: HTMLElement): HTMLElement[] => [
+    element("label", { for: input.id }, words),
+    input,
+  ];
   const form = element(
     "form",
     { class: "panel array-setup", "data-role": "array-setup", "aria-label": "The array", hidden: true },

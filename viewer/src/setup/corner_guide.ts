@@ -27,7 +27,11 @@ export class CornerGuide {
     this.element = element(
       "div",
       { class: "corner-guide" },
-      element("button", { class: "button", type: "button", "data-role": "corners", onclick: () => this.#begin() }, "Touch two corners"),
+      element(
+        "button",
+        { class: "button", type: "button", "data-role": "corners", onclick: () => this.#begin() },
+        "Touch two corners",
+      ),
       this.#words,
     );
     feed.latest.follow((touch) => this.#isAsking && touch !== undefined && this.#take(touch));
@@ -71,7 +75,13 @@ export class CornerGuide {
   /** Whether all is known. */
   #sees(touched: Place | null, rows: number, cols: number): boolean {
     const corner = touched === null ? undefined : cornerOf(touched, rows, cols);
-    if (this.#first === undefined) setText(this.#words, touched !== null && corner === undefined ? "This is no corner. Press the corner next to the connector." : "Press the corner next to the connector.");
+    if (this.#first === undefined)
+      setText(
+        this.#words,
+        touched !== null && corner === undefined
+          ? "This is no corner. Press the corner next to the connector."
+          : "Press the corner next to the connector.",
+      );
     if (!this.#isSteady(corner) || corner === undefined) return false;
     if (this.#first === undefined) {
       this.#first = corner;

@@ -39,7 +39,11 @@ describe("a touch", () => {
 
 describe("a way round", () => {
   it("is told in words", () => {
-    expect(describeWayRound({ transpose: false, flip_rows: false, flip_cols: false })).toBe("The lines are sent as they are.");
-    expect(describeWayRound({ transpose: true, flip_rows: true, flip_cols: false })).toBe("The lines are turned: rows and columns are exchanged, the last row comes first.");
+    expect(describeWayRound({ transpose: false, flip_rows: false, flip_cols: false })).toBe(
+      "The lines are sent as they are.",
+    );
+    expect(describeWayRound({ transpose: true, flip_rows: true, flip_cols: false })).toBe(
+      "The lines are turned: rows and columns are exchanged, the last row comes first.",
+    );
   });
 });

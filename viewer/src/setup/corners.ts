@@ -14,7 +14,11 @@ export interface WayRound {
 export const AS_SENT: WayRound = { transpose: false, flip_rows: false, flip_cols: false };
 
 /** Where a taxel of the array is in what its device sends, by the rules of docs/file-formats.md. */
-export function sentPlace([row, col]: Place, { rows, cols }: { rows: number; cols: number }, { transpose, flip_rows, flip_cols }: WayRound): Place {
+export function sentPlace(
+  [row, col]: Place,
+  { rows, cols }: { rows: number; cols: number },
+  { transpose, flip_rows, flip_cols }: WayRound,
+): Place {
   const turnedRow = flip_rows ? rows - 1 - row : row;
   const turnedCol = flip_cols ? cols - 1 - col : col;
   return transpose ? [turnedCol, turnedRow] : [turnedRow, turnedCol];
@@ -43,11 +47,17 @@ export function wayRound(first: Place, second: Place): WayRound | undefined {
   const isSameCol = first[1] === second[1];
   if (isSameRow === isSameCol) return undefined;
   const isFar = [first[0] > 0, first[1] > 0] as const;
-  return isSameRow ? { transpose: false, flip_rows: isFar[0], flip_cols: isFar[1] } : { transpose: true, flip_rows: isFar[1], flip_cols: isFar[0] };
+  return isSameRow
+    ? { transpose: false, flip_rows: isFar[0], flip_cols: isFar[1] }
+    : { transpose: true, flip_rows: isFar[1], flip_cols: isFar[0] };
 }
 
 export function describeWayRound({ transpose, flip_rows, flip_cols }: WayRound): string {
-  const words = [transpose && "rows and columns are exchanged", flip_rows && "the last row comes first", flip_cols && "the last column comes first"];
+  const words = [
+    transpose && "rows and columns are exchanged",
+    flip_rows && "the last row comes first",
+    flip_cols && "the last column comes first",
+  ];
   const known = words.filter((word) => word !== false);
   return known.length === 0 ? "The lines are sent as they are." : `The lines are turned: ${known.join(", ")}.`;
 }

@@ -28,13 +28,22 @@ export class KnownArrays {
   /** A button for each, where there is one. */
   makeList(choose: (known: KnownArray) => void): HTMLElement {
     const list = element("div", { class: "port-list" });
-    const part = element("div", { class: "setup-part", "data-role": "known-arrays", hidden: true }, element("h3", {}, "From last time"), list);
+    const part = element(
+      "div",
+      { class: "setup-part", "data-role": "known-arrays", hidden: true },
+      element("h3", {}, "From last time"),
+      list,
+    );
     this.all.follow((all) => {
       list.replaceChildren(...all.map((known) => makeKnown(known, () => choose(known))));
       setHidden(part, all.length === 0);
     });
     this.chosen.follow((chosen) => {
-      for (const button of list.children) button.setAttribute("aria-pressed", String(chosen !== undefined && button.getAttribute("data-known") === chosen.file));
+      for (const button of list.children)
+        button.setAttribute(
+          "aria-pressed",
+          String(chosen !== undefined && button.getAttribute("data-known") === chosen.file),
+        );
     });
     return part;
   }
@@ -55,5 +64,9 @@ export class KnownArrays {
 
 function makeKnown({ file, name, rows, cols, calibrated }: KnownArray, choose: () => void): HTMLElement {
   const words = `${name}, ${rows}\u00d7${cols}, ${calibrated ? "calibrated" : "not calibrated"}`;
-  return element("button", { class: "button", type: "button", "aria-pressed": "false", title: file, "data-known": file, onclick: choose }, words);
+  return element(
+    "button",
+    { class: "button", type: "button", "aria-pressed": "false", title: file, "data-known": file, onclick: choose },
+    words,
+  );
 }

@@ -23,7 +23,12 @@ export class LivePicture {
 
   constructor(theme: Theme) {
     this.#theme = theme;
-    this.element = element("div", { class: "live-picture", "data-role": "live-picture", hidden: true }, this.#room, this.#words);
+    this.element = element(
+      "div",
+      { class: "live-picture", "data-role": "live-picture", hidden: true },
+      this.#room,
+      this.#words,
+    );
   }
 
   forget(): void {

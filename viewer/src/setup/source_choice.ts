@@ -6,7 +6,10 @@ import type { KnownArrays } from "./known_arrays";
 
 const BAUDS = [9600, 57600, 115200, 230400, 250000, 460800, 921600, 1000000, 2000000];
 const USUAL_BAUD = 115200;
-const SCENES: Readonly<Record<string, string>> = { contacts: "Contacts that wander", rehearsal: "A hand that obeys the guide" };
+const SCENES: Readonly<Record<string, string>> = {
+  contacts: "Contacts that wander",
+  rehearsal: "A hand that obeys the guide",
+};
 
 /** The answer of /source/list. */
 interface Choices {
@@ -19,9 +22,24 @@ interface Choices {
 export function makeSourceChoice(stream: Stream, known: KnownArrays): HTMLElement {
   const words = element("p", { role: "status", "data-role": "source-words" });
   const ports = element("div", { class: "port-list", "data-role": "ports" });
-  const noPort = element("p", { class: "dim", "data-role": "no-port", hidden: true }, "None is there. Is the board plugged in, with a cable that has data lines?");
-  const baud = element("select", { id: "port-baud", class: "field" }, ...BAUDS.map((value) => element("option", { value, selected: value === USUAL_BAUD }, String(value))));
-  const address = element("input", { id: "address", class: "field", placeholder: "192.168.4.1:3333", required: true, autocomplete: "off", "aria-label": "Address" });
+  const noPort = element(
+    "p",
+    { class: "dim", "data-role": "no-port", hidden: true },
+    "None is there. Is the board plugged in, with a cable that has data lines?",
+  );
+  const baud = element(
+    "select",
+    { id: "port-baud", class: "field" },
+    ...BAUDS.map((value) => element("option", { value, selected: value === USUAL_BAUD }, String(value))),
+  );
+  const address = element("input", {
+    id: "address",
+    class: "field",
+    placeholder: "192.168.4.1:3333",
+    required: true,
+    autocomplete: "off",
+    "aria-label": "Address",
+  });
   const recordings = element("div", { class: "port-list", "data-role": "source-recordings" });
   const simulations = element("div", { class: "port-list", "data-role": "simulations" });
 
@@ -40,19 +58,41 @@ export function makeSourceChoice(stream: Stream, known: KnownArrays): HTMLElemen
   }
 
   const choice = (name: string, title: string, data: string, request: () => object): HTMLElement =>
-    element("button", { class: "button", type: "button", title, "data-source": data, onclick: () => void open(request(), name) }, name);
+    element(
+      "button",
+      { class: "button", type: "button", title, "data-source": data, onclick: () => void open(request(), name) },
+      name,
+    );
 
   async function look(): Promise<void> {
     const choices = (await stream.callService("/source/list", {})) as Choices;
     setHidden(noPort, choices.ports.length > 0);
-    ports.replaceChildren(...choices.ports.map(({ device, path, product }) => choice(product === "" ? device : `${product}, ${device}`, path, device, () => ({ port: path, baud: Number(baud.value) }))));
-    recordings.replaceChildren(...choices.recordings.map((name) => choice(name, name, name, () => ({ recording: name }))));
+    ports.replaceChildren(
+      ...choices.ports.map(({ device, path, product }) =>
+        choice(product === "" ? device : `${product}, ${device}`, path, device, () => ({
+          port: path,
+          baud: Number(baud.value),
+        })),
+      ),
+    );
+    recordings.replaceChildren(
+      ...choices.recordings.map((name) => choice(name, name, name, () => ({ recording: name }))),
+    );
     setHidden(recordingPart, choices.recordings.length === 0);
-    simulations.replaceChildren(...choices.simulations.map((scene) => choice(SCENES[scene] ?? scene, `sim:${scene}`, scene, () => ({ simulation: scene }))));
+    simulations.replaceChildren(
+      ...choices.simulations.map((scene) =>
+        choice(SCENES[scene] ?? scene, `sim:${scene}`, scene, () => ({ simulation: scene })),
+      ),
+    );
   }
 
   const recordingPart = part("A recording of this folder", recordings);
-  const network = element("form", { class: "setup-row", "data-role": "network" }, address, element("button", { class: "button", type: "submit" }, "Connect"));
+  const network = element(
+    "form",
+    { class: "setup-row", "data-role": "network" },
+    address,
+    element("button", { class: "button", type: "submit" }, "Connect"),
+  );
   network.addEventListener("submit", (event) => {
     event.preventDefault();
     void open({ address: address.value.trim() }, address.value.trim());
@@ -67,7 +107,17 @@ export function makeSourceChoice(stream: Stream, known: KnownArrays): HTMLElemen
       "At a USB port of this machine",
       noPort,
       ports,
-      element("div", { class: "setup-row" }, element("label", { for: baud.id }, "Baud (boards with USB of their own take any)"), baud, element("button", { class: "button", type: "button", "data-role": "look-again", onclick: () => void look() }, "Look again")),
+      element(
+        "div",
+        { class: "setup-row" },
+        element("label", { for: baud.id }, "Baud (boards with USB of their own take any)"),
+        baud,
+        element(
+          "button",
+          { class: "button", type: "button", "data-role": "look-again", onclick: () => void look() },
+          "Look again",
+        ),
+      ),
     ),
     part("On the network", network),
     recordingPart,

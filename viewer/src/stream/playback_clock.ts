@@ -22,7 +22,15 @@ export class PlaybackClock {
 
   /** Holds until the server sends a state: a user who pauses and seeks before that has asked for both. */
   ask(play: boolean, speed: number, positionS: number, nowMs: number): void {
-    this.tell({ status: play ? PlaybackStatus.playing : PlaybackStatus.paused, nowS: this.startS + positionS, speed, didSeek: false }, nowMs);
+    this.tell(
+      {
+        status: play ? PlaybackStatus.playing : PlaybackStatus.paused,
+        nowS: this.startS + positionS,
+        speed,
+        didSeek: false,
+      },
+      nowMs,
+    );
   }
 
   get isPlaying(): boolean {

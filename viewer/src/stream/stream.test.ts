@@ -45,7 +45,10 @@ class FakeSocket {
 
   begin(channels: Record<string, number>): void {
     this.say({ op: "serverInfo", name: "test", capabilities: ["parameters", "parametersSubscribe", "services"] });
-    this.say({ op: "advertise", channels: Object.entries(channels).map(([topic, id]) => ({ id, topic, schemaName: "" })) });
+    this.say({
+      op: "advertise",
+      channels: Object.entries(channels).map(([topic, id]) => ({ id, topic, schemaName: "" })),
+    });
   }
 }
 
@@ -69,7 +72,10 @@ beforeEach(() => {
   status = 200;
   vi.stubGlobal("WebSocket", FakeSocket);
   vi.stubGlobal("window", globalThis);
-  vi.stubGlobal("fetch", vi.fn(async () => ({ ok: status === 200, status, json: async () => suit })));
+  vi.stubGlobal(
+    "fetch",
+    vi.fn(async () => ({ ok: status === 200, status, json: async () => suit })),
+  );
 });
 
 afterEach(() => {
@@ -88,7 +94,9 @@ describe("the stream", () => {
   it("subscribes when a topic is there and followed, and hands over its messages", async () => {
     const stream = await connected();
     const got: [number[], number][] = [];
-    const end = stream.subscribe("/contacts", (message, logTimeS) => got.push([[message.getUint8(0), message.getUint8(1)], logTimeS]));
+    const end = stream.subscribe("/contacts", (message, logTimeS) =>
+      got.push([[message.getUint8(0), message.getUint8(1)], logTimeS]),
+    );
     last().begin({ "/contacts": 7, "/other": 8 });
     expect(last().sent).toContainEqual({ op: "subscribe", subscriptions: [{ id: 0, channelId: 7 }] });
     last().data(0, 1500000000n, [5, 6]);
@@ -155,7 +163,11 @@ describe("the stream", () => {
     last().say({ op: "parameterValues", parameters: [{ name: "/tare", value: false }], id: "all" });
     expect(last().sent).toContainEqual({ op: "subscribeParameterUpdates", parameterNames: ["/tare"] });
     stream.setParameter("/tare", true);
-    expect(last().sent).toContainEqual({ op: "setParameters", parameters: [{ name: "/tare", value: true }], id: "set" });
+    expect(last().sent).toContainEqual({
+      op: "setParameters",
+      parameters: [{ name: "/tare", value: true }],
+      id: "set",
+    });
     last().say({ op: "parameterValues", parameters: [{ name: "/tare", value: true }] });
     expect(stream.parameters.value.get("/tare")).toBe(true);
   });

@@ -261,7 +261,10 @@ export class Stream {
       case "unadvertise":
         return this.#unadvertised(text.channelIds);
       case "advertiseServices":
-        this.services.value = new Map([...this.services.value, ...text.services.map(({ name, id }) => [name, id] as const)]);
+        this.services.value = new Map([
+          ...this.services.value,
+          ...text.services.map(({ name, id }) => [name, id] as const),
+        ]);
         return;
       case "unadvertiseServices":
         this.services.value = new Map([...this.services.value].filter(([, id]) => !text.serviceIds.includes(id)));

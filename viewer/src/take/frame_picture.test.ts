@@ -10,7 +10,14 @@ describe("the end of a scale", () => {
   });
 
   it("knows no taxel without a value", () => {
-    const frame = { stampS: 0, rows: 1, cols: 4, values: Float32Array.of(1, 9, NaN, 2), sigmas: new Float32Array(4), statuses: Uint8Array.of(0, 3, 0, 1) };
+    const frame = {
+      stampS: 0,
+      rows: 1,
+      cols: 4,
+      values: Float32Array.of(1, 9, NaN, 2),
+      sigmas: new Float32Array(4),
+      statuses: Uint8Array.of(0, 3, 0, 1),
+    };
     expect(highest(frame)).toBe(2);
   });
 });
@@ -19,11 +26,15 @@ describe("the palette of a film", () => {
   it("has its own colours, black and white", () => {
     const palette = filmPalette();
     const finder = new PaletteFinder(palette);
-    const own = Uint8ClampedArray.from({ length: 4 * 256 }, (_, at) => (at % 4 === 3 ? 255 : palette[3 * (at >> 2) + (at % 4)]!));
+    const own = Uint8ClampedArray.from({ length: 4 * 256 }, (_, at) =>
+      at % 4 === 3 ? 255 : palette[3 * (at >> 2) + (at % 4)]!,
+    );
     finder.indices(own).forEach((found, index) => {
       for (let at = 0; at < 3; ++at) expect(palette[3 * found + at]).toBe(palette[3 * index + at]);
     });
     const [black, white] = finder.indices(Uint8ClampedArray.of(0, 0, 0, 255, 255, 255, 255, 255));
-    expect([...palette.subarray(3 * black!, 3 * black! + 3), ...palette.subarray(3 * white!, 3 * white! + 3)]).toEqual([0, 0, 0, 255, 255, 255]);
+    expect([...palette.subarray(3 * black!, 3 * black! + 3), ...palette.subarray(3 * white!, 3 * white! + 3)]).toEqual([
+      0, 0, 0, 255, 255, 255,
+    ]);
   });
 });

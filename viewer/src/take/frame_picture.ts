@@ -87,7 +87,9 @@ function drawScale(context: CanvasRenderingContext2D, top: number, width: number
 
 /** The share of the scale at a place of the palette. */
 function shareOf(place: number): number {
-  return place < TOE_COLORS ? (place * TOE_SHARE) / TOE_COLORS : TOE_SHARE + ((place - TOE_COLORS) * (1 - TOE_SHARE)) / (1 - TOE_COLORS);
+  return place < TOE_COLORS
+    ? (place * TOE_SHARE) / TOE_COLORS
+    : TOE_SHARE + ((place - TOE_COLORS) * (1 - TOE_SHARE)) / (1 - TOE_COLORS);
 }
 
 /** The colours of the pictures of a film. */
@@ -126,7 +128,10 @@ export class PaletteFinder {
     let best = 0;
     let least = Infinity;
     for (let index = 0; index < 256; ++index) {
-      const distance = (this.#palette[3 * index]! - red) ** 2 + (this.#palette[3 * index + 1]! - green) ** 2 + (this.#palette[3 * index + 2]! - blue) ** 2;
+      const distance =
+        (this.#palette[3 * index]! - red) ** 2 +
+        (this.#palette[3 * index + 1]! - green) ** 2 +
+        (this.#palette[3 * index + 2]! - blue) ** 2;
       if (distance < least) [best, least] = [index, distance];
     }
     return best;

@@ -55,7 +55,9 @@ function unpack(data: number[], codeBits: number): number[] {
 }
 
 function film(width: number, height: number, pixel: (frame: number, place: number) => number, frames = 1): Uint8Array {
-  const pixels = Array.from({ length: frames }, (_, frame) => Uint8Array.from({ length: width * height }, (_none, place) => pixel(frame, place)));
+  const pixels = Array.from({ length: frames }, (_, frame) =>
+    Uint8Array.from({ length: width * height }, (_none, place) => pixel(frame, place)),
+  );
   return encodeGif({ width, height, palette: new Uint8Array(768), frames: pixels, delayCs: 10 });
 }
 
@@ -65,12 +67,17 @@ describe("a GIF", () => {
     const decoded = decodeGif(film(37, 23, pixel, 3));
     expect([decoded.width, decoded.height]).toEqual([37, 23]);
     expect(decoded.delaysCs).toEqual([10, 10, 10]);
-    decoded.frames.forEach((frame, number) => expect(frame).toEqual(Array.from({ length: 37 * 23 }, (_, place) => pixel(number, place))));
+    decoded.frames.forEach((frame, number) =>
+      expect(frame).toEqual(Array.from({ length: 37 * 23 }, (_, place) => pixel(number, place))),
+    );
   });
 
   it("reads back where its table of codes is full many times", () => {
     let state = 7;
-    const noise = Array.from({ length: 200 * 200 }, () => (state = (1103515245 * state + 12345) % 2147483648) >> 16 & 255);
+    const noise = Array.from(
+      { length: 200 * 200 },
+      () => ((state = (1103515245 * state + 12345) % 2147483648) >> 16) & 255,
+    );
     expect(decodeGif(film(200, 200, (_, place) => noise[place]!)).frames[0]).toEqual(noise);
   });
 

@@ -26,7 +26,9 @@ interface Source {
 }
 
 function sourceOf({ name, calibrated }: ArrayDescription): Source {
-  return calibrated ? { topic: `/${name}/force`, unit: "N", leastEnd: 1, read: readGrid } : { topic: `/${name}/raw`, unit: "counts", leastEnd: 100, read: readCounts };
+  return calibrated
+    ? { topic: `/${name}/force`, unit: "N", leastEnd: 1, read: readGrid }
+    : { topic: `/${name}/raw`, unit: "counts", leastEnd: 100, read: readCounts };
 }
 
 /** Frames of an array as they come, every tenth of a second. Equal frames are kept once. */
@@ -66,7 +68,12 @@ export async function takePicture(stream: Stream, array: ArrayDescription): Prom
   const source = sourceOf(array);
   const frame = (await collect(stream, source, 0)).at(-1)!;
   const [canvas, context] = canvasFor(frame);
-  drawPicture(context, { array: array.name, unit: source.unit, end: roundEnd(Math.max(source.leastEnd, highest(frame))), frame });
+  drawPicture(context, {
+    array: array.name,
+    unit: source.unit,
+    end: roundEnd(Math.max(source.leastEnd, highest(frame))),
+    frame,
+  });
   const blob = await new Promise<Blob | null>((resolve) => canvas.toBlob(resolve, "image/png"));
   if (blob === null) throw new Error("The picture is too large for this browser.");
   return { blob, stampS: frame.stampS };
@@ -84,6 +91,12 @@ export async function takeFilm(stream: Stream, array: ArrayDescription, seconds:
     drawPicture(context, { array: array.name, unit: source.unit, end, frame });
     return finder.indices(context.getImageData(0, 0, canvas.width, canvas.height).data);
   });
-  const file = encodeGif({ width: canvas.width, height: canvas.height, palette, frames: drawn, delayCs: FRAME_MS / 10 });
+  const file = encodeGif({
+    width: canvas.width,
+    height: canvas.height,
+    palette,
+    frames: drawn,
+    delayCs: FRAME_MS / 10,
+  });
   return { blob: new Blob([file], { type: "image/gif" }), stampS: frames.at(-1)!.stampS };
 }

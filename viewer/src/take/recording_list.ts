@@ -36,7 +36,12 @@ export class RecordingList {
   constructor(stream: Stream, tell: (words: string) => void) {
     this.#stream = stream;
     this.#tell = tell;
-    this.element = element("div", { class: "recording-list" }, this.#folder, element("table", { class: "table", "data-role": "recordings" }, this.#rows));
+    this.element = element(
+      "div",
+      { class: "recording-list" },
+      this.#folder,
+      element("table", { class: "table", "data-role": "recordings" }, this.#rows),
+    );
   }
 
   async refresh(): Promise<void> {
@@ -59,15 +64,34 @@ export class RecordingList {
       element("th", { scope: "row" }, name),
       element("td", { class: "figure", "data-field": "size" }),
       element("td", { class: "figure dim", "data-field": "changed" }),
-      element("td", {}, element("button", { class: "button", type: "button", "data-act": "play", onclick: () => void this.#play(name) }, "Play it")),
-      element("td", {}, element("a", { class: "button", href: fileAddress(this.#stream, name), download: name, "data-act": "download" }, "Save")),
+      element(
+        "td",
+        {},
+        element(
+          "button",
+          { class: "button", type: "button", "data-act": "play", onclick: () => void this.#play(name) },
+          "Play it",
+        ),
+      ),
+      element(
+        "td",
+        {},
+        element(
+          "a",
+          { class: "button", href: fileAddress(this.#stream, name), download: name, "data-act": "download" },
+          "Save",
+        ),
+      ),
     );
   }
 
   #update(row: HTMLTableRowElement, { bytes, changed_s }: RecordingFile, isWritten: boolean): void {
     const part = (selector: string): HTMLElement => row.querySelector<HTMLElement>(selector)!;
     setText(part("[data-field=size]"), sizeText(bytes));
-    setText(part("[data-field=changed]"), isWritten ? "is being recorded" : new Date(1000 * changed_s).toLocaleString());
+    setText(
+      part("[data-field=changed]"),
+      isWritten ? "is being recorded" : new Date(1000 * changed_s).toLocaleString(),
+    );
     setHidden(part("[data-act=play]"), isWritten || !this.#stream.services.value.has("/recordings/play"));
     setHidden(part("[data-act=download]"), isWritten);
   }

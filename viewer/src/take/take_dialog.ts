@@ -17,8 +17,20 @@ export class TakeDialog {
   readonly element: HTMLDialogElement;
   readonly #context: ViewContext;
   readonly #words = element("p", { role: "status", "data-role": "take-words" });
-  readonly #name = element("input", { id: "recording-name", class: "field", pattern: "[A-Za-z0-9_\\-]+", maxlength: 60, placeholder: "walk-1", autocomplete: "off" });
-  readonly #record = element("button", { class: "button", type: "button", "data-role": "begin-recording", onclick: () => void this.#try(() => this.#switchRecording()) });
+  readonly #name = element("input", {
+    id: "recording-name",
+    class: "field",
+    pattern: "[A-Za-z0-9_\\-]+",
+    maxlength: 60,
+    placeholder: "walk-1",
+    autocomplete: "off",
+  });
+  readonly #record = element("button", {
+    class: "button",
+    type: "button",
+    "data-role": "begin-recording",
+    onclick: () => void this.#try(() => this.#switchRecording()),
+  });
   readonly #length: HTMLSelectElement;
   readonly #list: RecordingList;
   #timer = 0;
@@ -28,7 +40,13 @@ export class TakeDialog {
   constructor(context: ViewContext) {
     this.#context = context;
     this.#list = new RecordingList(context.stream, (words) => setText(this.#words, words));
-    this.#length = element("select", { id: "minute-length", class: "field", "data-role": "minute-length" }, ...LENGTHS_S.map((seconds) => element("option", { value: seconds, selected: seconds === FIRST_LENGTH_S }, `${seconds} s`)));
+    this.#length = element(
+      "select",
+      { id: "minute-length", class: "field", "data-role": "minute-length" },
+      ...LENGTHS_S.map((seconds) =>
+        element("option", { value: seconds, selected: seconds === FIRST_LENGTH_S }, `${seconds} s`),
+      ),
+    );
     this.element = element(
       "dialog",
       { class: "dialog take-dialog", "aria-label": "Record and save", "data-role": "take" },
@@ -50,8 +68,12 @@ export class TakeDialog {
       element(
         "div",
         { class: "take-row" },
-        this.#button("save-png", "Picture (PNG)", () => this.#savePicture("png", (array) => takePicture(context.stream, array))),
-        this.#button("save-gif", `Film of ${FILM_S} s (GIF)`, () => this.#savePicture("gif", (array) => takeFilm(context.stream, array, FILM_S))),
+        this.#button("save-png", "Picture (PNG)", () =>
+          this.#savePicture("png", (array) => takePicture(context.stream, array)),
+        ),
+        this.#button("save-gif", `Film of ${FILM_S} s (GIF)`, () =>
+          this.#savePicture("gif", (array) => takeFilm(context.stream, array, FILM_S)),
+        ),
       ),
       element("form", { method: "dialog" }, element("button", { class: "button" }, "Close")),
     );
@@ -71,7 +93,11 @@ export class TakeDialog {
   }
 
   #button(role: string, words: string, act: () => Promise<void>): HTMLButtonElement {
-    return element("button", { class: "button", type: "button", "data-role": role, onclick: () => void this.#try(act) }, words);
+    return element(
+      "button",
+      { class: "button", type: "button", "data-role": role, onclick: () => void this.#try(act) },
+      words,
+    );
   }
 
   async #try(act: () => Promise<void>): Promise<void> {
@@ -101,8 +127,18 @@ export class TakeDialog {
   async #saveMinute(what: { array?: string }): Promise<void> {
     const { stream } = this.#context;
     const toS = this.#pausedAtS ?? stream.latestTimeS;
-    const time = toS === undefined ? {} : { from_ms: Math.max(0, Math.floor(1000 * (toS - Number(this.#length.value)))), to_ms: Math.max(0, Math.ceil(1000 * toS)) };
-    const { file, frames, forces } = (await stream.callService("/recordings/save", { ...what, ...time })) as { file: string; frames: number; forces?: string };
+    const time =
+      toS === undefined
+        ? {}
+        : {
+            from_ms: Math.max(0, Math.floor(1000 * (toS - Number(this.#length.value)))),
+            to_ms: Math.max(0, Math.ceil(1000 * toS)),
+          };
+    const { file, frames, forces } = (await stream.callService("/recordings/save", { ...what, ...time })) as {
+      file: string;
+      frames: number;
+      forces?: string;
+    };
     setText(this.#words, `${file}: ${frames} frames${forces === undefined ? "" : `; ${forces}: their newtons`}`);
     for (const name of forces === undefined ? [file] : [file, forces]) saveFrom(fileAddress(stream, name), name);
   }

@@ -23,7 +23,11 @@ export class Bar {
   constructor(context: ViewContext, views: readonly View[], actions: BarActions) {
     this.#pill = new ConnectionPill(context);
     this.#tabs = views.map(({ name, title }) =>
-      element("a", { class: "tab", href: `#/${name}`, "data-tab": name, onclick: (event) => this.#go(event, context, name) }, title),
+      element(
+        "a",
+        { class: "tab", href: `#/${name}`, "data-tab": name, onclick: (event) => this.#go(event, context, name) },
+        title,
+      ),
     );
     this.element = element(
       "header",
@@ -38,10 +42,43 @@ export class Bar {
       makePause(context, actions),
       makeTare(context, actions),
       makeUndoTare(context.stream),
-      element("button", { class: "button", "data-role": "show-take", title: "Recordings, the last minute, pictures (S)", onclick: () => actions.showTake() }, "Save"),
-      element("button", { class: "button", "data-role": "show-thresholds", onclick: () => actions.showThresholds() }, "Thresholds"),
-      element("button", { class: "button icon", "data-role": "theme", "aria-label": "Light or dark", title: "Light or dark (D)", onclick: () => context.theme.toggle() }, "\u25d0"),
-      element("button", { class: "button icon", "data-role": "show-help", "aria-label": "Keys", title: "Keys (?)", onclick: () => actions.showHelp() }, "?"),
+      element(
+        "button",
+        {
+          class: "button",
+          "data-role": "show-take",
+          title: "Recordings, the last minute, pictures (S)",
+          onclick: () => actions.showTake(),
+        },
+        "Save",
+      ),
+      element(
+        "button",
+        { class: "button", "data-role": "show-thresholds", onclick: () => actions.showThresholds() },
+        "Thresholds",
+      ),
+      element(
+        "button",
+        {
+          class: "button icon",
+          "data-role": "theme",
+          "aria-label": "Light or dark",
+          title: "Light or dark (D)",
+          onclick: () => context.theme.toggle(),
+        },
+        "\u25d0",
+      ),
+      element(
+        "button",
+        {
+          class: "button icon",
+          "data-role": "show-help",
+          "aria-label": "Keys",
+          title: "Keys (?)",
+          onclick: () => actions.showHelp(),
+        },
+        "?",
+      ),
     );
   }
 
@@ -70,9 +107,16 @@ function makeSuitName({ suit }: ViewContext): HTMLElement {
 
 function makeSelector(context: ViewContext): HTMLElement {
   const { suit } = context;
-  const select = element("select", { class: "field", "aria-label": "Array", "data-role": "array", onchange: () => suit.select(select.value) });
+  const select = element("select", {
+    class: "field",
+    "aria-label": "Array",
+    "data-role": "array",
+    onchange: () => suit.select(select.value),
+  });
   suit.description.follow(({ arrays }) => {
-    select.replaceChildren(...arrays.map(({ name, rows, cols }) => element("option", { value: name }, `${name}  ${rows}\u00d7${cols}`)));
+    select.replaceChildren(
+      ...arrays.map(({ name, rows, cols }) => element("option", { value: name }, `${name}  ${rows}\u00d7${cols}`)),
+    );
     select.value = suit.selected.value?.name ?? "";
     setHidden(select, arrays.length === 0);
   });
@@ -85,7 +129,13 @@ function makeRecord({ stream, live }: ViewContext, actions: BarActions): HTMLEle
   const words = element("span", {}, "Record");
   const button = element(
     "button",
-    { class: "button record", "data-role": "record", "aria-pressed": "false", title: "Begin or end a recording (R)", onclick: () => actions.toggleRecording() },
+    {
+      class: "button record",
+      "data-role": "record",
+      "aria-pressed": "false",
+      title: "Begin or end a recording (R)",
+      onclick: () => actions.toggleRecording(),
+    },
     element("span", { class: "record-dot" }),
     words,
   );
@@ -104,7 +154,12 @@ function makeRecord({ stream, live }: ViewContext, actions: BarActions): HTMLEle
 }
 
 function makePause({ paused, stream }: ViewContext, actions: BarActions): HTMLElement {
-  const button = element("button", { class: "button", "data-role": "pause", title: "Stop the picture, go on (Space)", onclick: () => actions.togglePause() });
+  const button = element("button", {
+    class: "button",
+    "data-role": "pause",
+    title: "Stop the picture, go on (Space)",
+    onclick: () => actions.togglePause(),
+  });
   stream.serverInfo.follow((info) => {
     const isPlayback = info?.capabilities.includes("playbackControl") === true;
     if (isPlayback) paused.value = false;
@@ -118,7 +173,11 @@ function makePause({ paused, stream }: ViewContext, actions: BarActions): HTMLEl
 }
 
 function makeTare({ stream, suit }: ViewContext, actions: BarActions): HTMLElement {
-  const button = element("button", { class: "button", "data-role": "tare", title: "What is shown now is zero (T)", onclick: () => actions.tare() }, "Tare");
+  const button = element(
+    "button",
+    { class: "button", "data-role": "tare", title: "What is shown now is zero (T)", onclick: () => actions.tare() },
+    "Tare",
+  );
   const enable = (): void => {
     const isCalibrated = suit.description.value.arrays.some(({ calibrated }) => calibrated);
     button.disabled = !isCalibrated || typeof stream.parameters.value.get("/tare") !== "boolean";

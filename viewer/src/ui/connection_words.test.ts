@@ -4,7 +4,16 @@ import { expect, it } from "vitest";
 import { PlaybackStatus } from "../stream/protocol";
 import { connectionWords, type LinkState } from "./connection_words";
 
-const LIVE: LinkState = { connection: { kind: "live" }, nowMs: 0, isAsked: false, isUnreadable: false, isPaused: false, playback: undefined, silenceS: 0.1, lateS: 0 };
+const LIVE: LinkState = {
+  connection: { kind: "live" },
+  nowMs: 0,
+  isAsked: false,
+  isUnreadable: false,
+  isPaused: false,
+  playback: undefined,
+  silenceS: 0.1,
+  lateS: 0,
+};
 
 it.each<[Partial<LinkState>, string, string]>([
   [{}, "good", "Live"],

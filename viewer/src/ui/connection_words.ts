@@ -35,7 +35,10 @@ export function connectionWords(state: LinkState): [Level, string] {
     case "live":
       return liveWords(state);
     case "retrying":
-      return ["bad", `${connection.wasLive ? "Lost" : "No server"}, again in ${Math.max(0, Math.ceil((connection.atMs - nowMs) / 1000))} s`];
+      return [
+        "bad",
+        `${connection.wasLive ? "Lost" : "No server"}, again in ${Math.max(0, Math.ceil((connection.atMs - nowMs) / 1000))} s`,
+      ];
     case "wrong token":
       return ["bad", "Wrong token"];
   }

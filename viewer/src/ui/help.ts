@@ -23,7 +23,9 @@ const KEYS: readonly (readonly [string, string])[] = [
 ];
 
 export function makeHelp(): HTMLDialogElement {
-  const rows = KEYS.map(([key, does]) => element("tr", {}, element("th", { scope: "row" }, element("kbd", {}, key)), element("td", {}, does)));
+  const rows = KEYS.map(([key, does]) =>
+    element("tr", {}, element("th", { scope: "row" }, element("kbd", {}, key)), element("td", {}, does)),
+  );
   const dialog = element(
     "dialog",
     { class: "dialog", "aria-label": "Keys", "data-role": "help" },

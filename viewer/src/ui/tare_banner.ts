@@ -12,7 +12,16 @@ export function makeTareBanner(stream: Stream): HTMLElement {
     "section",
     { class: "tare-banner", role: "alert", "aria-label": "Tare", "data-role": "tare-banner", hidden: true },
     words,
-    element("button", { class: "button", "data-role": "tare-force", title: "What lies there reads 0 N from then on", onclick: () => stream.setParameter("/tare/force", true) }, "Tare anyway"),
+    element(
+      "button",
+      {
+        class: "button",
+        "data-role": "tare-force",
+        title: "What lies there reads 0 N from then on",
+        onclick: () => stream.setParameter("/tare/force", true),
+      },
+      "Tare anyway",
+    ),
     element("button", { class: "button", onclick: () => setHidden(banner, true) }, "Leave it"),
   );
   let last: unknown = "";
@@ -29,7 +38,17 @@ export function makeTareBanner(stream: Stream): HTMLElement {
 
 /** Takes the last tare back, as long as that is possible. */
 export function makeUndoTare(stream: Stream): HTMLElement {
-  const button = element("button", { class: "button", "data-role": "undo-tare", title: "Back to the zero before the tare", hidden: true, onclick: () => stream.setParameter("/tare/undo", true) }, "Undo");
+  const button = element(
+    "button",
+    {
+      class: "button",
+      "data-role": "undo-tare",
+      title: "Back to the zero before the tare",
+      hidden: true,
+      onclick: () => stream.setParameter("/tare/undo", true),
+    },
+    "Undo",
+  );
   let timer = 0;
   stream.parameters.follow((parameters) => {
     const canUndo = parameters.get("/tare/undo") === true;

@@ -12,8 +12,17 @@ const MOST_ROWS = 3;
 export function makeThreatBanner(board: ThreatBoard, stream: Stream): HTMLElement {
   const rows = Array.from({ length: MOST_ROWS }, () => element("li", { "data-role": "threat" }));
   const more = element("li", { class: "dim" });
-  const reset = element("button", { class: "button", "data-role": "reset-threats", onclick: () => void resetThreats(stream) }, "Reset");
-  const banner = element("section", { class: "threat-banner", role: "alert", "aria-label": "Threats", "data-role": "threat-banner", hidden: true }, element("ul", {}, ...rows, more), reset);
+  const reset = element(
+    "button",
+    { class: "button", "data-role": "reset-threats", onclick: () => void resetThreats(stream) },
+    "Reset",
+  );
+  const banner = element(
+    "section",
+    { class: "threat-banner", role: "alert", "aria-label": "Threats", "data-role": "threat-banner", hidden: true },
+    element("ul", {}, ...rows, more),
+    reset,
+  );
   board.limits.follow(() => {
     const { standing } = board;
     setHidden(banner, standing.length === 0);

@@ -55,7 +55,15 @@ export function makeThresholds(stream: Stream): HTMLDialogElement {
     const log = parameters.get("/tare/log");
     setText(zeros, typeof log === "string" && log !== "" ? `Zeros that were taken:\n${log}` : "Nobody has tared.");
   });
-  const rows = FIELDS.map(({ label, unit }, index) => element("label", { class: "parameter" }, element("span", {}, label), inputs[index]!, element("span", { class: "dim" }, unit)));
+  const rows = FIELDS.map(({ label, unit }, index) =>
+    element(
+      "label",
+      { class: "parameter" },
+      element("span", {}, label),
+      inputs[index]!,
+      element("span", { class: "dim" }, unit),
+    ),
+  );
   return element(
     "dialog",
     { class: "dialog", "aria-label": "Thresholds", "data-role": "thresholds" },

@@ -5,7 +5,13 @@ import type { Stream } from "../stream/stream";
 
 /** Asks for the token where the server wants another. */
 export function makeTokenForm(stream: Stream): HTMLElement {
-  const field = element("input", { type: "password", class: "field", id: "token", autocomplete: "off", required: true });
+  const field = element("input", {
+    type: "password",
+    class: "field",
+    id: "token",
+    autocomplete: "off",
+    required: true,
+  });
   const words = element("p");
   const form = element(
     "form",
@@ -25,7 +31,12 @@ export function makeTokenForm(stream: Stream): HTMLElement {
     if (kind === "connecting") return;
     form.hidden = kind !== "wrong token";
     if (form.hidden) return;
-    setText(words, stream.token === "" ? "It is the one that dermis serve was started with: --token." : "It is not the one that this page has.");
+    setText(
+      words,
+      stream.token === ""
+        ? "It is the one that dermis serve was started with: --token."
+        : "It is not the one that this page has.",
+    );
     field.value = "";
     field.focus();
   });

@@ -38,7 +38,12 @@ export class Transport {
     });
     this.#speed = element(
       "select",
-      { class: "field compact", "aria-label": "Speed", "data-role": "speed", onchange: () => this.#send(this.#clock?.isPlaying ?? true) },
+      {
+        class: "field compact",
+        "aria-label": "Speed",
+        "data-role": "speed",
+        onchange: () => this.#send(this.#clock?.isPlaying ?? true),
+      },
       ...SPEEDS.map((speed) => element("option", { value: speed, selected: speed === 1 }, `${speed} \u00d7`)),
     );
     this.element = element(
@@ -69,7 +74,10 @@ export class Transport {
   /** Forward, or back where negative. */
   step(seconds = STEP_S): void {
     if (this.#clock === undefined) return;
-    this.#send(this.#clock.isPlaying, Math.min(this.#clock.lengthS, Math.max(0, this.#clock.positionS(performance.now()) + seconds)));
+    this.#send(
+      this.#clock.isPlaying,
+      Math.min(this.#clock.lengthS, Math.max(0, this.#clock.positionS(performance.now()) + seconds)),
+    );
   }
 
   draw(nowMs: number): void {
@@ -104,6 +112,7 @@ export class Transport {
   #send(play: boolean, positionS?: number): void {
     const [playback, speed, nowMs] = [this.#clock!, Number(this.#speed.value), performance.now()];
     const seek = positionS === undefined ? undefined : playback.startS + positionS;
-    if (this.#stream.control(play, speed, seek)) playback.ask(play, speed, positionS ?? playback.positionS(nowMs), nowMs);
+    if (this.#stream.control(play, speed, seek))
+      playback.ask(play, speed, positionS ?? playback.positionS(nowMs), nowMs);
   }
 }

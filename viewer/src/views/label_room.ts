@@ -12,12 +12,33 @@ export interface LabelBox {
 const GAP = 2;
 /** Where a label is tried, in its own widths and heights from where it belongs: the nearest first. */
 const STEPS: readonly (readonly [number, number])[] = [
-  [0, 0], [0, -1], [0, 1], [-0.6, 0], [0.6, 0], [0, -2], [0, 2], [-0.6, -1], [0.6, -1], [-0.6, 1], [0.6, 1],
-  [0, -3], [0, 3], [-1.1, 0], [1.1, 0], [0, -4], [0, 4], [-1.1, -2], [1.1, -2], [-1.1, 2], [1.1, 2],
+  [0, 0],
+  [0, -1],
+  [0, 1],
+  [-0.6, 0],
+  [0.6, 0],
+  [0, -2],
+  [0, 2],
+  [-0.6, -1],
+  [0.6, -1],
+  [-0.6, 1],
+  [0.6, 1],
+  [0, -3],
+  [0, 3],
+  [-1.1, 0],
+  [1.1, 0],
+  [0, -4],
+  [0, 4],
+  [-1.1, -2],
+  [1.1, -2],
+  [-1.1, 2],
+  [1.1, 2],
 ];
 
 function overlap(a: LabelBox, b: LabelBox): boolean {
-  return Math.abs(a.x - b.x) < 0.5 * (a.width + b.width) + GAP && Math.abs(a.y - b.y) < 0.5 * (a.height + b.height) + GAP;
+  return (
+    Math.abs(a.x - b.x) < 0.5 * (a.width + b.width) + GAP && Math.abs(a.y - b.y) < 0.5 * (a.height + b.height) + GAP
+  );
 }
 
 /** Gives each label a place in the picture that no other label takes. */
@@ -37,7 +58,11 @@ export class LabelRoom {
   /** The nearest free place inside the picture, which is taken from now on; undefined: there is none near enough. */
   place(wanted: LabelBox): LabelBox | undefined {
     for (const [right, down] of STEPS) {
-      const box = this.#inside({ ...wanted, x: wanted.x + right * (wanted.width + GAP), y: wanted.y + down * (wanted.height + GAP) });
+      const box = this.#inside({
+        ...wanted,
+        x: wanted.x + right * (wanted.width + GAP),
+        y: wanted.y + down * (wanted.height + GAP),
+      });
       if (this.#taken.some((other) => overlap(box, other))) continue;
       this.#taken.push(box);
       return box;
@@ -46,7 +71,8 @@ export class LabelRoom {
   }
 
   #inside(box: LabelBox): LabelBox {
-    const clamp = (value: number, half: number, end: number): number => Math.max(half + GAP, Math.min(end - half - GAP, value));
+    const clamp = (value: number, half: number, end: number): number =>
+      Math.max(half + GAP, Math.min(end - half - GAP, value));
     return { ...box, x: clamp(box.x, 0.5 * box.width, this.width), y: clamp(box.y, 0.5 * box.height, this.height) };
   }
 }

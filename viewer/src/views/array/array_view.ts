@@ -59,7 +59,9 @@ class ArrayView implements View {
 
   constructor(context: ViewContext) {
     this.#context = context;
-    this.#maps = new HeatMaps(element("canvas", { class: "layer", "aria-hidden": "true" }), QUANTITIES.length, () => this.#restore());
+    this.#maps = new HeatMaps(element("canvas", { class: "layer", "aria-hidden": "true" }), QUANTITIES.length, () =>
+      this.#restore(),
+    );
     this.#uncalibrated = this.#makeUncalibrated();
     this.#room = this.#makeRoom();
     this.#pointer = new MapPointer(this.#room, this.#choices.drawing, {
@@ -140,7 +142,11 @@ class ArrayView implements View {
       hasRegion.value = drawn !== undefined;
       this.#overlayDue = true;
     });
-    return makeMapToolbar(this.#choices, { reset: () => this.#feeds.reset(), clearRegion: () => (region.value = undefined), hasRegion });
+    return makeMapToolbar(this.#choices, {
+      reset: () => this.#feeds.reset(),
+      clearRegion: () => (region.value = undefined),
+      hasRegion,
+    });
   }
 
   #makeUncalibrated(): HTMLElement {
@@ -148,8 +154,20 @@ class ArrayView implements View {
       "section",
       { class: "panel uncalibrated", "aria-label": "Not calibrated yet", "data-role": "uncalibrated", hidden: true },
       element("h2", {}, "Not calibrated yet"),
-      element("p", {}, "The counts are live. Newtons come with a calibration: known weights on single taxels, as the page asks for them."),
-      element("button", { class: "button primary large-button", "data-role": "calibrate", onclick: () => this.#context.open("calibration") }, "Calibrate"),
+      element(
+        "p",
+        {},
+        "The counts are live. Newtons come with a calibration: known weights on single taxels, as the page asks for them.",
+      ),
+      element(
+        "button",
+        {
+          class: "button primary large-button",
+          "data-role": "calibrate",
+          onclick: () => this.#context.open("calibration"),
+        },
+        "Calibrate",
+      ),
     );
   }
 
@@ -167,7 +185,8 @@ class ArrayView implements View {
         class: "maps",
         tabindex: 0,
         role: "application",
-        "aria-label": "Maps of the array. Arrow keys move the cursor, Enter pins the taxel, Escape takes the cursor away.",
+        "aria-label":
+          "Maps of the array. Arrow keys move the cursor, Enter pins the taxel, Escape takes the cursor away.",
         "data-role": "maps",
       },
       ...this.#panels.map((panel) => panel.element),
@@ -234,7 +253,9 @@ class ArrayView implements View {
     this.#axes.height = this.#overlay.canvas.height;
     this.#areas = this.#panels.map((panel, index) => {
       const plot = panel.plot.getBoundingClientRect();
-      const area = panel.element.hidden ? NOWHERE : fitMap({ left: plot.left - left, top: plot.top - top, width: plot.width, height: plot.height }, array);
+      const area = panel.element.hidden
+        ? NOWHERE
+        : fitMap({ left: plot.left - left, top: plot.top - top, width: plot.width, height: plot.height }, array);
       this.#maps.place(index, area);
       return area;
     });
@@ -288,7 +309,12 @@ class ArrayView implements View {
     this.#textDue = false;
     const { live, suit, display } = this.#context;
     const [raw, conductance, force] = this.#feeds.frames;
-    this.#taxels.show(array, { raw: raw!, conductance: conductance!, force: force! }, this.#pointer.cursor, this.#pointer.pins);
+    this.#taxels.show(
+      array,
+      { raw: raw!, conductance: conductance!, force: force! },
+      this.#pointer.cursor,
+      this.#pointer.pins,
+    );
     setData(this.element, "stamp", fixed(force!.stampS, 6));
     setData(this.element, "frames", String(display.framesDrawn));
     const shown = live.arrays[suit.indexOf(array.name)];
@@ -323,9 +349,14 @@ class ArrayView implements View {
     const force = this.#feeds.frames[FORCE]!;
     const newtons = fixed(force.values[cursor] ?? NaN, 2);
     const counts = fixed(this.#feeds.frames[RAW]!.values[cursor] ?? NaN, 0);
-    const reading = this.#array.calibrated ? `${newtons} newtons, ${statusWord(force.statuses[cursor] ?? 0)}` : `${counts} counts`;
+    const reading = this.#array.calibrated
+      ? `${newtons} newtons, ${statusWord(force.statuses[cursor] ?? 0)}`
+      : `${counts} counts`;
     const region = this.#pointer.preview;
-    setText(this.#spoken, `${taxelName(cursor, this.#array)}: ${reading}${region === undefined ? "" : `, region ${regionName(region)}`}`);
+    setText(
+      this.#spoken,
+      `${taxelName(cursor, this.#array)}: ${reading}${region === undefined ? "" : `, region ${regionName(region)}`}`,
+    );
   }
 }
 

@@ -13,7 +13,12 @@ function stepOf(cellPixels: number): number {
 }
 
 /** The numbers of rows and columns beside the maps. */
-export function drawAxes(canvas: HTMLCanvasElement, areas: readonly Area[], array: ArrayDescription, pixelRatio: number): void {
+export function drawAxes(
+  canvas: HTMLCanvasElement,
+  areas: readonly Area[],
+  array: ArrayDescription,
+  pixelRatio: number,
+): void {
   const pen = canvas.getContext("2d")!;
   pen.resetTransform();
   pen.clearRect(0, 0, canvas.width, canvas.height);

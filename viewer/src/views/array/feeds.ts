@@ -22,7 +22,13 @@ const TOPICS = QUANTITIES.filter(({ name }) => name !== "pressure");
 export class Feeds {
   /** The newest shown frame of each quantity. */
   readonly frames: readonly GridFrame[];
-  readonly #feeds: readonly Feed[] = TOPICS.map(() => ({ frame: emptyGrid(), heard: emptyGrid(), held: new HeldValues(), message: undefined, isHeld: false }));
+  readonly #feeds: readonly Feed[] = TOPICS.map(() => ({
+    frame: emptyGrid(),
+    heard: emptyGrid(),
+    held: new HeldValues(),
+    message: undefined,
+    isHeld: false,
+  }));
   readonly #pressure = emptyGrid();
   readonly #ends: (() => void)[] = [];
   #share: TimeShare = "now";
@@ -78,7 +84,8 @@ export class Feeds {
       read(index, feed.message, feed.frame);
       feed.message = undefined;
       if (feed.frame.rows !== array.rows || feed.frame.cols !== array.cols) return;
-      if (this.#share !== "now" && feed.held.values.length === feed.frame.values.length) feed.frame.values.set(feed.held.values);
+      if (this.#share !== "now" && feed.held.values.length === feed.frame.values.length)
+        feed.frame.values.set(feed.held.values);
       if (this.#share !== "now") feed.frame.sigmas.fill(NaN);
       fresh.push(index);
     });

@@ -50,7 +50,14 @@ export class MapPanel {
     this.element = element(
       "section",
       { class: "panel map-panel", "aria-label": `${quantity.title} map` },
-      element("header", { class: "panel-title" }, element("h2", {}, quantity.title), this.#unit, this.#said, this.#select),
+      element(
+        "header",
+        { class: "panel-title" },
+        element("h2", {}, quantity.title),
+        this.#unit,
+        this.#said,
+        this.#select,
+      ),
       this.plot,
       element("div", { class: "scale" }, strip, ticks),
     );

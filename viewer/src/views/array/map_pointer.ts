@@ -110,7 +110,8 @@ export class MapPointer {
     const row = Math.floor(Math.max(0, this.cursor) / array.cols);
     const col = Math.max(0, this.cursor) % array.cols;
     const to = (newRow: number, newCol: number): void => {
-      const inside = Math.min(array.rows - 1, Math.max(0, newRow)) * array.cols + Math.min(array.cols - 1, Math.max(0, newCol));
+      const inside =
+        Math.min(array.rows - 1, Math.max(0, newRow)) * array.cols + Math.min(array.cols - 1, Math.max(0, newCol));
       this.#move(this.cursor < 0 ? 0 : inside);
     };
     if (event.key === "ArrowLeft") to(row, col - 1);

@@ -6,7 +6,11 @@ import { Signal } from "../../signal";
 import { TIME_SHARES, type TimeShare } from "./held_values";
 import { FORCE, PRESSURE, QUANTITIES } from "./quantities";
 
-const SHARE_WORDS: Readonly<Record<TimeShare, string>> = { now: "now", highest: "highest since reset", average: "average of 1 s" };
+const SHARE_WORDS: Readonly<Record<TimeShare, string>> = {
+  now: "now",
+  highest: "highest since reset",
+  average: "average of 1 s",
+};
 
 /** How the maps are shown, as the user has it. */
 export class MapChoices {
@@ -45,8 +49,15 @@ function check(label: string, signal: Signal<boolean>, role: string, group = "")
 function makeMapChoice({ narrowMap }: MapChoices): HTMLElement {
   const chosen = element(
     "select",
-    { class: "field map-choice", "aria-label": "Map", "data-role": "map", onchange: () => (narrowMap.value = Number(chosen.value)) },
-    ...QUANTITIES.flatMap(({ title }, index) => (index === PRESSURE ? [] : [element("option", { value: index }, title)])),
+    {
+      class: "field map-choice",
+      "aria-label": "Map",
+      "data-role": "map",
+      onchange: () => (narrowMap.value = Number(chosen.value)),
+    },
+    ...QUANTITIES.flatMap(({ title }, index) =>
+      index === PRESSURE ? [] : [element("option", { value: index }, title)],
+    ),
   );
   narrowMap.follow((value) => (chosen.value = String(value)));
   return chosen;
@@ -58,7 +69,11 @@ function makeShare({ share }: MapChoices, actions: MapActions): HTMLElement {
     { class: "field compact", "data-role": "share", onchange: () => (share.value = select.value as TimeShare) },
     ...TIME_SHARES.map((name) => element("option", { value: name }, SHARE_WORDS[name])),
   );
-  const reset = element("button", { class: "button compact", "data-role": "reset-share", onclick: () => actions.reset() }, "Reset");
+  const reset = element(
+    "button",
+    { class: "button compact", "data-role": "reset-share", onclick: () => actions.reset() },
+    "Reset",
+  );
   share.follow((value) => setHidden(reset, value !== "highest"));
   return element("span", { class: "group" }, element("label", { class: "check" }, "Show", select), reset);
 }
@@ -72,7 +87,10 @@ function makeRegion({ drawing }: MapChoices, { hasRegion, clearRegion }: MapActi
   });
   const describe = (): void => {
     button.setAttribute("aria-pressed", String(drawing.value));
-    setText(button, drawing.value ? "From corner to corner \u2026" : hasRegion.value ? "Remove region" : "Draw a region");
+    setText(
+      button,
+      drawing.value ? "From corner to corner \u2026" : hasRegion.value ? "Remove region" : "Draw a region",
+    );
   };
   drawing.follow(describe);
   hasRegion.follow(describe);
@@ -80,8 +98,15 @@ function makeRegion({ drawing }: MapChoices, { hasRegion, clearRegion }: MapActi
 }
 
 function makeMarks(): HTMLElement {
-  const mark = (name: string, words: string): HTMLElement => element("span", { class: "group" }, element("span", { class: `mark-${name}` }), words);
-  return element("p", { class: "marks dim" }, mark("fault", "faulty"), mark("saturated", "saturated or above range"), mark("beyond", "beyond the scale"));
+  const mark = (name: string, words: string): HTMLElement =>
+    element("span", { class: "group" }, element("span", { class: `mark-${name}` }), words);
+  return element(
+    "p",
+    { class: "marks dim" },
+    mark("fault", "faulty"),
+    mark("saturated", "saturated or above range"),
+    mark("beyond", "beyond the scale"),
+  );
 }
 
 /** The line above the maps. */

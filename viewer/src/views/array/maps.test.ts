@@ -8,7 +8,14 @@ import { endThatHolds, PRESSURE, QUANTITIES, taxelAreaM2 } from "./quantities";
 import { SteppedEnd } from "./stepped_end";
 
 function frame(stampS: number, values: number[], statuses: number[] = values.map(() => 0)): GridFrame {
-  return { ...emptyGrid(), stampS, rows: 1, cols: values.length, values: Float32Array.from(values), statuses: Uint8Array.from(statuses) };
+  return {
+    ...emptyGrid(),
+    stampS,
+    rows: 1,
+    cols: values.length,
+    values: Float32Array.from(values),
+    statuses: Uint8Array.from(statuses),
+  };
 }
 
 const ENDS = [1, 2, 5, 10];
@@ -26,7 +33,12 @@ describe("a scale in steps", () => {
 
   it("falls only after seconds in which nothing came near its end", () => {
     const scale = new SteppedEnd();
-    for (const [highest, stampS] of [[7, 0], [0.5, 1], [0.5, 5.1]] as const) scale.see(highest, stampS, ENDS);
+    for (const [highest, stampS] of [
+      [7, 0],
+      [0.5, 1],
+      [0.5, 5.1],
+    ] as const)
+      scale.see(highest, stampS, ENDS);
     expect(scale.value).toBe(10);
     for (const stampS of [6, 8, 10]) expect(scale.see(0.5, stampS, ENDS)).toBe(false);
     expect(scale.see(0.5, 10.2, ENDS)).toBe(true);
@@ -45,7 +57,12 @@ describe("a scale in steps", () => {
 describe("held values", () => {
   it("keep the highest of each taxel until they are reset, and take any number for one that is none", () => {
     const held = new HeldValues();
-    for (const values of [[1, NaN], [3, 2], [2, NaN]]) held.add(frame(0, values), "highest");
+    for (const values of [
+      [1, NaN],
+      [3, 2],
+      [2, NaN],
+    ])
+      held.add(frame(0, values), "highest");
     expect([...held.values]).toEqual([3, 2]);
     held.reset();
     held.add(frame(1, [0, 1]), "highest");

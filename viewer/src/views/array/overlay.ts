@@ -75,7 +75,11 @@ export class Overlay {
     this.#pen.setTransform(pixelRatio, 0, 0, pixelRatio, 0, 0);
   }
 
-  draw(areas: readonly Area[], array: ArrayDescription, { load, contacts, forces, centre, region, cursor, pins }: Marks): void {
+  draw(
+    areas: readonly Area[],
+    array: ArrayDescription,
+    { load, contacts, forces, centre, region, cursor, pins }: Marks,
+  ): void {
     this.#pen.save();
     this.#pen.resetTransform();
     this.#pen.clearRect(0, 0, this.canvas.width, this.canvas.height);
@@ -101,7 +105,16 @@ export class Overlay {
     const top = area.top + region.rows[0] * height;
     const pen = this.#pen;
     pen.setLineDash([7, 4]);
-    this.#strokeTwice(() => pen.strokeRect(left, top, (region.cols[1] - region.cols[0] + 1) * width, (region.rows[1] - region.rows[0] + 1) * height), 2);
+    this.#strokeTwice(
+      () =>
+        pen.strokeRect(
+          left,
+          top,
+          (region.cols[1] - region.cols[0] + 1) * width,
+          (region.rows[1] - region.rows[0] + 1) * height,
+        ),
+      2,
+    );
     pen.setLineDash([]);
     pen.font = FONT;
     pen.textAlign = "left";
@@ -109,7 +122,12 @@ export class Overlay {
     const bottom = top + (region.rows[1] - region.rows[0] + 1) * height - 3;
     this.#textTwice(regionName(region), left + 4, bottom);
     const textWidth = pen.measureText(regionName(region)).width;
-    return { x: left + 4 + 0.5 * textWidth - area.left, y: bottom - 0.5 * LABEL_HEIGHT - area.top, width: textWidth, height: LABEL_HEIGHT };
+    return {
+      x: left + 4 + 0.5 * textWidth - area.left,
+      y: bottom - 0.5 * LABEL_HEIGHT - area.top,
+      width: textWidth,
+      height: LABEL_HEIGHT,
+    };
   }
 
   /** A cross in a ring, and the way that led there. */
@@ -124,7 +142,10 @@ export class Overlay {
     const [endX, endY] = [x(trail.length - 1), y(trail.length - 1)];
     pen.beginPath();
     pen.arc(endX, endY, CENTRE_PIXELS, 0, TURN);
-    for (const [dx, dy] of [[CENTRE_PIXELS, 0], [0, CENTRE_PIXELS]] as const) {
+    for (const [dx, dy] of [
+      [CENTRE_PIXELS, 0],
+      [0, CENTRE_PIXELS],
+    ] as const) {
       pen.moveTo(endX - 1.6 * dx, endY - 1.6 * dy);
       pen.lineTo(endX + 1.6 * dx, endY + 1.6 * dy);
     }
@@ -155,14 +176,22 @@ export class Overlay {
     this.#textTwice(String(label), left + 3, top + 2);
   }
 
-  #drawContacts(area: Area, array: ArrayDescription, live: ArrayLive, forces: ReadonlyMap<number, number>, room: LabelRoom): void {
+  #drawContacts(
+    area: Area,
+    array: ArrayDescription,
+    live: ArrayLive,
+    forces: ReadonlyMap<number, number>,
+    room: LabelRoom,
+  ): void {
     const { originX, originY, pixelsX, pixelsY } = scaleOf(area, array);
     const pen = this.#pen;
     pen.save();
     pen.beginPath();
     pen.rect(area.left - AXIS_LEFT, area.top, area.width + 2 * AXIS_LEFT, area.height);
     pen.clip();
-    const touching = live.contacts.contacts.slice(0, live.contacts.count).filter(({ phase }) => phase !== ContactPhase.release);
+    const touching = live.contacts.contacts
+      .slice(0, live.contacts.count)
+      .filter(({ phase }) => phase !== ContactPhase.release);
     for (const contact of touching) {
       this.#drawTrail(live, live.slots.indexOf(contact.id), originX, originY, pixelsX, pixelsY);
       const [x, y] = [originX + contact.x * pixelsX, originY + contact.y * pixelsY];
@@ -173,7 +202,15 @@ export class Overlay {
       const reach = 0.75 * Math.sqrt(contact.areaM2 / Math.PI);
       const x = originX + (contact.x + reach) * pixelsX + 4;
       const y = originY + (contact.y - reach) * pixelsY - 22;
-      this.#drawLabel(contact, forces.get(contact.id) ?? contact.forceN, live.slots.indexOf(contact.id), x, y, area, room);
+      this.#drawLabel(
+        contact,
+        forces.get(contact.id) ?? contact.forceN,
+        live.slots.indexOf(contact.id),
+        x,
+        y,
+        area,
+        room,
+      );
     }
     pen.restore();
   }
@@ -213,7 +250,12 @@ export class Overlay {
     const text = `#${contact.id}  ${forceN.toFixed(forceN < 10 ? 2 : 1)} N`;
     pen.font = FONT;
     const width = pen.measureText(text).width + 16;
-    const place = room.place({ x: x - area.left + 0.5 * width, y: y - area.top + 0.5 * LABEL_HEIGHT, width, height: LABEL_HEIGHT });
+    const place = room.place({
+      x: x - area.left + 0.5 * width,
+      y: y - area.top + 0.5 * LABEL_HEIGHT,
+      width,
+      height: LABEL_HEIGHT,
+    });
     if (place === undefined) return;
     const left = area.left + place.x - 0.5 * width;
     const top = area.top + place.y - 0.5 * LABEL_HEIGHT;

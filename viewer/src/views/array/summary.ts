@@ -44,11 +44,17 @@ export class Summary {
     setText(this.#total, fixed(contacts.totalForceN, 2));
     setText(this.#sigma, `\u00b1 ${fixed(contacts.sigmaTotalN, 2)}`);
     setText(this.#values[0]!, String(touching(contacts.contacts, contacts.count)));
-    setText(this.#values[1]!, highest < 0 ? fixed(NaN, 0) : `${fixed(shown.values[highest]!, 2)} N  ${taxelName(highest, array)}`);
+    setText(
+      this.#values[1]!,
+      highest < 0 ? fixed(NaN, 0) : `${fixed(shown.values[highest]!, 2)} N  ${taxelName(highest, array)}`,
+    );
     setText(this.#values[2]!, `${fixed(contacts.sumN, 2)} \u00b1 ${fixed(contacts.sigmaSumN, 2)} N`);
     setText(this.#values[3]!, faulty === 0 ? "none" : `${faulty}, ${statusWord(worst)}`);
     const last = centre.length - 1;
-    setText(this.#values[4]!, last < 0 ? fixed(NaN, 0) : `${fixed(1e3 * centre.x(last), 1)}, ${fixed(1e3 * centre.y(last), 1)} mm`);
+    setText(
+      this.#values[4]!,
+      last < 0 ? fixed(NaN, 0) : `${fixed(1e3 * centre.x(last), 1)}, ${fixed(1e3 * centre.y(last), 1)} mm`,
+    );
   }
 
   showRegion(force: RegionForce | undefined): void {

@@ -81,7 +81,12 @@ export class TaxelTable {
     this.element = element(
       "section",
       { class: "panel", "aria-label": "Taxels" },
-      element("header", { class: "panel-title" }, element("h2", {}, "Taxels"), element("span", { class: "dim" }, "click to pin, up to six")),
+      element(
+        "header",
+        { class: "panel-title" },
+        element("h2", {}, "Taxels"),
+        element("span", { class: "dim" }, "click to pin, up to six"),
+      ),
       element(
         "div",
         { class: "table-room" },

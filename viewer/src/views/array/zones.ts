@@ -29,7 +29,9 @@ export function drawZones(layer: HTMLElement, area: Area | undefined, array: Arr
       width: (cols[1] - cols[0] + 1) * width,
       height: (rows[1] - rows[0] + 1) * height,
     };
-    const style = Object.entries(box).map(([side, pixels]) => `${side}: ${pixels.toFixed(1)}px`).join("; ");
+    const style = Object.entries(box)
+      .map(([side, pixels]) => `${side}: ${pixels.toFixed(1)}px`)
+      .join("; ");
     const label = limits.map(({ limit, unit }) => withUnit(limit, unit)).join(", ");
     layer.append(element("div", { class: "zone", "data-zone": name, style }, element("span", {}, `${name}  ${label}`)));
   }

@@ -5,7 +5,20 @@ import { count, fixed } from "../../format";
 import { type ArrayStatistics, DiagnosticLevel, type HealthStatus, type Statistics } from "../../messages/statistics";
 import type { View, ViewContext, ViewFactory } from "../../view";
 
-const HEADS = ["Array", "State", "Rate", "Jitter", "Frames", "Lost", "Damaged", "Rejected", "Latency p50", "p99", "Temperature", "Supply"];
+const HEADS = [
+  "Array",
+  "State",
+  "Rate",
+  "Jitter",
+  "Frames",
+  "Lost",
+  "Damaged",
+  "Rejected",
+  "Latency p50",
+  "p99",
+  "Temperature",
+  "Supply",
+];
 const { ok, warn, error, stale } = DiagnosticLevel;
 const LEVELS: Record<number, string> = { [ok]: "good", [warn]: "warn", [error]: "bad", [stale]: "warn" };
 const LEVEL_WORDS: Record<number, string> = { [ok]: "well", [warn]: "warning", [error]: "error", [stale]: "no news" };
@@ -22,7 +35,9 @@ function known(value: number, digits: number, unit: string): string {
 
 class ArrayRow {
   readonly element: HTMLTableRowElement;
-  readonly #cells = HEADS.slice(1).map((head) => element("td", { class: head === "State" ? "" : "figure", "data-field": head.toLowerCase() }));
+  readonly #cells = HEADS.slice(1).map((head) =>
+    element("td", { class: head === "State" ? "" : "figure", "data-field": head.toLowerCase() }),
+  );
 
   constructor(name: string, open: () => void) {
     const link = element("button", { class: "link", onclick: open, title: "Show its maps" }, name);
@@ -46,13 +61,16 @@ class ArrayRow {
       known(array.supplyV, 3, "V"),
     ];
     this.#cells.forEach((cell, index) => setText(cell, texts[index]!));
-    [4, 5, 6].forEach((column) => this.#cells[column]!.classList.toggle("attention", this.#cells[column]!.textContent !== "0"));
+    [4, 5, 6].forEach((column) =>
+      this.#cells[column]!.classList.toggle("attention", this.#cells[column]!.textContent !== "0"),
+    );
   }
 }
 
 function recordingWords(server: Statistics | undefined): string {
   if (server === undefined || !server.recording) return "off";
-  const leftOut = server.recordingLeftOut > 0 ? `, ${count(server.recordingLeftOut)} left out: the disk does not follow` : "";
+  const leftOut =
+    server.recordingLeftOut > 0 ? `, ${count(server.recordingLeftOut)} left out: the disk does not follow` : "";
   return `${server.recordingFile}, ${count(server.recordingFrames)} frames${leftOut}`;
 }
 
@@ -91,8 +109,18 @@ class HealthView implements View {
       element(
         "div",
         { class: "columns" },
-        element("section", { class: "panel", "aria-label": "Faults" }, element("header", { class: "panel-title" }, element("h2", {}, "Faults")), this.#faults),
-        element("section", { class: "panel", "aria-label": "Stream and page" }, element("header", { class: "panel-title" }, element("h2", {}, "Stream and page")), this.#figures),
+        element(
+          "section",
+          { class: "panel", "aria-label": "Faults" },
+          element("header", { class: "panel-title" }, element("h2", {}, "Faults")),
+          this.#faults,
+        ),
+        element(
+          "section",
+          { class: "panel", "aria-label": "Stream and page" },
+          element("header", { class: "panel-title" }, element("h2", {}, "Stream and page")),
+          this.#figures,
+        ),
       ),
     );
   }
@@ -133,7 +161,12 @@ class HealthView implements View {
 
   #showPairs(pairs: [string, string][]): void {
     if (this.#figures.childElementCount === 0) {
-      this.#figures.append(...pairs.flatMap(([name]) => [element("dt", {}, name), element("dd", { class: "figure", "data-figure": name })]));
+      this.#figures.append(
+        ...pairs.flatMap(([name]) => [
+          element("dt", {}, name),
+          element("dd", { class: "figure", "data-figure": name }),
+        ]),
+      );
     }
     pairs.forEach(([, text], index) => setText(this.#figures.children[2 * index + 1] as HTMLElement, text));
   }
@@ -141,7 +174,9 @@ class HealthView implements View {
   #showArrays(statistics: Statistics | undefined): void {
     if (statistics === undefined) return;
     if (statistics.arrays.map(({ name }) => name).join("/") !== [...this.#arrayRows.keys()].join("/")) {
-      this.#arrayRows = new Map(statistics.arrays.map(({ name }) => [name, new ArrayRow(name, () => this.#context.open("array", name))]));
+      this.#arrayRows = new Map(
+        statistics.arrays.map(({ name }) => [name, new ArrayRow(name, () => this.#context.open("array", name))]),
+      );
       this.#rows.replaceChildren(...[...this.#arrayRows.values()].map((row) => row.element));
     }
     for (const array of statistics.arrays) this.#arrayRows.get(array.name)!.show(array);
@@ -153,10 +188,18 @@ class HealthView implements View {
         element(
           "li",
           { "data-array": name },
-          element("span", { class: "pill", "data-level": LEVELS[level] ?? "warn" }, LEVEL_WORDS[level] ?? String(level)),
+          element(
+            "span",
+            { class: "pill", "data-level": LEVELS[level] ?? "warn" },
+            LEVEL_WORDS[level] ?? String(level),
+          ),
           element("strong", {}, name),
           element("span", {}, message),
-          element("ul", {}, ...values.map(({ key, value }) => element("li", {}, element("span", { class: "dim" }, key), value))),
+          element(
+            "ul",
+            {},
+            ...values.map(({ key, value }) => element("li", {}, element("span", { class: "dim" }, key), value)),
+          ),
         ),
       ),
     );

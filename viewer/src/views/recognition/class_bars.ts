@@ -14,7 +14,13 @@ class Bar {
 
   constructor(name: string) {
     const track = element("span", { class: "class-track" }, this.#fill);
-    this.element = element("li", { "data-class": name }, element("span", { class: "class-name", title: name }, name), track, this.#share);
+    this.element = element(
+      "li",
+      { "data-class": name },
+      element("span", { class: "class-name", title: name }, name),
+      track,
+      this.#share,
+    );
   }
 
   show(probability: number, isAnswer: boolean): void {
@@ -39,7 +45,13 @@ export class ClassBars {
     this.element = element(
       "section",
       { class: "panel", "aria-label": "What touches" },
-      element("header", { class: "panel-title" }, element("h2", {}, "What touches"), element("span", { class: "stretch" }), this.#age),
+      element(
+        "header",
+        { class: "panel-title" },
+        element("h2", {}, "What touches"),
+        element("span", { class: "stretch" }),
+        this.#age,
+      ),
       element("p", { class: "answer-line", "aria-live": "polite" }, this.#answer, this.#reason),
       this.#list,
       this.#none,
@@ -52,7 +64,10 @@ export class ClassBars {
     this.#list.replaceChildren(...[...this.#bars.values()].map((bar) => bar.element));
     setHidden(this.#list, classes.length === 0);
     setHidden(this.#none, classes.length > 0);
-    setText(this.#none, `No classes are served for ${array}: learn them (dermis learn) and serve them (dermis serve --classes), or teach them here.`);
+    setText(
+      this.#none,
+      `No classes are served for ${array}: learn them (dermis learn) and serve them (dermis serve --classes), or teach them here.`,
+    );
     setText(this.#answer, "");
     setText(this.#reason, classes.length > 0 ? "nothing was recognised yet" : "");
     setText(this.#age, "");
@@ -64,9 +79,18 @@ export class ClassBars {
     setText(this.#answer, answer);
     setData(this.#answer, "unknown", String(answer === UNKNOWN && reason !== ""));
     const [first, second] = classes;
-    const between = first !== undefined && second !== undefined ? `: ${first.name} ${fixed(100 * first.probability, 0)} %, ${second.name} ${fixed(100 * second.probability, 0)} %` : "";
-    setText(this.#reason, reason === "" ? `${fixed(100 * (first?.probability ?? NaN), 1)} %` : `${reason}${reason.startsWith("between") ? between : ""}`);
-    for (const { name, probability } of classes) this.#bars.get(name)?.show(probability, name === answer && reason === "");
+    const between =
+      first !== undefined && second !== undefined
+        ? `: ${first.name} ${fixed(100 * first.probability, 0)} %, ${second.name} ${fixed(100 * second.probability, 0)} %`
+        : "";
+    setText(
+      this.#reason,
+      reason === ""
+        ? `${fixed(100 * (first?.probability ?? NaN), 1)} %`
+        : `${reason}${reason.startsWith("between") ? between : ""}`,
+    );
+    for (const { name, probability } of classes)
+      this.#bars.get(name)?.show(probability, name === answer && reason === "");
   }
 
   showAge(seconds: number): void {

@@ -26,7 +26,9 @@ class RecognitionView implements View {
 
   constructor(context: ViewContext) {
     this.#context = context;
-    this.#teach = new TeachPanel(context.stream, (classes) => this.#bars.begin(context.suit.selected.value?.name ?? "", classes));
+    this.#teach = new TeachPanel(context.stream, (classes) =>
+      this.#bars.begin(context.suit.selected.value?.name ?? "", classes),
+    );
     this.element = element(
       "div",
       { class: "view recognition-view", "data-view": "recognition" },
@@ -70,7 +72,10 @@ class RecognitionView implements View {
     this.#shownS = NaN;
     this.#bars.begin(array.name, array.classes ?? []);
     this.#teach.begin(array);
-    this.#endArray = this.#context.stream.subscribe(`/${array.name}/recognition`, (message) => (this.#news = readClassification(message)));
+    this.#endArray = this.#context.stream.subscribe(
+      `/${array.name}/recognition`,
+      (message) => (this.#news = readClassification(message)),
+    );
   }
 }
 

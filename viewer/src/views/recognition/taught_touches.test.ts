@@ -10,7 +10,10 @@ function touches(name: string, count: number, session = "1"): TaughtTouch[] {
 describe("touches that are taught", () => {
   it("are shown by class", () => {
     const classes = byClass([...touches("tap", 2), ...touches("hug", 1), ...touches("tap", 1)]);
-    expect([...classes].map(([name, some]) => [name, some.length])).toEqual([["tap", 3], ["hug", 1]]);
+    expect([...classes].map(([name, some]) => [name, some.length])).toEqual([
+      ["tap", 3],
+      ["hug", 1],
+    ]);
   });
 
   it("are warned of below five and from one session", () => {

@@ -26,13 +26,30 @@ interface Trained {
 }
 
 /** A touch as a small picture that can be thrown away. */
-function thumbnail({ id, picture = [] }: TaughtTouch, { rows, cols }: ArrayDescription, throwAway: () => void): HTMLElement {
+function thumbnail(
+  { id, picture = [] }: TaughtTouch,
+  { rows, cols }: ArrayDescription,
+  throwAway: () => void,
+): HTMLElement {
   const canvas = element("canvas", { width: cols, height: rows, "aria-hidden": "true" });
   const pen = canvas.getContext("2d")!;
   const image = pen.createImageData(cols, rows);
-  picture.forEach((brightness, taxel) => image.data.set([...rgbOf(brightness / 255).map((share) => 255 * share), 255], 4 * taxel));
+  picture.forEach((brightness, taxel) =>
+    image.data.set([...rgbOf(brightness / 255).map((share) => 255 * share), 255], 4 * taxel),
+  );
   pen.putImageData(image, 0, 0);
-  return element("button", { class: "example", title: "Throw this example away", "aria-label": `Throw example ${id} away`, "data-example": id, onclick: throwAway }, canvas, element("span", { "aria-hidden": "true" }, "\u00d7"));
+  return element(
+    "button",
+    {
+      class: "example",
+      title: "Throw this example away",
+      "aria-label": `Throw example ${id} away`,
+      "data-example": id,
+      onclick: throwAway,
+    },
+    canvas,
+    element("span", { "aria-hidden": "true" }, "\u00d7"),
+  );
 }
 
 /** Names touches, collects them and has classes learned of them. */
@@ -40,16 +57,33 @@ export class TeachPanel {
   readonly element: HTMLElement;
   readonly #stream: Stream;
   readonly #onTrained: (classes: string[]) => void;
-  readonly #name = element("input", { class: "field", "data-role": "teach-class", maxlength: 40, placeholder: "such as tap" });
+  readonly #name = element("input", {
+    class: "field",
+    "data-role": "teach-class",
+    maxlength: 40,
+    placeholder: "such as tap",
+  });
   readonly #session = element("input", { class: "field", "data-role": "teach-session", maxlength: 20, value: "1" });
-  readonly #listen = element("button", { class: "button primary", "data-role": "teach-listen", type: "submit" }, "Begin");
-  readonly #train = element("button", { class: "button", "data-role": "teach-train", disabled: true, onclick: () => void this.#learn() }, "Train");
+  readonly #listen = element(
+    "button",
+    { class: "button primary", "data-role": "teach-listen", type: "submit" },
+    "Begin",
+  );
+  readonly #train = element(
+    "button",
+    { class: "button", "data-role": "teach-train", disabled: true, onclick: () => void this.#learn() },
+    "Train",
+  );
   readonly #saved = element("select", { class: "field", "data-role": "teach-saved" });
   readonly #before = element(
     "div",
     { class: "teach-form", "data-role": "teach-before", hidden: true },
     element("label", {}, "Taught before", this.#saved),
-    element("button", { class: "button", type: "button", "data-role": "teach-load", onclick: () => void this.#load() }, "Load"),
+    element(
+      "button",
+      { class: "button", type: "button", "data-role": "teach-load", onclick: () => void this.#load() },
+      "Load",
+    ),
   );
   readonly #status = element("p", { class: "note", role: "status", "data-role": "teach-status" });
   readonly #classes = element("ul", { class: "taught", "data-role": "taught" });
@@ -153,7 +187,11 @@ export class TeachPanel {
     this.#listening = answer.listening;
     for (const touch of answer.examples) {
       this.#known = Math.max(this.#known, touch.id);
-      if (touch.picture !== undefined) this.#pictures.set(touch.id, thumbnail(touch, array, () => void this.#call("/recognition/throw_away", { example: touch.id })));
+      if (touch.picture !== undefined)
+        this.#pictures.set(
+          touch.id,
+          thumbnail(touch, array, () => void this.#call("/recognition/throw_away", { example: touch.id })),
+        );
     }
     this.#show(answer);
   }
@@ -162,16 +200,32 @@ export class TeachPanel {
     setText(this.#listen, listening === "" ? "Begin" : "Stop");
     this.#name.disabled = this.#session.disabled = listening !== "";
     const count = examples.filter((touch) => touch.class === listening).length;
-    const asked = touched ? "Touched: let go." : count >= WANTED_EXAMPLES ? "Enough: stop, and teach the next class." : "Touch the array, and let go.";
+    const asked = touched
+      ? "Touched: let go."
+      : count >= WANTED_EXAMPLES
+        ? "Enough: stop, and teach the next class."
+        : "Touch the array, and let go.";
     const lacking = missing(examples);
-    setText(this.#status, listening !== "" ? `${listening}: ${count} of ${WANTED_EXAMPLES}. ${asked}` : lacking !== "" ? `Name a class and begin. ${lacking}` : "Name another class, or train.");
+    setText(
+      this.#status,
+      listening !== ""
+        ? `${listening}: ${count} of ${WANTED_EXAMPLES}. ${asked}`
+        : lacking !== ""
+          ? `Name a class and begin. ${lacking}`
+          : "Name another class, or train.",
+    );
     this.#train.disabled = listening !== "" || lacking !== "";
     const ids = examples.map(({ id }) => id).join();
     if (ids === this.#shown) return;
     this.#shown = ids;
     this.#classes.replaceChildren(
       ...[...byClass(examples)].map(([name, touches]) =>
-        element("li", { "data-taught": name }, element("strong", {}, `${name} (${touches.length})`), element("span", { class: "examples" }, ...touches.map(({ id }) => this.#pictures.get(id) ?? ""))),
+        element(
+          "li",
+          { "data-taught": name },
+          element("strong", {}, `${name} (${touches.length})`),
+          element("span", { class: "examples" }, ...touches.map(({ id }) => this.#pictures.get(id) ?? "")),
+        ),
       ),
     );
     this.#lines.replaceChildren(...warnings(examples).map((line) => element("li", {}, line)));
@@ -191,7 +245,10 @@ export class TeachPanel {
     try {
       return await this.#stream.callService(service, { array: this.#array?.name ?? "", ...request });
     } catch (error) {
-      if (!SILENT.includes(service)) this.#result.replaceChildren(element("li", { class: "attention" }, error instanceof Error ? error.message : String(error)));
+      if (!SILENT.includes(service))
+        this.#result.replaceChildren(
+          element("li", { class: "attention" }, error instanceof Error ? error.message : String(error)),
+        );
       return undefined;
     }
   }

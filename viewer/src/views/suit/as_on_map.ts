@@ -13,5 +13,12 @@ export function isLoneAndFlat({ arrays: [array, ...others], body }: SuitDescript
 /** Its rows go down on a map, and seen from the touched side they go up: y is turned. */
 export function asOnMap(suit: SuitDescription): SuitDescription {
   const turned = ([x, y, z]: [number, number, number]): [number, number, number] => [x, -y, z];
-  return { ...suit, arrays: suit.arrays.map((array) => ({ ...array, positions: array.positions.map(turned), normals: array.normals.map(turned) })) };
+  return {
+    ...suit,
+    arrays: suit.arrays.map((array) => ({
+      ...array,
+      positions: array.positions.map(turned),
+      normals: array.normals.map(turned),
+    })),
+  };
 }

@@ -56,7 +56,13 @@ export class BodyModel {
     }
   }
 
-  #add(link: three.Group, visual: BodyVisual, fetchFile: FetchFile, changed: () => void, failed: (why: string) => void): void {
+  #add(
+    link: three.Group,
+    visual: BodyVisual,
+    fetchFile: FetchFile,
+    changed: () => void,
+    failed: (why: string) => void,
+  ): void {
     const holder = new three.Group();
     put(holder, visual.pose);
     link.add(holder);
@@ -76,7 +82,9 @@ export class BodyModel {
         holder.add(mesh);
         changed();
       })
-      .catch((error: unknown) => failed(`${visual.name ?? file}: ${error instanceof Error ? error.message : String(error)}`));
+      .catch((error: unknown) =>
+        failed(`${visual.name ?? file}: ${error instanceof Error ? error.message : String(error)}`),
+      );
   }
 
   move(name: string, pose: PlacedPose): void {

@@ -33,7 +33,13 @@ export class ContactArrows {
   }
 
   /** `isYTurned`: as asOnMap() has it. Writes where the arrow begins to `tail`; false: there are too many. */
-  add({ position, normal, forceN }: Contact, isYTurned: boolean, scaleEnd: number, size: number, tail: three.Vector3): boolean {
+  add(
+    { position, normal, forceN }: Contact,
+    isYTurned: boolean,
+    scaleEnd: number,
+    size: number,
+    tail: three.Vector3,
+  ): boolean {
     if (this.#used === MOST_ARROWS) return false;
     const arrow = this.#arrows[this.#used] ?? this.#make();
     this.#used += 1;

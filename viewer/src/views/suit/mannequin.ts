@@ -63,7 +63,9 @@ export function mannequinOf({ arrays }: SuitDescription, suitSize: number, ink: 
     const group = new three.Group();
     all.add(group);
     if (taken.has(piece)) continue;
-    const other = pieces.find((candidate) => candidate !== piece && !taken.has(candidate) && areTwoSides(piece, candidate));
+    const other = pieces.find(
+      (candidate) => candidate !== piece && !taken.has(candidate) && areTwoSides(piece, candidate),
+    );
     const sides = other === undefined ? [piece] : [piece, other];
     for (const side of sides) taken.add(side);
     group.add(new three.Mesh(hull(sides, suitSize), ink));

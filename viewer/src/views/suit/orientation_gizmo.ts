@@ -17,7 +17,10 @@ interface Arm {
   letter: SVGTextElement;
 }
 
-function part<K extends keyof SVGElementTagNameMap>(tag: K, attributes: Record<string, string | number>): SVGElementTagNameMap[K] {
+function part<K extends keyof SVGElementTagNameMap>(
+  tag: K,
+  attributes: Record<string, string | number>,
+): SVGElementTagNameMap[K] {
   const result = document.createElementNS(SVG, tag);
   for (const [name, value] of Object.entries(attributes)) result.setAttribute(name, String(value));
   return result;

@@ -17,7 +17,12 @@ const TURN_STEP = 0.12;
 const ZOOM_STEP = 1.15;
 const FIT_ATTEMPTS = 6;
 /** Corners of a taxel, as the camera sees it: right and up. */
-const CORNERS = [[-1, -1], [-1, 1], [1, -1], [1, 1]] as const;
+const CORNERS = [
+  [-1, -1],
+  [-1, 1],
+  [1, -1],
+  [1, 1],
+] as const;
 /** Share of the picture's height and width. */
 const FIT_SHARE = 0.8;
 /** Clicks this near to a taxel mean its array, as a share of the suit's size. */
@@ -31,7 +36,11 @@ const LINK_PREFIX = "body/";
 
 function matrixOf({ position, rotation }: PlacedPose): three.Matrix4 {
   const one = new three.Vector3(1, 1, 1);
-  return new three.Matrix4().compose(new three.Vector3().fromArray(position), new three.Quaternion().fromArray(rotation), one);
+  return new three.Matrix4().compose(
+    new three.Vector3().fromArray(position),
+    new three.Quaternion().fromArray(rotation),
+    one,
+  );
 }
 
 /** The taxels at the border of a rectangle, in the order of a walk round it. */
@@ -108,7 +117,8 @@ export class SuitScene {
     this.#scene.add(this.#cloud.mesh);
     const box = new three.Box3();
     const point = new three.Vector3();
-    for (const { positions } of suit.arrays) for (const position of positions) box.expandByPoint(point.fromArray(position));
+    for (const { positions } of suit.arrays)
+      for (const position of positions) box.expandByPoint(point.fromArray(position));
     box.getCenter(this.#centre);
     this.#size = Math.max(0.02, box.getSize(point).length());
     this.#moves = suit.arrays.map(() => new three.Matrix4());
@@ -124,7 +134,8 @@ export class SuitScene {
     this.#body?.dispose();
     this.#body = undefined;
     if (this.#mannequin !== undefined) this.#scene.remove(this.#mannequin);
-    for (const part of this.#mannequin?.children ?? []) for (const { geometry } of part.children as three.Mesh[]) geometry.dispose();
+    for (const part of this.#mannequin?.children ?? [])
+      for (const { geometry } of part.children as three.Mesh[]) geometry.dispose();
     this.#mannequin = undefined;
     if (suit.body === undefined) {
       this.#mannequin = mannequinOf(suit, this.#size, this.#mannequinInk);
@@ -177,7 +188,9 @@ export class SuitScene {
         const points = outline(rows, cols).map(([row, col]) => {
           const taxel = row * array.cols + col;
           const normal = new three.Vector3().fromArray(array.normals[taxel]!);
-          return new three.Vector3().fromArray(array.positions[taxel]!).addScaledVector(normal, LIFT_SHARE * this.#size);
+          return new three.Vector3()
+            .fromArray(array.positions[taxel]!)
+            .addScaledVector(normal, LIFT_SHARE * this.#size);
         });
         const line = new three.LineLoop(new three.BufferGeometry().setFromPoints(points), this.#zoneInk);
         line.matrixAutoUpdate = false;
@@ -196,7 +209,11 @@ export class SuitScene {
     if (!liesFlat) facing.setZ(0);
     if (facing.length() < 0.35) facing.set(1, 0, 0);
     const side = new three.Vector3().crossVectors(this.#camera.up, facing).normalize();
-    const direction = facing.normalize().addScaledVector(side, liesFlat ? 0.25 : 0.6).addScaledVector(this.#camera.up, 0.3).normalize();
+    const direction = facing
+      .normalize()
+      .addScaledVector(side, liesFlat ? 0.25 : 0.6)
+      .addScaledVector(this.#camera.up, 0.3)
+      .normalize();
     this.#camera.near = 0.01 * this.#size;
     this.#camera.far = 100 * this.#size;
     this.#camera.updateProjectionMatrix();
@@ -222,7 +239,9 @@ export class SuitScene {
       const geometry = part.geometry as three.BufferGeometry;
       geometry.computeBoundingBox();
       const { min, max } = geometry.boundingBox!;
-      for (const x of [min.x, max.x]) for (const y of [min.y, max.y]) for (const z of [min.z, max.z]) corners.push(new three.Vector3(x, y, z).applyMatrix4(part.matrixWorld));
+      for (const x of [min.x, max.x])
+        for (const y of [min.y, max.y])
+          for (const z of [min.z, max.z]) corners.push(new three.Vector3(x, y, z).applyMatrix4(part.matrixWorld));
     });
     return corners;
   }
@@ -244,7 +263,13 @@ export class SuitScene {
         const reach = 0.5 * nearestNeighbour(positions, cols);
         for (const position of positions) {
           for (const [right, up] of CORNERS) {
-            extent.expandByPoint(point.fromArray(position).addScaledVector(this.#right, right * reach).addScaledVector(this.#up, up * reach).project(this.#camera));
+            extent.expandByPoint(
+              point
+                .fromArray(position)
+                .addScaledVector(this.#right, right * reach)
+                .addScaledVector(this.#up, up * reach)
+                .project(this.#camera),
+            );
           }
         }
       }
@@ -252,7 +277,9 @@ export class SuitScene {
       if (extent.isEmpty()) return;
       extent.getCenter(point);
       const height = distance * Math.tan(three.MathUtils.degToRad(0.5 * this.#camera.fov));
-      target.addScaledVector(this.#right, point.x * height * this.#camera.aspect).addScaledVector(this.#up, point.y * height);
+      target
+        .addScaledVector(this.#right, point.x * height * this.#camera.aspect)
+        .addScaledVector(this.#up, point.y * height);
       extent.getSize(point);
       distance *= Math.max(0.3, (0.5 * Math.max(point.x, point.y)) / FIT_SHARE);
     }
@@ -265,7 +292,13 @@ export class SuitScene {
     this.#arrows.setColor(cssColor("--accent"));
     this.#zoneInk.color.set(cssColor("--bad"));
     this.#mannequinInk.color.set(cssColor("--fault"));
-    this.#cloud?.setColors(rgbColor("--fault"), rgbColor("--fault-stripe"), rgbColor("--accent"), rgbColor("--rim"), document.documentElement.dataset["theme"] === "light");
+    this.#cloud?.setColors(
+      rgbColor("--fault"),
+      rgbColor("--fault-stripe"),
+      rgbColor("--accent"),
+      rgbColor("--rim"),
+      document.documentElement.dataset["theme"] === "light",
+    );
     this.#isDue = true;
   }
 
@@ -400,7 +433,8 @@ export class SuitScene {
       for (const position of positions) {
         point.fromArray(this.placeOf(array, position));
         const depth = point.distanceTo(this.#camera.position);
-        if (depth < nearest && ray.ray.distanceToPoint(point) < CLICK_SHARE * this.#size) [found, nearest] = [array, depth];
+        if (depth < nearest && ray.ray.distanceToPoint(point) < CLICK_SHARE * this.#size)
+          [found, nearest] = [array, depth];
       }
     });
     return found;

@@ -23,7 +23,12 @@ class ArrayLabel {
   readonly #force = element("span", { class: "figure" });
 
   constructor(name: string, open: () => void) {
-    this.element = element("button", { class: "array-label", onclick: open, "data-array": name, title: `Open ${name}` }, name, this.#force);
+    this.element = element(
+      "button",
+      { class: "array-label", onclick: open, "data-array": name, title: `Open ${name}` },
+      name,
+      this.#force,
+    );
   }
 
   show(newtons: number, isCalibrated: boolean): void {
@@ -43,11 +48,16 @@ function putInto(room: LabelRoom, label: HTMLElement, at: [number, number] | und
   const [width, height] = [label.offsetWidth, label.offsetHeight];
   const box = room.place({ x: at[0], y: at[1] - share * height, width, height });
   setHidden(label, box === undefined);
-  if (box !== undefined) label.style.transform = `translate(${(box.x - 0.5 * width).toFixed(1)}px, ${(box.y - 0.5 * height).toFixed(1)}px)`;
+  if (box !== undefined)
+    label.style.transform = `translate(${(box.x - 0.5 * width).toFixed(1)}px, ${(box.y - 0.5 * height).toFixed(1)}px)`;
 }
 
 /** Above the middle of what is seen of these points of an array. */
-function above(scene: SuitScene, array: number, points: readonly [number, number, number][]): [number, number] | undefined {
+function above(
+  scene: SuitScene,
+  array: number,
+  points: readonly [number, number, number][],
+): [number, number] | undefined {
   let top = Infinity;
   let sum = 0;
   for (const point of points) {
@@ -70,7 +80,9 @@ class SuitView implements View {
   readonly #end = setting<number>("scale.suit", 10, (value) => ENDS_N.includes(value));
   readonly #frame: PointsFrame = { stampS: 0, newtons: new Float32Array(0), statuses: new Uint8Array(0) };
   readonly #resizing = new ResizeObserver(() => this.#resize());
-  readonly #forces = Array.from({ length: MOST_FORCES }, () => element("span", { class: "force-label figure", hidden: true, "aria-hidden": "true" }));
+  readonly #forces = Array.from({ length: MOST_FORCES }, () =>
+    element("span", { class: "force-label figure", hidden: true, "aria-hidden": "true" }),
+  );
   readonly #gizmo = new OrientationGizmo();
   readonly #arrowShaft = element("span", { class: "arrow-length" });
   readonly #arrowForce = element("span", { class: "figure" });
@@ -112,7 +124,9 @@ class SuitView implements View {
     this.#room.addEventListener("click", (event) => this.#click(event));
     this.#room.addEventListener("keydown", (event) => this.#steer(event));
     context.suit.description.follow(() => this.#describe());
-    context.suit.selected.follow((array) => this.#scene?.choose(array === undefined ? -1 : context.suit.indexOf(array.name)));
+    context.suit.selected.follow((array) =>
+      this.#scene?.choose(array === undefined ? -1 : context.suit.indexOf(array.name)),
+    );
     context.theme.shown.follow(() => this.#scene?.readColors());
     context.paused.follow((isPaused) => this.#pause(isPaused));
     this.#end.follow((end) => this.#setScale(end));
@@ -152,7 +166,7 @@ class SuitView implements View {
   }
 
   #pause(isPaused: boolean): void {
-    this.#held = isPaused && this.#isShown ? this.#message ?? this.#drawn : undefined;
+    this.#held = isPaused && this.#isShown ? (this.#message ?? this.#drawn) : undefined;
     if (this.#isShown) return;
     if (isPaused) this.#follow();
     else this.#unsubscribe();
@@ -178,7 +192,10 @@ class SuitView implements View {
     }
     if (live.version !== this.#contactsVersion) {
       this.#contactsVersion = live.version;
-      scene.setContacts(live.arrays.map(({ contacts }) => contacts), this.#end.value);
+      scene.setContacts(
+        live.arrays.map(({ contacts }) => contacts),
+        this.#end.value,
+      );
       this.#forces.forEach((label, index) => setText(label, forceText(scene.arrowForce(index), this.#end.value)));
     }
     if (scene.draw()) this.#placeLabels(scene);
@@ -190,7 +207,8 @@ class SuitView implements View {
     this.#isLoading = true;
     const { SuitScene } = await import("./suit_scene");
     const { stream } = this.#context;
-    const failed = (why: string): void => void (stream.notice.value = { level: 1, message: `The body is not shown whole. ${why}` });
+    const failed = (why: string): void =>
+      void (stream.notice.value = { level: 1, message: `The body is not shown whole. ${why}` });
     this.#scene = new SuitScene(this.#canvas, (path) => stream.fetchFile(path), failed);
     this.#describe();
     this.#resize();
@@ -199,7 +217,11 @@ class SuitView implements View {
   #makeToolbar(): HTMLElement {
     const select = element(
       "select",
-      { class: "field compact", "aria-label": "End of the force scale", onchange: () => (this.#end.value = Number(select.value)) },
+      {
+        class: "field compact",
+        "aria-label": "End of the force scale",
+        onchange: () => (this.#end.value = Number(select.value)),
+      },
       ...ENDS_N.map((end) => element("option", { value: end, selected: end === this.#end.value }, `0 \u2013 ${end} N`)),
     );
     const strip = element("div", { class: "scale-strip" });
@@ -215,7 +237,9 @@ class SuitView implements View {
 
   #setScale(end: number): void {
     this.#ticks.replaceChildren(
-      ...[0, 0.25, 0.5, 0.75, 1].map((share) => element("span", { style: `left: ${100 * share}%` }, String(share * end))),
+      ...[0, 0.25, 0.5, 0.75, 1].map((share) =>
+        element("span", { style: `left: ${100 * share}%` }, String(share * end)),
+      ),
     );
     setText(this.#arrowForce, `${end} N`);
     this.#contactsVersion = -1;
@@ -234,7 +258,9 @@ class SuitView implements View {
     for (const label of this.#labels) label.element.remove();
     this.#labels = arrays.map(({ name }) => new ArrayLabel(name, () => this.#context.open("array", name)));
     this.#anchors = arrays.map(({ positions, rows, cols }) =>
-      [0, Math.floor(rows / 2), rows - 1].flatMap((row) => [0, Math.floor(cols / 2), cols - 1].map((col) => positions[row * cols + col]!)),
+      [0, Math.floor(rows / 2), rows - 1].flatMap((row) =>
+        [0, Math.floor(cols / 2), cols - 1].map((col) => positions[row * cols + col]!),
+      ),
     );
     this.#room.append(...this.#labels.map((label) => label.element));
   }
@@ -245,8 +271,12 @@ class SuitView implements View {
 
   #placeLabels(scene: SuitScene): void {
     const room = new LabelRoom(this.#room.clientWidth, this.#room.clientHeight);
-    this.#labels.forEach((label, index) => putInto(room, label.element, above(scene, index, this.#anchors[index]!), 0.7));
-    this.#forces.forEach((label, index) => putInto(room, label, index < scene.arrowCount ? scene.arrowPlace(index) : undefined, 0));
+    this.#labels.forEach((label, index) =>
+      putInto(room, label.element, above(scene, index, this.#anchors[index]!), 0.7),
+    );
+    this.#forces.forEach((label, index) =>
+      putInto(room, label, index < scene.arrowCount ? scene.arrowPlace(index) : undefined, 0),
+    );
     this.#gizmo.show(scene.axes());
     this.#arrowShaft.style.width = `${scene.longestArrow.toFixed(1)}px`;
   }
@@ -254,7 +284,9 @@ class SuitView implements View {
   #showTotals(nowMs: number): void {
     this.#labelMs = nowMs;
     const { arrays } = this.#context.suit.description.value;
-    this.#labels.forEach((label, index) => label.show(this.#context.live.arrays[index]?.contacts.totalForceN ?? NaN, arrays[index]?.calibrated === true));
+    this.#labels.forEach((label, index) =>
+      label.show(this.#context.live.arrays[index]?.contacts.totalForceN ?? NaN, arrays[index]?.calibrated === true),
+    );
   }
 
   #click(event: MouseEvent): void {

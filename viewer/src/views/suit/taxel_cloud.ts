@@ -105,7 +105,10 @@ export class TaxelCloud {
     [this.#newtons, this.#statuses, this.#chosen] = [dynamic(), dynamic(), dynamic()];
     const geometry = new three.InstancedBufferGeometry();
     geometry.instanceCount = total;
-    geometry.setAttribute("position", new three.BufferAttribute(new Float32Array([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0]), 3));
+    geometry.setAttribute(
+      "position",
+      new three.BufferAttribute(new Float32Array([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0]), 3),
+    );
     geometry.setIndex([0, 1, 2, 0, 2, 3]);
     this.#places = new three.InstancedBufferAttribute(places, 3);
     this.#facings = new three.InstancedBufferAttribute(facings, 3);
@@ -120,7 +123,8 @@ export class TaxelCloud {
   }
 
   #material(): three.RawShaderMaterial {
-    const header = "precision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nuniform mat3 normalMatrix;\nin vec3 position;\n";
+    const header =
+      "precision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nuniform mat3 normalMatrix;\nin vec3 position;\n";
     return new three.RawShaderMaterial({
       glslVersion: three.GLSL3,
       vertexShader: header + VERTEX,
@@ -151,8 +155,18 @@ export class TaxelCloud {
     const { positions, normals } = this.#suit.arrays[array]!;
     const point = new three.Vector3();
     const first = this.#firsts[array]!;
-    positions.forEach((position, taxel) => point.fromArray(position).applyMatrix4(move).toArray(this.#places.array, 3 * (first + taxel)));
-    normals.forEach((normal, taxel) => point.fromArray(normal).transformDirection(move).toArray(this.#facings.array, 3 * (first + taxel)));
+    positions.forEach((position, taxel) =>
+      point
+        .fromArray(position)
+        .applyMatrix4(move)
+        .toArray(this.#places.array, 3 * (first + taxel)),
+    );
+    normals.forEach((normal, taxel) =>
+      point
+        .fromArray(normal)
+        .transformDirection(move)
+        .toArray(this.#facings.array, 3 * (first + taxel)),
+    );
     this.#places.needsUpdate = true;
     this.#facings.needsUpdate = true;
   }

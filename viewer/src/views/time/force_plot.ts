@@ -75,7 +75,13 @@ export class ForcePlot {
     this.#figures = lines.map(() => element("span", { class: "figure" }));
     this.#legend.replaceChildren(
       ...lines.map(({ color }, index) =>
-        element("li", {}, element("span", { class: "swatch", style: `background: var(${color})` }), this.#names[index]!, this.#figures[index]!),
+        element(
+          "li",
+          {},
+          element("span", { class: "swatch", style: `background: var(${color})` }),
+          this.#names[index]!,
+          this.#figures[index]!,
+        ),
       ),
     );
     this.#plot?.destroy();
@@ -121,7 +127,12 @@ export class ForcePlot {
   }
 
   #options(): uPlot.Options {
-    const axis = { stroke: cssColor("--text-dim"), font: AXIS_FONT, grid: { stroke: cssColor("--line-faint"), width: 1 }, ticks: { show: false } };
+    const axis = {
+      stroke: cssColor("--text-dim"),
+      font: AXIS_FONT,
+      grid: { stroke: cssColor("--line-faint"), width: 1 },
+      ticks: { show: false },
+    };
     return {
       width: Math.max(100, this.#room.clientWidth),
       height: Math.max(100, this.#room.clientHeight),
@@ -130,7 +141,12 @@ export class ForcePlot {
       cursor: { y: false, points: { show: false }, drag: { x: false, y: false } },
       scales: { x: { time: false, range: () => [-this.#windowS, 0] }, y: { range: () => [0, this.#endN] } },
       axes: [
-        { ...axis, size: 28, incrs: [1, 2, 5, 10], values: (_, ticks) => ticks.map((tick) => (tick === 0 ? "now" : `${fixed(tick, 0)} s`)) },
+        {
+          ...axis,
+          size: 28,
+          incrs: [1, 2, 5, 10],
+          values: (_, ticks) => ticks.map((tick) => (tick === 0 ? "now" : `${fixed(tick, 0)} s`)),
+        },
         { ...axis, size: 48, values: (_, ticks) => ticks.map((tick) => tick.toString()) },
       ],
       series: [

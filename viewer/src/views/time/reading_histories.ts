@@ -23,11 +23,16 @@ export class ReadingHistories {
 
   follow(arrays: readonly string[]): void {
     this.#ends.splice(0).forEach((end) => end());
-    this.#ends = arrays.map((array) => this.#stream.subscribe(`/${array}/raw`, (message) => this.#add(this.of(array), message)));
+    this.#ends = arrays.map((array) =>
+      this.#stream.subscribe(`/${array}/raw`, (message) => this.#add(this.of(array), message)),
+    );
   }
 
   #add(history: ForceHistory, message: DataView): void {
     readCounts(message, this.#frame);
-    history.add(this.#frame.stampS, this.#frame.values.reduce((highest, count) => Math.max(highest, count), 0));
+    history.add(
+      this.#frame.stampS,
+      this.#frame.values.reduce((highest, count) => Math.max(highest, count), 0),
+    );
   }
 }

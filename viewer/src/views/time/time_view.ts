@@ -79,7 +79,10 @@ class TimeView implements View {
     this.#totals.draw(endBin, events);
     this.#contacts.draw(endBin, events);
     const last = events.at(-1);
-    setText(this.#lastEvent, last === undefined ? "" : `last: ${last.words}, ${fixed(live.latestS - last.atS, 1)} s ago`);
+    setText(
+      this.#lastEvent,
+      last === undefined ? "" : `last: ${last.words}, ${fixed(live.latestS - last.atS, 1)} s ago`,
+    );
   }
 
   key(event: KeyboardEvent): boolean {
@@ -97,16 +100,42 @@ class TimeView implements View {
 
   #makeToolbar(): HTMLElement {
     const choice = (seconds: number): HTMLElement => {
-      const radio = element("input", { type: "radio", name: "window", value: seconds, onchange: () => (this.#windowS.value = seconds) });
+      const radio = element("input", {
+        type: "radio",
+        name: "window",
+        value: seconds,
+        onchange: () => (this.#windowS.value = seconds),
+      });
       this.#windowS.follow((value) => (radio.checked = value === seconds));
       return element("label", { class: "check" }, radio, `${seconds} s`);
     };
-    const kinds = EVENT_KINDS.map((kind) => element("span", { class: "group" }, element("span", { class: "event-swatch", style: `background: var(${EVENT_LOOKS[kind].color})` }), EVENT_LOOKS[kind].words));
+    const kinds = EVENT_KINDS.map((kind) =>
+      element(
+        "span",
+        { class: "group" },
+        element("span", { class: "event-swatch", style: `background: var(${EVENT_LOOKS[kind].color})` }),
+        EVENT_LOOKS[kind].words,
+      ),
+    );
     return element(
       "div",
       { class: "toolbar" },
-      element("fieldset", { class: "group" }, element("legend", { class: "only-spoken" }, "Window"), ...WINDOWS_S.map(choice)),
-      element("button", { class: "button compact", "data-role": "mark", title: "A line at this moment (M)", onclick: () => this.#mark() }, "Mark this moment"),
+      element(
+        "fieldset",
+        { class: "group" },
+        element("legend", { class: "only-spoken" }, "Window"),
+        ...WINDOWS_S.map(choice),
+      ),
+      element(
+        "button",
+        {
+          class: "button compact",
+          "data-role": "mark",
+          title: "A line at this moment (M)",
+          onclick: () => this.#mark(),
+        },
+        "Mark this moment",
+      ),
       this.#lastEvent,
       element("p", { class: "marks dim" }, ...kinds),
     );
@@ -127,7 +156,8 @@ class TimeView implements View {
     setHidden(this.#totals.element, withForces.length === 0);
     const { region, history } = live.region;
     const drawn = region.value;
-    const ofRegion: Line[] = drawn === undefined ? [] : [{ name: () => `region ${regionName(drawn)}`, color: "--text", history }];
+    const ofRegion: Line[] =
+      drawn === undefined ? [] : [{ name: () => `region ${regionName(drawn)}`, color: "--text", history }];
     this.#totals.setLines([...shown.map(({ name }, index) => line(name, index)), ...ofRegion], this.#windowS.value);
     const isCalibrated = suit.selected.value?.calibrated !== false;
     this.#readings.follow(isCalibrated ? [] : [chosen]);
@@ -138,7 +168,10 @@ class TimeView implements View {
   /** There are counts alone. */
   #setReadings(array: string): void {
     this.#contacts.setTitle("Highest reading of the array, which is not calibrated yet", "counts");
-    this.#contacts.setLines([{ name: () => array, color: "--series-1", history: this.#readings.of(array) }], this.#windowS.value);
+    this.#contacts.setLines(
+      [{ name: () => array, color: "--series-1", history: this.#readings.of(array) }],
+      this.#windowS.value,
+    );
   }
 
   #setContacts(chosen: string): void {
