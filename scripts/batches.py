@@ -3,7 +3,8 @@
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Which sources can be compiled together, as most of the time goes into the headers that they share.
 
-    scripts/batches.py SOURCE...    prints the number of each source's batch, in order, separated by semicolons (for CMake);
+    scripts/batches.py SOURCE...    prints the number of each source's batch, in order, separated by semicolons (for
+    CMake);
                                     for a source that is compiled alone it says "alone"
 
 Two sources of a batch have no name in common that their unnamed namespaces declare, but the same names for the same

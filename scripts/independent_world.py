@@ -5,8 +5,8 @@
 src/simulation.
 
 It calibrates `dermis` on single presses, one at a time, and asks `dermis run --totals` about frames of which nothing
-touches and frames with one to four contacts. It prints the mean of the untouched sums, the bias of the touched ones, and
-how often the truth lies within one and two standard deviations. Run it after `make build`.
+touches and frames with one to four contacts. It prints the mean of the untouched sums, the bias of the touched ones,
+and how often the truth lies within one and two standard deviations. Run it after `make build`.
 """
 
 import argparse
@@ -116,8 +116,10 @@ def write_frames(path, counts):
     size = counts.shape[1]
     with open(path, "w", encoding="ascii") as file:
         file.write("time_s," + ",".join(f"r{row}c{col}" for row in range(size) for col in range(size)) + "\n")
-        for number, frame in enumerate(counts.reshape(len(counts), -1).tolist()):
-            file.write(f"{0.01 * number:.2f}," + ",".join(map(str, frame)) + "\n")
+        file.writelines(
+            f"{0.01 * number:.2f}," + ",".join(map(str, frame)) + "\n"
+            for number, frame in enumerate(counts.reshape(len(counts), -1).tolist())
+        )
 
 
 def write_loads(path, newtons):
@@ -125,8 +127,7 @@ def write_loads(path, newtons):
         file.write("frame,kind,where,value\n")
         for number, frame in enumerate(newtons):
             pressed = numpy.argwhere(frame)
-            for row, col in pressed:
-                file.write(f"{number},force,r{row}c{col},{frame[row, col]:.6g}\n")
+            file.writelines(f"{number},force,r{row}c{col},{frame[row, col]:.6g}\n" for row, col in pressed)
             if not len(pressed):
                 file.write(f"{number},force,all,0\n")
 

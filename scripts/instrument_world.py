@@ -19,7 +19,6 @@ import subprocess
 import tempfile
 
 import numpy
-
 from independent_world import node_voltages, write_frames
 
 ROWS = COLS = 10
@@ -122,7 +121,9 @@ def calibration(world, presses):
             loads.extend(f"{len(frames)},{label}" for label in labels)
             frames.append(world.counts(field.reshape(ROWS, COLS)))
 
-    name = lambda taxel: f"r{taxel // COLS}c{taxel % COLS}"
+    def name(taxel):
+        return f"r{taxel // COLS}c{taxel % COLS}"
+
     for _ in range(7):
         hold(numpy.zeros(ROWS * COLS), ["force,all,0"])
     for taxel in range(ROWS * COLS):

@@ -3,18 +3,18 @@
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Lengths of the sentences in the project's documents, or in the comments of its code.
 
-Usage: scripts/sentences.py [--over WORDS] [FILE...]     without files: README, ARCHITECTURE, CONTRIBUTING, CHANGELOG, docs/
+Usage: scripts/sentences.py [--over WORDS] [FILE...]     without files: those of make docs
        scripts/sentences.py --comments [--over WORDS] [FILE...]     without files: the production code
 
-Code, tables, headings, HTML and the targets of links are left out. A piece of code or a formula in `backticks` is one word. An
-item of a list ends a sentence, a semicolon or a colon does not. Prints a line a page and one for all; --over prints each longer
-sentence and where its paragraph begins. Fails where a sentence has over 40 words, over 3 % have more than 30, or the mean
-is over 17.
+Code, tables, headings, HTML and the targets of links are left out. A piece of code or a formula in `backticks` is one
+word. An item of a list ends a sentence, a semicolon or a colon does not. Prints a line a page and one for all; --over
+prints each longer sentence and where its paragraph begins. Fails where a sentence has over 40 words, over 3 % have
+more than 30, or the mean is over 17.
 
---comments reads // and /* */ of C++ and TypeScript, # and docstrings of Python. Comments on rows below each other are one; rows
-of formulas and tables are left out. A comment beside code is a label, not a sentence, where it has no full stop or at most six
-words ("///< Each line [ohm]"). Prints the sentences with over 25 words and those that begin with "What" or "Of". Fails where the
-first are over 1 % or the second over 40.
+--comments reads // and /* */ of C++ and TypeScript, # and docstrings of Python. Comments on rows below each other are
+one; rows of formulas and tables are left out. A comment beside code is a label, not a sentence, where it has no full
+stop or at most six words ("///< Each line [ohm]"). Prints the sentences with over 25 words and those that begin with
+"What" or "Of". Fails where the first are over 1 % or the second over 40.
 """
 
 import argparse
@@ -161,7 +161,8 @@ def summary(name, lengths):
     mean = sum(lengths) / max(len(lengths), 1)
     over = [sum(1 for length in lengths if length > limit) for limit in (LONG, LIMIT)]
     print(
-        f"{name:32} {len(lengths):5} sentences, mean {mean:4.1f} words, {over[0]:3} over {LONG}, {over[1]:3} over {LIMIT}"
+        f"{name:32} {len(lengths):5} sentences, mean {mean:4.1f} words, {over[0]:3} over {LONG}, "
+        f"{over[1]:3} over {LIMIT}"
     )
     return mean <= MEAN and over[0] <= LONG_SHARE * len(lengths) and over[1] == 0
 

@@ -2,7 +2,8 @@
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """A calibration step by step, as in a notebook: describe the array, label what pressed, calibrate, judge.
 
-calibrate_array.py folder        array.toml, frames.csv, loads.csv, test.csv and test_loads.csv are in it
+Usage: calibrate_array.py FOLDER
+array.toml, frames.csv, loads.csv, test.csv and test_loads.csv are in it.
 """
 
 import argparse
@@ -16,7 +17,7 @@ def main(folder: str) -> None:
     place = Path(folder)
     array = dermis.read_array(place / "array.toml")
 
-    # What was recorded, and what pressed meanwhile. Loads can be made in code, too: Load(frame, (row, col), newtons=5.0).
+    # What was recorded, and what pressed meanwhile. Loads can be made in code: Load(frame, (row, col), newtons=5.0).
     recording = dermis.Recording.read(place / "frames.csv")
     loads = dermis.read_loads(place / "loads.csv", array, len(recording))
     print(f"{len(recording)} frames, {len({load.frame for load in loads})} of them labelled")

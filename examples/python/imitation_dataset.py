@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
-"""A session as a dataset for imitation learning: forces and contacts beside the joint angles of the robot, frame by frame.
+"""A session as a dataset for imitation learning: forces and contacts beside the robot's joint angles, frame by frame.
 
     imitation_dataset.py session.mcap chest.safetensors joints.csv session.npz     (or session.h5, with h5py)
 

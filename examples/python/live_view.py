@@ -2,10 +2,11 @@
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Forces of a live array in the terminal, without further packages.
 
-live_view.py sim:contacts?rate=100 chest.safetensors
+Usage: live_view.py sim:contacts?rate=100 chest.safetensors
 """
 
 import argparse
+import contextlib
 import time
 
 import dermis
@@ -45,7 +46,5 @@ if __name__ == "__main__":
         "seconds", type=float, nargs="?", default=float("inf"), help="how long; without it until Ctrl-C"
     )
     options = parser.parse_args()
-    try:
+    with contextlib.suppress(KeyboardInterrupt):
         main(options.uri, options.model, options.seconds)
-    except KeyboardInterrupt:
-        pass

@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """dermis behind the interface that robot-learning frameworks expect of a sensor: connect(), read(), disconnect().
 
-robot_sensor.py sim:contacts?rate=100 chest.safetensors
+Usage: robot_sensor.py sim:contacts?rate=100 chest.safetensors
 """
 
 import argparse

@@ -7,8 +7,9 @@
     for frame in dermis.open("serial:///dev/ttyACM0"):
         print(pipeline.process(frame).total)
 
-Arrays are (rows, cols), row-major; row = driven line, col = sensed line. Units are SI; temperatures are in Celsius, times
-in nanoseconds. The stub __init__.pyi says of every argument and result what it is; docs/python.md shows how they go together.
+Arrays are (rows, cols), row-major; row = driven line, col = sensed line. Units are SI; temperatures are in Celsius,
+times in nanoseconds. The stub __init__.pyi says of every argument and result what it is; docs/python.md shows how they
+go together.
 """
 
 import enum as _enum
@@ -55,8 +56,9 @@ class TaxelStatus(_enum.IntEnum):
     INVALID = 5
 
 
-from dermis import circuit  # noqa: E402
-from dermis._dermis import (  # noqa: E402
+from dermis import circuit
+from dermis._copied import copy_well as _copy_well
+from dermis._dermis import (
     ArrayDescription,
     CalibrationReport,
     Contact,
@@ -83,9 +85,8 @@ from dermis._dermis import (  # noqa: E402
     read_model,
     serve,
 )
-from dermis._copied import copy_well as _copy_well  # noqa: E402
-from dermis._suit import Suit, SuitArray  # noqa: E402
-from dermis._shown import show_well as _show_well  # noqa: E402
+from dermis._shown import show_well as _show_well
+from dermis._suit import Suit, SuitArray
 
 _copy_well()
 _show_well()

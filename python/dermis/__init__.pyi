@@ -131,8 +131,8 @@ class ForceFrame:
 class Recording:
     """Frames of one array in memory, from and to any file of frames: .mcap, .csv, .h5, .npy and more.
 
-    counts: (frames, rows, cols). Give rate_hz, or time_ns (frames,), which does not go back. temperature_celsius [C] and supply_v [V] are (frames,), one
-    number for all frames, or None; NaN stands for a frame without.
+    counts: (frames, rows, cols). Give rate_hz, or time_ns (frames,), which does not go back. temperature_celsius [C]
+    and supply_v [V] are (frames,), one number for all frames, or None; NaN stands for a frame without.
     """
 
     def __init__(
@@ -171,8 +171,8 @@ class Recording:
     def counts(self) -> NDArray[np.float32]: ...
 
 class Forces:
-    """Forces of many frames: newtons, sigma_newtons [N] and taxels (TaxelStatus) are (frames, rows, cols), status (FrameStatus)
-    and time_ns (frames,)."""
+    """Forces of many frames: newtons, sigma_newtons [N] and taxels (TaxelStatus) are (frames, rows, cols), status
+    (FrameStatus) and time_ns (frames,)."""
 
     def __len__(self) -> int: ...
     def __getitem__(self, frames: slice, /) -> Forces: ...
@@ -228,8 +228,8 @@ class Pipeline:
     def why_rejected(self) -> str:
         """The error of the last frame, and the expected value; '' where it was not rejected."""
     def tare(self, *, force: bool = False) -> None:
-        """Takes the next second, at least 10 frames, for unloaded. Under a load the tare is refused, with a UserWarning;
-        force takes whatever load stands there as zero."""
+        """Takes the next second, at least 10 frames, for unloaded. Under a load the tare is refused, with a
+        UserWarning; force takes whatever load stands there as zero."""
     def undo_tare(self) -> None:
         """Back to the zero before the last tare."""
     @property
@@ -317,8 +317,8 @@ class Threat:
     def crossed_ns(self) -> int: ...
 
 class ThreatMonitor:
-    """Holds forces against the limits of a threats.toml (docs/threats.md). One for each stream of frames. `name`: of the
-    array in the zones; that of the model where it is None."""
+    """Holds forces against the limits of a threats.toml (docs/threats.md). One for each stream of frames. `name`: of
+    the array in the zones; that of the model where it is None."""
 
     def __init__(self, limits: _Path, model: Model, *, name: str | None = None) -> None: ...
     def process(self, force: ForceFrame) -> list[Threat]:
@@ -346,8 +346,8 @@ class Recognition:
         """First and last of those that were given, from 0."""
 
 class Recogniser:
-    """Names poses and gestures by the classes of `dermis learn --model`, from forces (docs/recognition.md). rate_hz: frames
-    a second; that of the examples where it is None. Frames of a tare are better left out."""
+    """Names poses and gestures by the classes of `dermis learn --model`, from forces (docs/recognition.md). rate_hz:
+    frames a second; that of the examples where it is None. Frames of a tare are better left out."""
 
     def __init__(self, classes: _Path, model: Model, *, rate_hz: float | None = None) -> None: ...
     def process(self, force: ForceFrame) -> Recognition | None:
@@ -417,16 +417,16 @@ def evaluate(model: Model, frames: Recording | _Path, loads: Iterable[Load] | _P
     """The output of `dermis evaluate --json`."""
 
 class Source:
-    """Frames of a device, a recording or the simulator, one after another. A device is read in the background: 4,096 frames
-    wait for a busy program, then the oldest are dropped. Ctrl-C ends a wait."""
+    """Frames of a device, a recording or the simulator, one after another. A device is read in the background: 4,096
+    frames wait for a busy program, then the oldest are dropped. Ctrl-C ends a wait."""
 
     def __iter__(self) -> Iterator[RawFrame]: ...
     def __next__(self) -> RawFrame: ...
     def __aiter__(self) -> AsyncIterator[RawFrame]: ...
     async def __anext__(self) -> RawFrame: ...
     def latest(self, timeout_s: float | None = None) -> RawFrame | None:
-        """The newest frame of a device; older ones that wait are passed over. Where none has come since the last call it
-        waits, and raises TimeoutError after timeout_s. A file gives the next frame. None at the end."""
+        """The newest frame of a device; older ones that wait are passed over. Where none has come since the last call
+        it waits, and raises TimeoutError after timeout_s. A file gives the next frame. None at the end."""
     def __enter__(self) -> Source: ...
     def __exit__(self, *error: type[BaseException] | BaseException | TracebackType | None) -> None: ...
     def close(self) -> None: ...
@@ -458,8 +458,8 @@ class SuitArray:
         """Does the same as Source.latest()."""
 
 class Suit:
-    """All arrays of a suit.toml (docs/suit.md), by their names. Devices are read in the background. `recording`: of the suit,
-    in place of its sources."""
+    """All arrays of a suit.toml (docs/suit.md), by their names. Devices are read in the background. `recording`: of
+    the suit, in place of its sources."""
 
     arrays: dict[str, SuitArray]
     def __init__(self, path: _Path, recording: _Path | None = None) -> None: ...
@@ -497,5 +497,5 @@ def serve(
     port: int = 8080,
     token: str = "",
 ) -> Server:
-    """The page and the stream of an array (uri and model) or of a suit; port 0 is any that is free. Where `record` exists,
-    the recording has the UTC time in its name."""
+    """The page and the stream of an array (uri and model) or of a suit; port 0 is any that is free. Where `record`
+    exists, the recording has the UTC time in its name."""

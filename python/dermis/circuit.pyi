@@ -6,8 +6,8 @@ from numpy.typing import ArrayLike, NDArray
 from dermis import ArrayDescription, _Path
 
 class Inversion:
-    """siemens (rows, cols): conductances [S]; solved: the readings have a solution in this circuit; residual_ratio: no reading
-    differs from that of the circuit by more."""
+    """siemens (rows, cols): conductances [S]; solved: the readings have a solution in this circuit; residual_ratio: no
+    reading differs from that of the circuit by more."""
 
     siemens: NDArray[np.float64]
     solved: bool

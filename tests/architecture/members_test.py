@@ -8,7 +8,7 @@ import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
-import members  # noqa: E402
+import members
 
 MEMBERS = "".join(f"  int value_{number} = {number};\n" for number in range(16))
 

@@ -8,7 +8,7 @@ import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
-import sentences  # noqa: E402
+import sentences
 
 
 class Comments(unittest.TestCase):
@@ -32,7 +32,10 @@ class Comments(unittest.TestCase):
         )
 
     def test_a_sentence_beside_code_counts(self):
-        text = "float ohm;  ///< The line has this resistance from end\n            ///< to end.\n/// The next one.\nfloat volts;\n"
+        text = (
+            "float ohm;  ///< The line has this resistance from end\n"
+            "            ///< to end.\n/// The next one.\nfloat volts;\n"
+        )
         expected = [(1, "The line has this resistance from end to end."), (3, "The next one.")]
         self.assertEqual(self.read("one.hpp", text), expected)
 
@@ -52,7 +55,10 @@ class Comments(unittest.TestCase):
         )
 
     def test_docstrings_and_comments_of_python_are_read(self):
-        text = 'def read():\n    """Reads a file.\n\n    Once only."""\n\n    # The rest follows.\n    return "no docstring here."\n'
+        text = (
+            'def read():\n    """Reads a file.\n\n    Once only."""\n\n'
+            '    # The rest follows.\n    return "no docstring here."\n'
+        )
         self.assertEqual(self.read("one.py", text), [(2, "Reads a file."), (4, "Once only."), (6, "The rest follows.")])
 
 

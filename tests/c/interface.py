@@ -2,8 +2,8 @@
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """interface.py HEADER OUT: a C source that defines every function of the header and does nothing.
 
-Its library has the interface's types and no others, so that its ABI fits a page. libdermis_c has the same types, as it is
-compiled against the same header, and programs_test.py holds its symbols to those of the header."""
+Its library has the interface's types and no others, so that its ABI fits a page. libdermis_c has the same types, as it
+is compiled against the same header, and programs_test.py holds its symbols to those of the header."""
 
 import re
 import sys

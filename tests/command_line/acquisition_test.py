@@ -15,7 +15,6 @@ import subprocess
 import termios
 import time
 import tty
-import unittest
 
 import support
 from support import SmallArray, dermis, error_lines, files_limited_to
@@ -310,7 +309,8 @@ class Interrupted(Devices):
         for redirection in ("2>/dev/full", "2>&-"):
             with self.subTest(redirection):
                 recording = self.work / "r.mcap"
-                command = f"'{support.BINARY}' record --from 'sim:multitouch?rows=4&cols=4&rate=100' --seconds 6 --out '{recording}' --force"
+                source = "sim:multitouch?rows=4&cols=4&rate=100"
+                command = f"'{support.BINARY}' record --from '{source}' --seconds 6 --out '{recording}' --force"
                 result = subprocess.run(["sh", "-c", f"{command} {redirection}"], timeout=PATIENCE)
                 self.assertEqual(result.returncode, 0)
                 self.assertGreater(len(self.replayed(recording)), 100)
@@ -384,7 +384,7 @@ class Refused(Devices):
         separators = ["rows of 10 readings", "print an empty line between frames, or whole frames in one line"]
         for text, query, words in [
             (line * 40, "", ["120 readings", "rows=12&cols=10"]),
-            ("".join(time + line for time in times), "", ["a time and 120 readings", "rows=12&cols=10"]),
+            ("".join(moment + line for moment in times), "", ["a time and 120 readings", "rows=12&cols=10"]),
             (row * 120, "", ["10 readings", "print an empty line between frames"]),
             (row * 120, "?rows=12&cols=10", separators),
             ("ready\n" + row * 120, "?rows=12&cols=10", separators),

@@ -309,8 +309,8 @@ class FramesFile(SmallArray):
 
 
 class WhatCannotBe(SmallArray):
-    """Frames of another unit, and of an array that is not there: `run` names the mend in its last line, with status 1, and
-    `doctor` as its finding. `calibrate` refuses them, and loads that exchange rows and columns."""
+    """Frames of another unit, and of an array that is not there: `run` names the mend in its last line, with status 1,
+    and `doctor` as its finding. `calibrate` refuses them, and loads that exchange rows and columns."""
 
     def changed(self, path, change):
         header, *rows = [line.split(",") for line in path.read_text().splitlines()]
@@ -362,7 +362,8 @@ class WhatCannotBe(SmallArray):
                 row[columns["r0c0"] :] = ["0"] * 20
 
         frames = self.changed(self.contacts / "frames.csv", change)
-        line = "40 of 200 frames with all readings 0, where untouched taxels read more: is the array connected and powered?"
+        said = "40 of 200 frames with all readings 0, where untouched taxels read more"
+        line = f"{said}: is the array connected and powered?"
         result = support.dermis(*self.run_arguments(self.work / "forces.csv", **{"in": frames}))
         self.assertEqual((result.returncode, result.stderr.splitlines()[-1]), (0, line))
         doctor = support.dermis("doctor", "--model", self.model, "--in", frames)

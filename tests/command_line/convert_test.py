@@ -11,7 +11,6 @@ from fractions import Fraction
 
 import h5py
 import numpy as np
-
 import support
 from support import SmallArray, dermis, error_lines, files_limited_to
 
@@ -41,7 +40,8 @@ def csv_frames(path):
 
 
 def middle_chunk(mcap):
-    """Where the chunk in the middle of the file begins and ends: records are an opcode, 8 bytes of length, the content."""
+    """Where the chunk in the middle of the file begins and ends: records are an opcode, 8 bytes of length, the
+    content."""
     chunks, at = [], 8
     while at + 9 < len(mcap) - 8:
         end = at + 9 + int.from_bytes(mcap[at + 1 : at + 9], "little")

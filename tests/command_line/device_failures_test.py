@@ -173,7 +173,7 @@ class Failures(unittest.TestCase):
             recorder = self.start(line, FLEXITAC)
             time.sleep(4)
             self.assertTrue(recorder.is_running())
-            status, says = recorder.finish(10, interrupt=True)
+            _, says = recorder.finish(10, interrupt=True)
         self.assertEqual(says.count("no bytes"), 1, says)
 
     def test_killed_peer(self):
@@ -254,7 +254,7 @@ class Failures(unittest.TestCase):
             self.assertEqual(self.out.read_bytes(), b"what was there")
 
     def test_out_that_cannot_be_written(self):
-        frames, pieces = DERMIS.stream(random.Random(9), count=50)
+        _, pieces = DERMIS.stream(random.Random(9), count=50)
         stored = self.work / "device.bin"
         stored.write_bytes(b"".join(piece.data for piece in pieces))
         for out in ("/dev/full", self.work / "none" / "rec.mcap", self.work):

@@ -79,7 +79,7 @@ class Damage(unittest.TestCase):
     def test_frames_that_are_not_hit_keep_their_bytes(self):
         for device in DEVICES:
             generator = random.Random(device.name)
-            frames, pieces = device.stream(generator, count=20)
+            _, pieces = device.stream(generator, count=20)
             spoilt, hit = damage(pieces, generator, 1e-3)
             with self.subTest(device.name):
                 self.assertEqual(len(spoilt), len(pieces))

@@ -11,7 +11,6 @@ import sys
 import support
 from support import SmallArray, error_lines, files_limited_to
 
-
 FEW_SIZES = 5
 SIZES = FEW_SIZES
 

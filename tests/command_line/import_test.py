@@ -4,10 +4,8 @@
 
 import csv
 import json
-import unittest
 
 import numpy
-
 import support
 from foreign_files import ALL, COLS, FRAMES, RATE, ROWS, TIMED, UNTIMED, counts
 

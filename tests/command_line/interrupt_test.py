@@ -21,7 +21,7 @@ class Interrupted(SmallArray):
         is_read = threading.Event()
 
         def feed():
-            pipe = open(path, "w")  # when somebody reads
+            pipe = path.open("w")  # when somebody reads
             self.addCleanup(pipe.close)
             pipe.write(beginning)
             pipe.flush()
@@ -54,7 +54,7 @@ class Interrupted(SmallArray):
         ):
             with self.subTest(name):
                 frames, is_read = self.endless(name, beginning)
-                self.interrupt(lambda process: is_read.wait(60), *command(frames))
+                self.interrupt(lambda process, is_read=is_read: is_read.wait(60), *command(frames))
 
     def test_while_it_calculates(self):
         def has_begun_to_write(process):

@@ -3,8 +3,10 @@
 """kill -9 at random moments while 10,240 taxels are recorded at 1 kHz: no frame is missing before the last one, in the
 file as it is left and after dermis recover, and npm's reader reads the recovered file by its index.
 Usage: kill_test.py BINARY MCAP_SAMPLE [KILLS [SEED]]
-KILLS is for a machine that does nothing else: each frame that was taken 100 ms before a kill is to be read back, too."""
+KILLS is for a machine that does nothing else: each frame that was taken 100 ms before a kill is to be read back,
+too."""
 
+import itertools
 import random
 import re
 import subprocess
@@ -75,7 +77,7 @@ class Kill(unittest.TestCase):
     def age_of_last(self, frames, killed_ns):
         """No frame is missing between the first and the last, whose age at the kill it returns."""
         self.assertTrue(frames)
-        for before, after in zip(frames, frames[1:]):
+        for before, after in itertools.pairwise(frames):
             self.assertEqual(after[0], before[0] + 1 + after[2], "a frame is missing that nobody said was lost")
         period_ns = 1e9 / RATE_HZ
         # A frame arrives when it was due or later: the schedule begins where the earliest frame puts it.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
-"""`dermis learn --in`: recordings become classes, by the forces of a model or by tared readings, which `dermis recognise`
-names in other recordings."""
+"""`dermis learn --in`: recordings become classes, by the forces of a model or by tared readings, which `dermis
+recognise` names in other recordings."""
 
 import bisect
 import csv
@@ -464,10 +464,10 @@ class Suit(SmallArray):
     def kinds(self, recording):
         """Which array is pressed more, by the number of the frame of the first."""
         left, right = self.totals(recording, "left"), self.totals(recording, "right")
-        times = [time for time, _ in right]
+        times = [time_s for time_s, _ in right]
         kinds = {}
-        for frame, (time, force) in enumerate(left):
-            last = bisect.bisect_right(times, time) - 1
+        for frame, (time_s, force) in enumerate(left):
+            last = bisect.bisect_right(times, time_s) - 1
             other = right[last][1] if last >= 0 else 0.0
             if max(force, other) > 3 * min(force, other):
                 kinds[frame] = "left" if force > other else "right"
@@ -494,7 +494,7 @@ class Suit(SmallArray):
         ]
 
     def test_what_was_learned_from_two_arrays_is_recognised_in_both(self):
-        monday, friday = self.recordings
+        _, friday = self.recordings
         for model in (["--model", self.suit], []):
             with self.subTest(model=model):
                 self.succeed(*self.learn(*model))

@@ -11,7 +11,6 @@ import signal
 import struct
 import termios
 import time
-import unittest
 import xml.etree.ElementTree as ElementTree
 import zlib
 

@@ -134,7 +134,7 @@ class Completion:
 
 
 class Bash(Completion, unittest.TestCase):
-    shell = ["bash", "--norc", "--noprofile", "-i"]
+    shell = ("bash", "--norc", "--noprofile", "-i")
 
     def beginning(self):
         return "source share/bash-completion/completions/dermis"
@@ -142,7 +142,7 @@ class Bash(Completion, unittest.TestCase):
 
 @unittest.skipUnless(shutil.which("zsh"), "no zsh")
 class Zsh(Completion, unittest.TestCase):
-    shell = ["zsh", "-f", "-i"]
+    shell = ("zsh", "-f", "-i")
 
     def beginning(self):
         return "fpath=(share/zsh/site-functions $fpath); autoload -Uz compinit; compinit -u -D"

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
-"""dermis serve from outside: what it refuses, its page and documents, its recording. The stream itself: tests/stream."""
+"""dermis serve from outside: what it refuses, its page and documents, its recording. The stream itself:
+tests/stream."""
 
 import gzip
 import json
@@ -9,7 +10,6 @@ import signal
 import socket
 import subprocess
 import time
-import unittest
 import urllib.error
 import urllib.request
 
@@ -52,7 +52,7 @@ class Serve(SmallArray):
             if found := re.search(r"serving (.*) at (http://\S+/)", line):
                 return process, found[2]
             process.notices.append(line)
-        self.fail("".join(process.notices))
+        return self.fail("".join(process.notices))
 
     def end(self, process):
         process.send_signal(signal.SIGINT)

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Usage: check_compile_fail.py SOURCE COMPILER [FLAGS...]
-The source compiles as it is; with MISTAKE defined it must not, with the error of its line "// expected error: REGEX"."""
+The source compiles as it is; with MISTAKE defined it must not, with the error of its line "// expected error:
+REGEX"."""
 
 import re
 import subprocess

@@ -9,15 +9,14 @@ import re
 import signal
 import subprocess
 import sys
-import unittest
 from pathlib import Path
 
 import numpy as np
 
 sys.path.append(str(Path(__file__).parents[1] / "command_line"))
-import support  # noqa: E402
-from loopback import ENVIRONMENT, subscription  # noqa: E402
-from support import SmallArray, dermis  # noqa: E402
+import support
+from loopback import ENVIRONMENT, subscription
+from support import SmallArray, dermis
 
 READER = sys.argv.pop(2)
 DOMAIN = 100 + os.getpid() % 100

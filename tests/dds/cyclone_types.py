@@ -60,7 +60,8 @@ def idl(message, text):
     for used, sequence, field in FIELD.findall(text):
         kind = IDL.get(used) or dds_name(used, "::")
         fields += f"      {f'sequence<{kind}>' if sequence else kind} {field}_value;\n"
-    return f"module {package} {{ module msg {{ module dds_ {{\n    @final struct {name}_ {{\n{fields}    }};\n}}; }}; }};\n"
+    struct = f"    @final struct {name}_ {{\n{fields}    }};\n"
+    return f"module {package} {{ module msg {{ module dds_ {{\n{struct}}}; }}; }};\n"
 
 
 def c_printer(message, text):
@@ -84,7 +85,10 @@ def c_printer(message, text):
         else:
             lines.append(f"  {print_one}({by_address}value->{field}_value);")
     body = "\n".join(lines)
-    return f"static void print_{name}(const void* of) {{\n  const {name}* const value = of;\n  putchar('{{');\n{body}\n  putchar('}}');\n}}\n"
+    return (
+        f"static void print_{name}(const void* of) {{\n  const {name}* const value = of;\n"
+        f"  putchar('{{');\n{body}\n  putchar('}}');\n}}\n"
+    )
 
 
 if __name__ == "__main__":

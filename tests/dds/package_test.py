@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
-"""ros/dermis_msgs is a package of ROS 2 whose messages are those that dermis is built from; the launch file launches."""
+"""ros/dermis_msgs is a package of ROS 2 whose messages are those that dermis is built from; the launch file
+launches."""
 
 import re
 import runpy

@@ -20,7 +20,8 @@ WRITTEN = {
     "first-suit.md": {"suit.toml": ("toml", 0)},
     "connect-a-robot.md": {"robot.py": ("python", 0), "move.py": ("python", 1)},
 }
-# The device is the simulator, ports are free ones, and after some seconds somebody presses Ctrl-C. The threat of a watch ends it.
+# The device is the simulator, ports are free ones, and after some seconds somebody presses Ctrl-C. The threat of a
+# watch ends it.
 DERMIS = r"""#!/bin/bash
 arguments=("${@//serial:\/\/\/dev\/ttyACM0/sim:contacts?rate=100}")
 arguments=("${arguments[@]/tcp:\/\/192.168.1.20:7000/sim:contacts?rate=100}")
@@ -48,7 +49,8 @@ def commands(page):
 
 
 class Guides(unittest.TestCase):
-    """`home` is a clone as a newcomer has it, with the binary of this build; `work` is the folder that the first guide makes."""
+    """`home` is a clone as a newcomer has it, with the binary of this build; `work` is the folder that the first guide
+    makes."""
 
     @classmethod
     def setUpClass(cls):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
-"""Runs a test with the packages of tests/requirements.txt, which Debian lacks. Usage: with_packages.py VENV [TEST ARGUMENT...]
+"""Runs a test with the packages of tests/requirements.txt, which Debian lacks. Usage: with_packages.py VENV [TEST
+ARGUMENT...]
 
 Without a test it makes their virtual environment, where that is not there. Where PyPI cannot be reached it says so, and
 each of the tests says that it is skipped."""

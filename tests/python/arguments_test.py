@@ -8,9 +8,9 @@ import subprocess
 import sys
 
 import numpy as np
+import workspace
 
 import dermis
-import workspace
 
 CALLS = 3000
 FIRST_ARRAYS = """

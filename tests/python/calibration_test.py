@@ -2,8 +2,9 @@
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Models made in Python are those of the command line."""
 
-import dermis
 import workspace
+
+import dermis
 
 
 class Calibration(workspace.CalibratedArray):

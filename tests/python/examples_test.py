@@ -7,9 +7,9 @@ import subprocess
 import sys
 
 import numpy as np
+import workspace
 
 import dermis
-import workspace
 
 EXAMPLES = workspace.Path(__file__).parents[2] / "examples/python"
 

@@ -8,8 +8,9 @@ import json
 import subprocess
 import time
 
-import dermis
 import workspace
+
+import dermis
 
 THREATS = """[[threat]]
 name = "heavy"

@@ -6,12 +6,11 @@ import csv
 import pickle
 import re
 import threading
-import unittest
 
 import numpy as np
+import workspace
 
 import dermis
-import workspace
 
 
 def forces_csv(path, rows, cols):

@@ -9,9 +9,9 @@ import time
 import urllib.request
 
 import numpy as np
+import workspace
 
 import dermis
-import workspace
 
 
 class Sources(workspace.CalibratedArray):

@@ -217,9 +217,9 @@ describe("the connection", () => {
   it("comes back 100 times and keeps nothing of the times before", async () => {
     await shown(loop(), "array", async (page) => {
       const again = (times) =>
-        page.evaluate(async (left) => {
+        page.evaluate(async (wanted) => {
           const root = document.documentElement;
-          for (; left > 0; --left) {
+          for (let time = 0; time < wanted; ++time) {
             document.querySelector("[data-role=connection]").click();
             while (root.dataset.connection !== "live") await new Promise((done) => setTimeout(done, 5));
           }

@@ -106,7 +106,7 @@ it("walks through the calibration of an array without a model and takes the mode
 });
 
 it("shows both taxels of a pair, names what is wrong with it, and ends by itself with an unknown circuit", async () => {
-  const readout = (lines) => arrayToml("pair", 4, 4).replace(/\[readout\][^]*/, `[readout]\nadc_bits = 10\n${lines}\n`);
+  const readout = (lines) => arrayToml("pair", 4, 4).replace(/\[readout\].*/s, `[readout]\nadc_bits = 10\n${lines}\n`);
   writeFileSync(
     bench.path("true.toml"),
     readout('circuit = "divider"\nidle_columns = "floating"\ndrive_ohm = 20.0\nload_ohm = 200.0'),

@@ -9,7 +9,7 @@ import { createServer } from "node:net";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, it } from "node:test";
-import { arrayToml, assertUnhurt, becomes, Bench, openBrowser, openPage, WAIT_MS } from "./harness.mjs";
+import { arrayToml, assertUnhurt, Bench, becomes, openBrowser, openPage, WAIT_MS } from "./harness.mjs";
 
 const MOST_ACTIONS = 20;
 const FIT_MS = 240_000;

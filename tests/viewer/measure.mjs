@@ -5,7 +5,7 @@
 // how old a frame is when it is on the screen, and how the heap grows, for one array at 1,000 frames/s. No test: it measures
 // the machine, too.
 import { resolve } from "node:path";
-import { becomes, Bench, openBrowser, openPage } from "./harness.mjs";
+import { Bench, becomes, openBrowser, openPage } from "./harness.mjs";
 
 const LOADS = 9;
 const [binary, model, seconds = "20"] = process.argv.slice(2);

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 // Usage: node picture.mjs path/to/dermis array|suit OUT.png ARGUMENTS_OF_SERVE...
 // No test: a view with several contacts, as a picture for the documents (scripts/pictures).
-import { becomes, Bench, openBrowser, openPage } from "./harness.mjs";
+import { Bench, becomes, openBrowser, openPage } from "./harness.mjs";
 
 const CONTACTS = 4;
 const MARKS = { array: "[data-contact]", suit: ".force-label:not([hidden])" };

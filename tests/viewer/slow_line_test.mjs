@@ -3,9 +3,9 @@
 // Usage: node slow_line_test.mjs path/to/dermis
 // The page over lines of 100 kbit/s, of 750 kbit/s and without limit: its frames are young, and the pill says how it is.
 import assert from "node:assert/strict";
-import { createServer, connect } from "node:net";
-import { it } from "node:test";
 import { writeFileSync } from "node:fs";
+import { connect, createServer } from "node:net";
+import { it } from "node:test";
 import { arrayToml, assertUnhurt, becomes, bench, browser, openPage, useBench } from "./harness.mjs";
 
 const TICK_MS = 20;

@@ -144,7 +144,8 @@ async function watchAnswers(page) {
       window.answers = {};
       new MutationObserver(() => {
         const touch = Math.floor((Number(bars.dataset.stamp) - firstS) / touchS);
-        (window.answers[touch] ??= new Set()).add(document.querySelector("[data-role=answer]").textContent);
+        window.answers[touch] ??= new Set();
+        window.answers[touch].add(document.querySelector("[data-role=answer]").textContent);
       }).observe(bars, { attributes: true, attributeFilter: ["data-stamp"] });
     },
     [NEW_S, TOUCH_S],

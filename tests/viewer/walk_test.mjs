@@ -9,7 +9,7 @@ import { createServer } from "node:net";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, it } from "node:test";
-import { assertUnhurt, becomes, Bench, openBrowser, openPage, VIEWS } from "./harness.mjs";
+import { assertUnhurt, Bench, becomes, openBrowser, openPage, VIEWS } from "./harness.mjs";
 
 const MOST_ACTIONS = 12;
 const FIT_MS = 240_000;

@@ -149,7 +149,7 @@ export class App implements ViewContext {
     window.clearTimeout(this.#noticeTimer);
     setText(this.#notice, message);
     setHidden(this.#notice, message === "");
-    this.#notice.dataset["level"] = LEVELS[level] ?? "bad";
+    this.#notice.dataset.level = LEVELS[level] ?? "bad";
     this.#noticeTimer = window.setTimeout(() => setHidden(this.#notice, true), NOTICE_MS);
   }
 

@@ -16,7 +16,7 @@ export class Theme {
   constructor() {
     this.shown = new Signal(this.#resolve());
     this.shown.follow((name) => {
-      document.documentElement.dataset["theme"] = name;
+      document.documentElement.dataset.theme = name;
       document.documentElement.style.setProperty("--color-scale", cssGradient(name === "light"));
     });
     this.#choice.follow(() => (this.shown.value = this.#resolve()));

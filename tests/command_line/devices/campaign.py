@@ -106,7 +106,7 @@ def is_reported(frame, record):
     time = acquisition["device_time_ns"] if acquisition["has_device_time"] else None
     return (
         all(
-            said is None or heard is not None and abs(said - heard) < 1e-9
+            said is None or (heard is not None and abs(said - heard) < 1e-9)
             for said, heard in ((frame.temperature, record.temperature), (frame.supply, supply))
         )
         and frame.sequence in (None, sequence)

@@ -12,8 +12,9 @@ import json
 import struct
 import zlib
 from array import array
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Callable, NamedTuple
+from typing import NamedTuple
 
 
 class Frame(NamedTuple):

@@ -9,7 +9,6 @@ import pty
 import select
 import socket
 import termios
-import threading
 import time
 from pathlib import Path
 from urllib.parse import urlencode
@@ -70,10 +69,8 @@ class Descriptor(Line):
         while data and is_running():
             _, writable, _ = select.select([], [self.descriptor], [], 0.1)
             if writable:
-                try:
+                with contextlib.suppress(BlockingIOError):
                     data = data[os.write(self.descriptor, data) :]
-                except BlockingIOError:
-                    pass
 
     def read(self, timeout):
         readable, _, _ = select.select([self.descriptor], [], [], timeout)

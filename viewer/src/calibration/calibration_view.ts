@@ -4,8 +4,8 @@ import { element, setHidden, setText } from "../dom";
 import {
   CalibrationHint,
   CalibrationStage,
-  readCalibrationState,
   type CalibrationState,
+  readCalibrationState,
 } from "../messages/calibration_state";
 import type { ArrayDescription } from "../suit";
 import type { View, ViewContext, ViewFactory } from "../view";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { setText, element } from "../dom";
+import { element, setText } from "../dom";
 
 const RADIUS = 52;
 const LENGTH = 2 * Math.PI * RADIUS;

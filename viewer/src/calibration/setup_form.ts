@@ -4,13 +4,13 @@ import { element, setText } from "../dom";
 import type { ArrayDescription } from "../suit";
 import {
   DEFAULT_WEIGHTS_N,
-  TAXEL_CHOICES,
   describeWork,
   readWeights,
-  strideOf,
-  taxelsOf,
   type StartRequest,
+  strideOf,
+  TAXEL_CHOICES,
   type TaxelChoice,
+  taxelsOf,
 } from "./plan";
 
 const SECONDS = { min: 0.05, max: 30, step: "any", required: true } as const;
@@ -91,7 +91,7 @@ export class SetupForm {
 
   set(array: ArrayDescription | undefined, isOffered: boolean): void {
     this.#array = array;
-    this.#start.dataset["offered"] = String(isOffered);
+    this.#start.dataset.offered = String(isOffered);
     setText(this.#title, `Calibrate ${array?.name ?? ""}`);
     this.#check();
   }
@@ -126,7 +126,7 @@ export class SetupForm {
 
   #check(): void {
     const weights = readWeights(this.#weights.value);
-    const isOffered = this.#start.dataset["offered"] === "true";
+    const isOffered = this.#start.dataset.offered === "true";
     this.#weights.toggleAttribute("aria-invalid", weights === undefined);
     this.#start.disabled = this.#request() === undefined || !isOffered;
     if (!isOffered) setText(this.#work, "This server offers no calibration: it plays a recording, or it is not there.");

@@ -133,8 +133,8 @@ export class WalkPanel {
   #say({ stage, message }: CalibrationState): void {
     const isResult = stage === CalibrationStage.done;
     const lines = isResult ? message.split(/(?<=\.) (?=[A-Z0-9])/) : [message];
-    if (this.#words.dataset["message"] === message) return;
-    this.#words.dataset["message"] = message;
+    if (this.#words.dataset.message === message) return;
+    this.#words.dataset.message = message;
     this.#words.replaceChildren(...lines.flatMap((line) => [element("span", {}, line), " "]));
   }
 

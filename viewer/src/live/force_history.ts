@@ -44,7 +44,7 @@ export class ForceHistory {
       let highest = NaN;
       for (let step = 0; step < binsPerPoint; ++step, --bin) {
         const value = this.at(bin);
-        if (!(highest >= value)) highest = value === value ? value : highest;
+        if (value > highest || Number.isNaN(highest)) highest = value;
       }
       points[point] = highest;
     }

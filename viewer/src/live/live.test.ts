@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { describe, expect, it } from "vitest";
 import { Contact, ContactPhase, ContactsFrame } from "../messages/contacts";
+import type { ArrayDescription } from "../suit";
 import { ContactSlots, SLOTS } from "./contact_slots";
 import { EventLog } from "./event_log";
 import { BIN_S, BINS, binOf, ForceHistory } from "./force_history";
-import type { ArrayDescription } from "../suit";
 import { regionBetween, regionName } from "./region_force";
 
 function frame(stampS: number, ids: number[]): ContactsFrame {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { ContactPhase, ContactsFrame, readContacts, readContactsArray } from "../messages/contacts";
-import { type HealthStatus, type Statistics, readHealth, readStatistics } from "../messages/statistics";
+import { type HealthStatus, readHealth, readStatistics, type Statistics } from "../messages/statistics";
+import { readThreat, stands, type Threat } from "../messages/threat";
 import { Signal } from "../signal";
 import type { Stream } from "../stream/stream";
 import type { Suit } from "../suit";
-import { readThreat, stands, type Threat } from "../messages/threat";
 import { ContactSlots, Trail } from "./contact_slots";
 import { Delay } from "./delay";
 import { EventLog } from "./event_log";

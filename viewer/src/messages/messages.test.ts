@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { describe, expect, it } from "vitest";
+
 import { ros2humble } from "@foxglove/rosmsg-msgs-common";
+import { describe, expect, it } from "vitest";
 import { CalibrationHint, CalibrationStage, readCalibrationState } from "./calibration_state";
 import { CdrReader } from "./cdr_reader";
 import { readClassification } from "./classification";
 import { ContactPhase, ContactsFrame, readContacts, readContactsArray } from "./contacts";
 import { emptyGrid, type PointsFrame, readCounts, readGrid, readPoints, TaxelStatus } from "./grids";
 import { DiagnosticLevel, readHealth, readStatistics } from "./statistics";
-import { readThreat, ThreatState } from "./threat";
 import { constants, type Definition, definitions, full, sample, simpleFields, written } from "./test_messages";
+import { readThreat, ThreatState } from "./threat";
 
 const header = { stamp: { sec: 1234, nanosec: 500000000 }, frame_id: "suit" };
 const zero = { x: 0, y: 0, z: 0 };
@@ -180,7 +181,7 @@ describe("what was recognised", () => {
 describe("threats", () => {
   it("read as they were written", () => {
     const threat = sample("dermis_msgs/msg/Threat");
-    const { sec } = threat["crossed"] as { sec: number };
+    const { sec } = threat.crossed as { sec: number };
     expect(readThreat(written("dermis_msgs/msg/Threat", { ...threat, header }))).toEqual({
       ...simpleFields(threat),
       stampS: 1234.5,
@@ -192,7 +193,7 @@ describe("threats", () => {
 describe("statistics, health and calibration", () => {
   it("read as they were written", () => {
     const statistics = sample("dermis_msgs/msg/Statistics");
-    const [array] = statistics["arrays"] as [Record<string, unknown>];
+    const [array] = statistics.arrays as [Record<string, unknown>];
     expect(readStatistics(written("dermis_msgs/msg/Statistics", { ...statistics, header }))).toEqual({
       ...simpleFields(statistics),
       stampS: 1234.5,
@@ -218,7 +219,7 @@ describe("statistics, health and calibration", () => {
     expect(readCalibrationState(written("dermis_msgs/msg/CalibrationState", { ...state, header }))).toEqual({
       ...simpleFields(state),
       stampS: 1234.5,
-      taxelPresses: state["taxel_presses"],
+      taxelPresses: state.taxel_presses,
     });
     const none = 4294967295;
     const alone = { ...state, header, pressed_taxel: none, together_with: none, missing_taxel: none };

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { describe, expect, it } from "vitest";
+
 import { readFileSync } from "node:fs";
+import { describe, expect, it } from "vitest";
 import { COEFFICIENTS, colorOf, cssGradient, rgbOf, shaderSource, TOE_COLORS, TOE_SHARE } from "./color_map";
 
 /** OKLab: distances in it are differences to the eye (Ottosson, 2020). */

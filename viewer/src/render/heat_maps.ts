@@ -233,12 +233,12 @@ export class HeatMaps {
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT);
-    gl.uniform1i(this.#uniforms["interpolated"]!, this.interpolated ? 1 : 0);
-    gl.uniform1f(this.#uniforms["pixel_ratio"]!, this.#pixelRatio);
-    gl.uniform1i(this.#uniforms["from_light"]!, fromLight ? 1 : 0);
-    gl.uniform3f(this.#uniforms["line"]!, line[0], line[1], line[2]);
-    gl.uniform3f(this.#uniforms["fault"]!, fault[0], fault[1], fault[2]);
-    gl.uniform3f(this.#uniforms["fault_stripe"]!, faultStripe[0], faultStripe[1], faultStripe[2]);
+    gl.uniform1i(this.#uniforms.interpolated!, this.interpolated ? 1 : 0);
+    gl.uniform1f(this.#uniforms.pixel_ratio!, this.#pixelRatio);
+    gl.uniform1i(this.#uniforms.from_light!, fromLight ? 1 : 0);
+    gl.uniform3f(this.#uniforms.line!, line[0], line[1], line[2]);
+    gl.uniform3f(this.#uniforms.fault!, fault[0], fault[1], fault[2]);
+    gl.uniform3f(this.#uniforms.fault_stripe!, faultStripe[0], faultStripe[1], faultStripe[2]);
     for (const map of this.#maps) if (map.rows > 0 && map.area.width > 0) this.#drawMap(map);
   }
 
@@ -254,9 +254,9 @@ export class HeatMaps {
     gl.bindTexture(gl.TEXTURE_2D, values);
     gl.activeTexture(gl.TEXTURE1);
     gl.bindTexture(gl.TEXTURE_2D, statuses);
-    gl.uniform2i(this.#uniforms["size"]!, cols, rows);
-    gl.uniform4f(this.#uniforms["area"]!, left, bottom, width, height);
-    gl.uniform1f(this.#uniforms["scale_end"]!, scaleEnd);
+    gl.uniform2i(this.#uniforms.size!, cols, rows);
+    gl.uniform4f(this.#uniforms.area!, left, bottom, width, height);
+    gl.uniform1f(this.#uniforms.scale_end!, scaleEnd);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
   }
 }

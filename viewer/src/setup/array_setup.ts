@@ -9,7 +9,7 @@ import { dumpOf } from "./first_bytes";
 import { KnownArrays } from "./known_arrays";
 import { LivePicture } from "./live_picture";
 import { makeSourceChoice } from "./source_choice";
-import { TouchFeed, type Shape } from "./touch_feed";
+import { type Shape, TouchFeed } from "./touch_feed";
 
 const LINES = { type: "number", min: 1, max: 1024, step: 1, required: true } as const;
 /** Who types a number has not finished with its first digit. */

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { element, setText } from "../dom";
-import { AS_SENT, cornerOf, describeWayRound, wayRound, type Place, type WayRound } from "./corners";
+import { AS_SENT, cornerOf, describeWayRound, type Place, type WayRound, wayRound } from "./corners";
 import type { Shape, Touch, TouchFeed } from "./touch_feed";
 
 /** A finger that lands touches other taxels for a moment. */
@@ -55,7 +55,10 @@ export class CornerGuide {
     this.forget();
     this.#turned(AS_SENT);
     const shape = this.#shape();
-    if (shape === undefined) return setText(this.#words, "Fill in rows and columns first, 2 or more of each.");
+    if (shape === undefined) {
+      setText(this.#words, "Fill in rows and columns first, 2 or more of each.");
+      return;
+    }
     setText(this.#words, "Take your hands off the array.");
     this.#isAsking = true;
     void this.#feed.watch(shape);

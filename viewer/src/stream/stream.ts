@@ -255,11 +255,14 @@ export class Stream {
   #receiveText(text: protocol.ServerText): void {
     switch (text.op) {
       case "serverInfo":
-        return this.#begun(text);
+        this.#begun(text);
+        return;
       case "advertise":
-        return this.#advertised(text.channels);
+        this.#advertised(text.channels);
+        return;
       case "unadvertise":
-        return this.#unadvertised(text.channelIds);
+        this.#unadvertised(text.channelIds);
+        return;
       case "advertiseServices":
         this.services.value = new Map([
           ...this.services.value,
@@ -270,9 +273,11 @@ export class Stream {
         this.services.value = new Map([...this.services.value].filter(([, id]) => !text.serviceIds.includes(id)));
         return;
       case "parameterValues":
-        return this.#parametersCame(text.parameters, text.id);
+        this.#parametersCame(text.parameters, text.id);
+        return;
       case "serviceCallFailure":
-        return this.#calls.fail(text.callId, text.message);
+        this.#calls.fail(text.callId, text.message);
+        return;
       case "status":
         this.notice.value = { level: text.level, message: text.message };
         return;

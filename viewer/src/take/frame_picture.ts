@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { timeOfDay } from "../format";
-import { TaxelStatus, type GridFrame } from "../messages/grids";
+import { type GridFrame, TaxelStatus } from "../messages/grids";
 import { colorOf, rgbOf, TOE_COLORS, TOE_SHARE } from "../render/color_map";
 
 /** A frame to be drawn, with what stands beside it. */
@@ -117,8 +117,8 @@ export class PaletteFinder {
     const indices = new Uint8Array(rgba.length / 4);
     for (let pixel = 0; pixel < indices.length; ++pixel) {
       const key = (rgba[4 * pixel]! << 16) | (rgba[4 * pixel + 1]! << 8) | rgba[4 * pixel + 2]!;
-      let index = this.#known.get(key);
-      if (index === undefined) this.#known.set(key, (index = this.#nearest(key >> 16, (key >> 8) & 255, key & 255)));
+      const index = this.#known.get(key) ?? this.#nearest(key >> 16, (key >> 8) & 255, key & 255);
+      this.#known.set(key, index);
       indices[pixel] = index;
     }
     return indices;

@@ -74,10 +74,10 @@ describe("a GIF", () => {
 
   it("reads back where its table of codes is full many times", () => {
     let state = 7;
-    const noise = Array.from(
-      { length: 200 * 200 },
-      () => ((state = (1103515245 * state + 12345) % 2147483648) >> 16) & 255,
-    );
+    const noise = Array.from({ length: 200 * 200 }, () => {
+      state = (1103515245 * state + 12345) % 2147483648;
+      return (state >> 16) & 255;
+    });
     expect(decodeGif(film(200, 200, (_, place) => noise[place]!)).frames[0]).toEqual(noise);
   });
 

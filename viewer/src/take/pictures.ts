@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { element } from "../dom";
-import { emptyGrid, readCounts, readGrid, type GridFrame } from "../messages/grids";
+import { emptyGrid, type GridFrame, readCounts, readGrid } from "../messages/grids";
 import type { Stream } from "../stream/stream";
 import type { ArrayDescription } from "../suit";
 import { drawPicture, filmPalette, highest, PaletteFinder, pictureSize, roundEnd } from "./frame_picture";

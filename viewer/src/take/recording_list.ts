@@ -50,9 +50,9 @@ export class RecordingList {
     const shown = JSON.stringify(listed);
     if (shown === this.#shown) return;
     const names = listed.files.map(({ name }) => name).join("/");
-    const isSameList = names === this.#rows.dataset["names"];
+    const isSameList = names === this.#rows.dataset.names;
     this.#shown = shown;
-    this.#rows.dataset["names"] = names;
+    this.#rows.dataset.names = names;
     if (!isSameList) this.#rows.replaceChildren(...listed.files.map((file) => this.#row(file)));
     listed.files.forEach((file, index) => this.#update(this.#rows.rows[index]!, file, file.name === listed.recording));
   }

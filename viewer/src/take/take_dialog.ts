@@ -3,7 +3,7 @@
 import { element, setText } from "../dom";
 import type { ArrayDescription } from "../suit";
 import type { ViewContext } from "../view";
-import { takeFilm, takePicture, type Picture } from "./pictures";
+import { type Picture, takeFilm, takePicture } from "./pictures";
 import { fileAddress, RecordingList } from "./recording_list";
 import { nameWithTime, saveBlob, saveFrom } from "./save_file";
 

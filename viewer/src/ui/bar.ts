@@ -84,7 +84,7 @@ export class Bar {
 
   showTab(name: string): void {
     for (const tab of this.#tabs) {
-      if (tab.dataset["tab"] === name) tab.setAttribute("aria-current", "page");
+      if (tab.dataset.tab === name) tab.setAttribute("aria-current", "page");
       else tab.removeAttribute("aria-current");
     }
   }

@@ -3,7 +3,7 @@
 import { element, setHidden, setText } from "../dom";
 import { clock } from "../format";
 import { PlaybackClock } from "../stream/playback_clock";
-import { secondsOf, type ServerInfo } from "../stream/protocol";
+import { type ServerInfo, secondsOf } from "../stream/protocol";
 import type { Stream } from "../stream/stream";
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 8];

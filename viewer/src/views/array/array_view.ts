@@ -3,8 +3,8 @@
 import { element, setData, setHidden, setText } from "../../dom";
 import { fixed, statusWord } from "../../format";
 import { regionName } from "../../live/region_force";
-import { Signal } from "../../signal";
 import { type Area, HeatMaps } from "../../render/heat_maps";
+import { Signal } from "../../signal";
 import type { ArrayDescription } from "../../suit";
 import { rgbColor } from "../../theme";
 import type { View, ViewContext, ViewFactory } from "../../view";
@@ -345,7 +345,10 @@ class ArrayView implements View {
 
   #speak(): void {
     const { cursor } = this.#pointer;
-    if (this.#array === undefined || cursor < 0) return setText(this.#spoken, "");
+    if (this.#array === undefined || cursor < 0) {
+      setText(this.#spoken, "");
+      return;
+    }
     const force = this.#feeds.frames[FORCE]!;
     const newtons = fixed(force.values[cursor] ?? NaN, 2);
     const counts = fixed(this.#feeds.frames[RAW]!.values[cursor] ?? NaN, 0);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { emptyGrid, type GridFrame, readCounts, readGrid, TaxelStatus } from "../../messages/grids";
-import type { ArrayDescription } from "../../suit";
 import type { Stream } from "../../stream/stream";
+import type { ArrayDescription } from "../../suit";
 import { HeldValues, type TimeShare } from "./held_values";
 import { FORCE, PRESSURE, QUANTITIES, RAW, taxelAreaM2 } from "./quantities";
 

@@ -38,7 +38,7 @@ export class MapPointer {
     room.addEventListener("keydown", (event) => event.target === room && this.#steer(event));
     drawing.follow((isDrawing) => {
       this.#corner = -1;
-      room.dataset["drawing"] = String(isDrawing);
+      room.dataset.drawing = String(isDrawing);
       actions.changed();
     });
   }

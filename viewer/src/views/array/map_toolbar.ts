@@ -83,7 +83,10 @@ function makeRegion({ drawing }: MapChoices, { hasRegion, clearRegion }: MapActi
     class: `button compact ${NEEDS_FORCE}`,
     "data-role": "draw-region",
     title: "The force on a part of the map, here and over time: draw from corner to corner, or set both with Enter",
-    onclick: () => (hasRegion.value ? clearRegion() : (drawing.value = !drawing.value)),
+    onclick: () => {
+      if (hasRegion.value) clearRegion();
+      else drawing.value = !drawing.value;
+    },
   });
   const describe = (): void => {
     button.setAttribute("aria-pressed", String(drawing.value));

@@ -40,7 +40,10 @@ export class Summary {
   /** `shown`: the forces, or the counts of an array without a model. */
   show(array: ArrayDescription, { contacts, centre }: ArrayLive, shown: GridFrame): void {
     const { highest, faulty, worst } = survey(shown);
-    if (!array.calibrated) return this.#showCounts(array, shown, highest);
+    if (!array.calibrated) {
+      this.#showCounts(array, shown, highest);
+      return;
+    }
     setText(this.#total, fixed(contacts.totalForceN, 2));
     setText(this.#sigma, `\u00b1 ${fixed(contacts.sigmaTotalN, 2)}`);
     setText(this.#values[0]!, String(touching(contacts.contacts, contacts.count)));

@@ -33,7 +33,10 @@ class Row {
   show(label: string, taxel: number, array: ArrayDescription, { raw, conductance, force }: Frames): void {
     setText(this.#name, label);
     setData(this.element, "taxel", taxelName(taxel, array));
-    if (!array.calibrated) return this.#showCounts(valueAt(raw, taxel));
+    if (!array.calibrated) {
+      this.#showCounts(valueAt(raw, taxel));
+      return;
+    }
     const siemens = valueAt(conductance, taxel);
     const status = force.statuses[taxel] ?? conductance.statuses[taxel] ?? 0;
     this.#set("counts", fixed(valueAt(raw, taxel), Number.isInteger(valueAt(raw, taxel)) ? 0 : 1));
@@ -48,7 +51,7 @@ class Row {
 
   /** All that is known of an array without a model. */
   #showCounts(counts: number): void {
-    delete this.element.dataset["status"];
+    delete this.element.dataset.status;
     for (const column of COLUMNS) this.#set(column, "");
     this.#set("counts", fixed(counts, Number.isInteger(counts) ? 0 : 1));
     this.#set("status", "not calibrated");
@@ -56,8 +59,8 @@ class Row {
 
   clear(label: string): void {
     setText(this.#name, label);
-    delete this.element.dataset["taxel"];
-    delete this.element.dataset["status"];
+    delete this.element.dataset.taxel;
+    delete this.element.dataset.status;
     for (const column of COLUMNS) this.#set(column, "");
   }
 

@@ -34,7 +34,9 @@ async function meshOf(path: string, bytes: ArrayBuffer, ink: three.Material): Pr
   }
   const { GLTFLoader } = await import("three/addons/loaders/GLTFLoader.js");
   const { scene } = await new GLTFLoader().parseAsync(bytes, "");
-  scene.traverse((object) => object instanceof three.Mesh && (object.material = ink));
+  scene.traverse((object) => {
+    if (object instanceof three.Mesh) object.material = ink;
+  });
   return scene;
 }
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import * as three from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { type Contact, type ContactsFrame, ContactPhase } from "../../messages/contacts";
+import { type Contact, ContactPhase, type ContactsFrame } from "../../messages/contacts";
 import type { PointsFrame } from "../../messages/grids";
 import type { Transform } from "../../messages/transforms";
 import type { PlacedPose, SuitDescription } from "../../suit";
@@ -170,7 +170,7 @@ export class SuitScene {
     if (isSame) return;
     this.#moves[array] = move;
     this.#cloud?.move(array, move);
-    for (const line of this.#zones.children) if (line.userData["array"] === array) line.matrix.copy(move);
+    for (const line of this.#zones.children) if (line.userData.array === array) line.matrix.copy(move);
   }
 
   /** Where a point of an array is now that /suit.json has at `position`. */
@@ -194,7 +194,7 @@ export class SuitScene {
         });
         const line = new three.LineLoop(new three.BufferGeometry().setFromPoints(points), this.#zoneInk);
         line.matrixAutoUpdate = false;
-        line.userData["array"] = index;
+        line.userData.array = index;
         this.#zones.add(line);
       }
     }
@@ -297,7 +297,7 @@ export class SuitScene {
       rgbColor("--fault-stripe"),
       rgbColor("--accent"),
       rgbColor("--rim"),
-      document.documentElement.dataset["theme"] === "light",
+      document.documentElement.dataset.theme === "light",
     );
     this.#isDue = true;
   }

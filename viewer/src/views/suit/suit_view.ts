@@ -6,8 +6,8 @@ import { type PointsFrame, readPoints } from "../../messages/grids";
 import { readTransforms } from "../../messages/transforms";
 import { setting } from "../../settings";
 import type { View, ViewContext, ViewFactory } from "../../view";
-import { asOnMap, isLoneAndFlat } from "./as_on_map";
 import { LabelRoom } from "../label_room";
+import { asOnMap, isLoneAndFlat } from "./as_on_map";
 import { OrientationGizmo } from "./orientation_gizmo";
 import type { SuitScene } from "./suit_scene";
 import "./suit.css";
@@ -207,8 +207,9 @@ class SuitView implements View {
     this.#isLoading = true;
     const { SuitScene } = await import("./suit_scene");
     const { stream } = this.#context;
-    const failed = (why: string): void =>
-      void (stream.notice.value = { level: 1, message: `The body is not shown whole. ${why}` });
+    const failed = (why: string): void => {
+      stream.notice.value = { level: 1, message: `The body is not shown whole. ${why}` };
+    };
     this.#scene = new SuitScene(this.#canvas, (path) => stream.fetchFile(path), failed);
     this.#describe();
     this.#resize();

@@ -143,11 +143,11 @@ export class TaxelCloud {
 
   setColors(fault: Rgb, stripe: Rgb, chosen: Rgb, rim: Rgb, fromLight: boolean): void {
     const { uniforms } = this.mesh.material;
-    uniforms["fault_color"]!.value.set(...fault);
-    uniforms["stripe_color"]!.value.set(...stripe);
-    uniforms["chosen_color"]!.value.set(...chosen);
-    uniforms["rim_color"]!.value.set(...rim);
-    uniforms["from_light"]!.value = fromLight;
+    uniforms.fault_color!.value.set(...fault);
+    uniforms.stripe_color!.value.set(...stripe);
+    uniforms.chosen_color!.value.set(...chosen);
+    uniforms.rim_color!.value.set(...rim);
+    uniforms.from_light!.value = fromLight;
   }
 
   /** `move`: of an array, from where /suit.json has it. */
@@ -172,7 +172,7 @@ export class TaxelCloud {
   }
 
   setScale(end: number): void {
-    this.mesh.material.uniforms["scale_end"]!.value = end;
+    this.mesh.material.uniforms.scale_end!.value = end;
   }
 
   choose(array: number): void {

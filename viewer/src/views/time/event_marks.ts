@@ -20,7 +20,7 @@ export function drawEvents(plot: uPlot, events: readonly TimedEvent[], nowS: num
   const pen = plot.ctx;
   const ratio = plot.width > 0 ? plot.ctx.canvas.width / plot.width : 1;
   const { left, top, width, height } = plot.bbox;
-  const firstS = plot.scales["x"]?.min ?? 0;
+  const firstS = plot.scales.x?.min ?? 0;
   const colors = Object.fromEntries(EVENT_KINDS.map((kind) => [kind, cssColor(EVENT_LOOKS[kind].color)]));
   pen.save();
   pen.scale(ratio, ratio);

@@ -3,8 +3,8 @@
 import uPlot from "uplot";
 import { element, setText } from "../../dom";
 import { fixed } from "../../format";
-import { BIN_S, type ForceHistory } from "../../live/force_history";
 import type { TimedEvent } from "../../live/event_log";
+import { BIN_S, type ForceHistory } from "../../live/force_history";
 import { cssColor } from "../../theme";
 import { drawEvents } from "./event_marks";
 import { linePath } from "./line_path";

@@ -16,8 +16,8 @@ export class ReadingHistories {
   }
 
   of(array: string): ForceHistory {
-    let history = this.#histories.get(array);
-    if (history === undefined) this.#histories.set(array, (history = new ForceHistory()));
+    const history = this.#histories.get(array) ?? new ForceHistory();
+    this.#histories.set(array, history);
     return history;
   }
 

@@ -44,7 +44,9 @@ class TimeView implements View {
       this.#totals.element,
       this.#contacts.element,
     );
-    const changed = (): void => void (this.#linesDue = true);
+    const changed = (): void => {
+      this.#linesDue = true;
+    };
     context.theme.shown.follow(changed);
     context.suit.selected.follow(changed);
     context.suit.description.follow(changed);
