@@ -19,6 +19,45 @@ export function element<K extends keyof HTMLElementTagNameMap>(
   return result;
 }
 
+function kindOf(thing: string, attributes: Attributes): string {
+  return attributes.class === undefined ? thing : `${thing} ${attributes.class}`;
+}
+
+/** A button that does something; `attributes.class`: its kind, such as "primary". */
+export function button(words: Node | string, onclick: () => void, attributes: Attributes = {}): HTMLButtonElement {
+  return element("button", { type: "button", ...attributes, class: kindOf("button", attributes), onclick }, words);
+}
+
+/** A framed part of the page. `title`: its words, which also name it, or all that stands in the line of the title. */
+export function panel(
+  title: string | readonly (Node | string)[],
+  attributes: Attributes,
+  ...children: (Node | string)[]
+): HTMLElement {
+  const line = typeof title === "string" ? [element("h2", {}, title)] : title;
+  const name = typeof title === "string" ? title : undefined;
+  return element(
+    "section",
+    { "aria-label": name, ...attributes, class: kindOf("panel", attributes) },
+    element("header", { class: "panel-title" }, ...line),
+    ...children,
+  );
+}
+
+/** A table under its heads, in a room where it can be scrolled. */
+export function table(
+  heads: readonly (readonly (Node | string)[] | string)[],
+  kind: string,
+  body: HTMLElement,
+): HTMLElement {
+  const head = heads.map((words) => element("th", { scope: "col" }, ...(typeof words === "string" ? [words] : words)));
+  return element(
+    "div",
+    { class: "table-room" },
+    element("table", { class: `table ${kind}` }, element("thead", {}, element("tr", {}, ...head)), body),
+  );
+}
+
 /** Sets the text of an element, touching the page only where it changes. */
 export function setText(target: HTMLElement, text: string): void {
   const node = target.firstChild;

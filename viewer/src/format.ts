@@ -52,6 +52,11 @@ export function timeOfDay(seconds: number): string {
   return new Date(1000 * seconds).toISOString().slice(11, 23);
 }
 
+/** The words of what was thrown. */
+export function errorText(error: unknown): string {
+  return error instanceof Error ? error.message : String(error);
+}
+
 export const STATUS_WORDS = ["ok", "saturated", "above range", "dead", "line fault", "invalid"] as const;
 
 export function statusWord(status: number): string {

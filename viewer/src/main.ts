@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
+import { errorText } from "./format";
+import "./styles/tokens.css";
 import "./styles/page.css";
-import "./styles/views.css";
 import { App } from "./app";
 
 try {
@@ -10,7 +11,7 @@ try {
   // A blank page says nothing: a browser without WebGL 2, for one, gets this line.
   const line = document.createElement("p");
   line.setAttribute("role", "alert");
-  line.textContent = error instanceof Error ? error.message : String(error);
+  line.textContent = errorText(error);
   document.body.replaceChildren(line);
   throw error;
 }

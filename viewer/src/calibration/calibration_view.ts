@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element, setHidden, setText } from "../dom";
+import { button, element, panel, setHidden, setText } from "../dom";
+import { errorText } from "../format";
 import {
   CalibrationHint,
   CalibrationStage,
@@ -56,12 +57,7 @@ class CalibrationView implements View {
     this.element = element(
       "div",
       { class: "view calibration-view", "data-view": "calibration" },
-      element(
-        "section",
-        { class: "panel calibration-array", "aria-label": "Array" },
-        element("header", { class: "panel-title" }, this.#title),
-        this.#picture.element,
-      ),
+      panel([this.#title], { class: "calibration-array", "aria-label": "Array" }, this.#picture.element),
       element(
         "section",
         { class: "panel calibration-side", "aria-label": "Guide" },
@@ -78,11 +74,7 @@ class CalibrationView implements View {
         { method: "dialog" },
         element("button", { class: "button" }, "Go on"),
         " ",
-        element(
-          "button",
-          { class: "button primary", "data-role": "forget", onclick: () => this.#call("cancel") },
-          "Forget them",
-        ),
+        button("Forget them", () => this.#call("cancel"), { class: "primary", "data-role": "forget", type: "submit" }),
       ),
     );
   }
@@ -162,7 +154,7 @@ class CalibrationView implements View {
   #call(service: string, request: object = {}): void {
     setHidden(this.#problem, true);
     this.#context.stream.callService(`/calibration/${service}`, request).catch((error: unknown) => {
-      setText(this.#problem, error instanceof Error ? error.message : String(error));
+      setText(this.#problem, errorText(error));
       setHidden(this.#problem, false);
     });
   }

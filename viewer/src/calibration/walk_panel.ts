@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element, setData, setHidden, setText } from "../dom";
+import { button, element, setData, setHidden, setText } from "../dom";
 import { fixed } from "../format";
 import { CalibrationHint, CalibrationStage, type CalibrationState } from "../messages/calibration_state";
 import type { ArrayDescription } from "../suit";
@@ -16,14 +16,6 @@ export interface WalkActions {
   finish(): void;
   save(): void;
   cancel(): void;
-}
-
-function button(role: string, words: string, key: string, act: () => void): HTMLButtonElement {
-  return element(
-    "button",
-    { class: "button", type: "button", "data-role": role, title: key === "" ? "" : `Key ${key}`, onclick: act },
-    words,
-  );
 }
 
 function percent(value: number): string {
@@ -64,12 +56,15 @@ export class WalkPanel {
   readonly #cancel: HTMLButtonElement;
 
   constructor(actions: WalkActions) {
-    this.#skip = button("skip", "Skip", "N", () => actions.skip());
-    this.#repeat = button("repeat", "Last one again", "B", () => actions.repeat());
-    this.#finish = button("finish", "Finish now", "", () => actions.finish());
-    this.#save = button("save", "Save and use", "Enter", () => actions.save());
-    this.#save.classList.add("primary");
-    this.#cancel = button("cancel", "Cancel", "", () => actions.cancel());
+    this.#skip = button("Skip", () => actions.skip(), { "data-role": "skip", title: "Key N" });
+    this.#repeat = button("Last one again", () => actions.repeat(), { "data-role": "repeat", title: "Key B" });
+    this.#finish = button("Finish now", () => actions.finish(), { "data-role": "finish" });
+    this.#save = button("Save and use", () => actions.save(), {
+      class: "primary",
+      "data-role": "save",
+      title: "Key Enter",
+    });
+    this.#cancel = button("Cancel", () => actions.cancel(), { "data-role": "cancel" });
     this.#readings = element("div", { class: "readings" }, this.#reading.element, this.#togetherReading.element);
     this.#pressing = element("div", { class: "pressing" }, this.#ring.element, this.#readings);
     this.element = element(

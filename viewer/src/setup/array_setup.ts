@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { element, setHidden, setText } from "../dom";
+import { errorText } from "../format";
 import type { Stream } from "../stream/stream";
 import type { Suit } from "../suit";
 import type { Theme } from "../theme";
@@ -10,6 +11,7 @@ import { KnownArrays } from "./known_arrays";
 import { LivePicture } from "./live_picture";
 import { makeSourceChoice } from "./source_choice";
 import { type Shape, TouchFeed } from "./touch_feed";
+import "./setup.css";
 
 const LINES = { type: "number", min: 1, max: 1024, step: 1, required: true } as const;
 /** Who types a number has not finished with its first digit. */
@@ -111,7 +113,7 @@ export function makeArraySetup(stream: Stream, suit: Suit, theme: Theme): HTMLEl
     try {
       await stream.callService(service, request);
     } catch (error) {
-      tell(error instanceof Error ? error.message : String(error));
+      tell(errorText(error));
     }
   }
   const use = async (file: string): Promise<void> => {

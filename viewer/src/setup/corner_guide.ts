@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element, setText } from "../dom";
+import { button, element, setText } from "../dom";
 import { AS_SENT, cornerOf, describeWayRound, type Place, type WayRound, wayRound } from "./corners";
 import type { Shape, Touch, TouchFeed } from "./touch_feed";
 
@@ -27,11 +27,7 @@ export class CornerGuide {
     this.element = element(
       "div",
       { class: "corner-guide" },
-      element(
-        "button",
-        { class: "button", type: "button", "data-role": "corners", onclick: () => this.#begin() },
-        "Touch two corners",
-      ),
+      button("Touch two corners", () => this.#begin(), { "data-role": "corners" }),
       this.#words,
     );
     feed.latest.follow((touch) => this.#isAsking && touch !== undefined && this.#take(touch));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element, setHidden } from "../dom";
+import { button, element, setHidden } from "../dom";
 import { Signal } from "../signal";
 import type { Stream } from "../stream/stream";
 
@@ -64,9 +64,5 @@ export class KnownArrays {
 
 function makeKnown({ file, name, rows, cols, calibrated }: KnownArray, choose: () => void): HTMLElement {
   const words = `${name}, ${rows}\u00d7${cols}, ${calibrated ? "calibrated" : "not calibrated"}`;
-  return element(
-    "button",
-    { class: "button", type: "button", "aria-pressed": "false", title: file, "data-known": file, onclick: choose },
-    words,
-  );
+  return button(words, choose, { "aria-pressed": "false", title: file, "data-known": file });
 }

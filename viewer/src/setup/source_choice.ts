@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element, setHidden, setText } from "../dom";
+import { button, element, setHidden, setText } from "../dom";
+import { errorText } from "../format";
 import type { Stream } from "../stream/stream";
 import type { KnownArrays } from "./known_arrays";
+import "./setup.css";
 
 const BAUDS = [9600, 57600, 115200, 230400, 250000, 460800, 921600, 1000000, 2000000];
 const USUAL_BAUD = 115200;
@@ -52,17 +54,13 @@ export function makeSourceChoice(stream: Stream, known: KnownArrays): HTMLElemen
       await stream.refresh();
       setText(words, "");
     } catch (error) {
-      setText(words, error instanceof Error ? error.message : String(error));
+      setText(words, errorText(error));
     }
     for (const button of buttons) button.disabled = false;
   }
 
   const choice = (name: string, title: string, data: string, request: () => object): HTMLElement =>
-    element(
-      "button",
-      { class: "button", type: "button", title, "data-source": data, onclick: () => void open(request(), name) },
-      name,
-    );
+    button(name, () => void open(request(), name), { title, "data-source": data });
 
   async function look(): Promise<void> {
     const choices = (await stream.callService("/source/list", {})) as Choices;
@@ -112,11 +110,7 @@ export function makeSourceChoice(stream: Stream, known: KnownArrays): HTMLElemen
         { class: "setup-row" },
         element("label", { for: baud.id }, "Baud (boards with USB of their own take any)"),
         baud,
-        element(
-          "button",
-          { class: "button", type: "button", "data-role": "look-again", onclick: () => void look() },
-          "Look again",
-        ),
+        button("Look again", () => void look(), { "data-role": "look-again" }),
       ),
     ),
     part("On the network", network),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
+import { errorText } from "../format";
 import { Signal } from "../signal";
 import type { Stream } from "../stream/stream";
 import type { Place } from "./corners";
@@ -47,7 +48,7 @@ export class TouchFeed {
         await new Promise((resolve) => window.setTimeout(resolve, PERIOD_MS));
       }
     } catch (error) {
-      const problem = error instanceof Error ? error.message : String(error);
+      const problem = errorText(error);
       if (round === this.#round) this.latest.value = { ready: false, touched: null, problem, counts: [] };
     }
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element, setHidden, setText } from "../dom";
+import { button, element, setHidden, setText } from "../dom";
+import { errorText } from "../format";
+import { KeyedRows, type Row } from "../keyed_rows";
 import type { Stream } from "../stream/stream";
 import { sizeText } from "./save_file";
 
@@ -24,14 +26,52 @@ export function fileAddress(stream: Stream, name: string): string {
   return new URL(`recordings/${encodeURIComponent(name)}${query}`, window.location.href).href;
 }
 
+interface Entry extends RecordingFile {
+  isWritten: boolean;
+  isPlayable: boolean;
+}
+
+class RecordingRow implements Row<Entry> {
+  readonly element: HTMLElement;
+  readonly #size = element("td", { class: "figure", "data-field": "size" });
+  readonly #changed = element("td", { class: "figure dim", "data-field": "changed" });
+  readonly #play: HTMLElement;
+  readonly #save: HTMLElement;
+
+  constructor({ name }: Entry, address: string, play: () => void) {
+    this.#play = button("Play it", play, { "data-act": "play" });
+    this.#save = element("a", { class: "button", href: address, download: name, "data-act": "download" }, "Save");
+    this.element = element(
+      "tr",
+      { "data-recording": name },
+      element("th", { scope: "row" }, name),
+      this.#size,
+      this.#changed,
+      element("td", {}, this.#play),
+      element("td", {}, this.#save),
+    );
+  }
+
+  show({ bytes, changed_s, isWritten, isPlayable }: Entry): void {
+    setText(this.#size, sizeText(bytes));
+    setText(this.#changed, isWritten ? "is being recorded" : new Date(1000 * changed_s).toLocaleString());
+    setHidden(this.#play, isWritten || !isPlayable);
+    setHidden(this.#save, isWritten);
+  }
+}
+
 /** The recordings of the server's folder: their size as it grows, to play and to save. */
 export class RecordingList {
   readonly element: HTMLElement;
   readonly #stream: Stream;
   readonly #tell: (words: string) => void;
   readonly #folder = element("p", { class: "dim" });
-  readonly #rows = element("tbody");
-  #shown = "";
+  readonly #body = element("tbody");
+  readonly #rows = new KeyedRows<Entry>(
+    this.#body,
+    ({ name }) => name,
+    (entry) => new RecordingRow(entry, fileAddress(this.#stream, entry.name), () => void this.#play(entry.name)),
+  );
 
   constructor(stream: Stream, tell: (words: string) => void) {
     this.#stream = stream;
@@ -40,60 +80,16 @@ export class RecordingList {
       "div",
       { class: "recording-list" },
       this.#folder,
-      element("table", { class: "table", "data-role": "recordings" }, this.#rows),
+      element("table", { class: "table", "data-role": "recordings" }, this.#body),
     );
   }
 
   async refresh(): Promise<void> {
     const listed = (await this.#stream.callService("/recordings/list", {})) as Listed;
     setText(this.#folder, `Folder of the server: ${listed.folder}`);
-    const shown = JSON.stringify(listed);
-    if (shown === this.#shown) return;
-    const names = listed.files.map(({ name }) => name).join("/");
-    const isSameList = names === this.#rows.dataset.names;
-    this.#shown = shown;
-    this.#rows.dataset.names = names;
-    if (!isSameList) this.#rows.replaceChildren(...listed.files.map((file) => this.#row(file)));
-    listed.files.forEach((file, index) => this.#update(this.#rows.rows[index]!, file, file.name === listed.recording));
-  }
-
-  #row({ name }: RecordingFile): HTMLTableRowElement {
-    return element(
-      "tr",
-      { "data-recording": name },
-      element("th", { scope: "row" }, name),
-      element("td", { class: "figure", "data-field": "size" }),
-      element("td", { class: "figure dim", "data-field": "changed" }),
-      element(
-        "td",
-        {},
-        element(
-          "button",
-          { class: "button", type: "button", "data-act": "play", onclick: () => void this.#play(name) },
-          "Play it",
-        ),
-      ),
-      element(
-        "td",
-        {},
-        element(
-          "a",
-          { class: "button", href: fileAddress(this.#stream, name), download: name, "data-act": "download" },
-          "Save",
-        ),
-      ),
-    );
-  }
-
-  #update(row: HTMLTableRowElement, { bytes, changed_s }: RecordingFile, isWritten: boolean): void {
-    const part = (selector: string): HTMLElement => row.querySelector<HTMLElement>(selector)!;
-    setText(part("[data-field=size]"), sizeText(bytes));
-    setText(
-      part("[data-field=changed]"),
-      isWritten ? "is being recorded" : new Date(1000 * changed_s).toLocaleString(),
-    );
-    setHidden(part("[data-act=play]"), isWritten || !this.#stream.services.value.has("/recordings/play"));
-    setHidden(part("[data-act=download]"), isWritten);
+    const isPlayable = this.#stream.services.value.has("/recordings/play");
+    const entries = listed.files.map((file) => ({ ...file, isWritten: file.name === listed.recording, isPlayable }));
+    this.#rows.show(entries);
   }
 
   /** In a page of its own, while this one shows what is live. */
@@ -105,7 +101,7 @@ export class RecordingList {
       address.hash = "";
       if (window.open(address.href, "_blank") === null) this.#tell(`${name} is played at ${address.href}`);
     } catch (error) {
-      this.#tell(error instanceof Error ? error.message : String(error));
+      this.#tell(errorText(error));
     }
   }
 }

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element, setText } from "../dom";
+import { button, element, setText } from "../dom";
+import { errorText } from "../format";
 import type { ArrayDescription } from "../suit";
 import type { ViewContext } from "../view";
 import { type Picture, takeFilm, takePicture } from "./pictures";
 import { fileAddress, RecordingList } from "./recording_list";
 import { nameWithTime, saveBlob, saveFrom } from "./save_file";
+import "./take.css";
 
 const REFRESH_MS = 1000;
 const FILM_S = 4;
@@ -25,11 +27,8 @@ export class TakeDialog {
     placeholder: "walk-1",
     autocomplete: "off",
   });
-  readonly #record = element("button", {
-    class: "button",
-    type: "button",
+  readonly #record = button("", () => void this.#try(() => this.#switchRecording()), {
     "data-role": "begin-recording",
-    onclick: () => void this.#try(() => this.#switchRecording()),
   });
   readonly #length: HTMLSelectElement;
   readonly #list: RecordingList;
@@ -93,18 +92,14 @@ export class TakeDialog {
   }
 
   #button(role: string, words: string, act: () => Promise<void>): HTMLButtonElement {
-    return element(
-      "button",
-      { class: "button", type: "button", "data-role": role, onclick: () => void this.#try(act) },
-      words,
-    );
+    return button(words, () => void this.#try(act), { "data-role": role });
   }
 
   async #try(act: () => Promise<void>): Promise<void> {
     try {
       await act();
     } catch (error) {
-      setText(this.#words, error instanceof Error ? error.message : String(error));
+      setText(this.#words, errorText(error));
     }
   }
 

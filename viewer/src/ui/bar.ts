@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element, setHidden, setText } from "../dom";
+import { button, element, setHidden, setText } from "../dom";
 import type { View, ViewContext } from "../view";
 import { ConnectionPill } from "./connection_pill";
 import { makeUndoTare } from "./tare_banner";
+import "./bar.css";
 
 export interface BarActions {
   toggleRecording(): void;
@@ -42,43 +43,23 @@ export class Bar {
       makePause(context, actions),
       makeTare(context, actions),
       makeUndoTare(context.stream),
-      element(
-        "button",
-        {
-          class: "button",
-          "data-role": "show-take",
-          title: "Recordings, the last minute, pictures (S)",
-          onclick: () => actions.showTake(),
-        },
-        "Save",
-      ),
-      element(
-        "button",
-        { class: "button", "data-role": "show-thresholds", onclick: () => actions.showThresholds() },
-        "Thresholds",
-      ),
-      element(
-        "button",
-        {
-          class: "button icon",
-          "data-role": "theme",
-          "aria-label": "Light or dark",
-          title: "Light or dark (D)",
-          onclick: () => context.theme.toggle(),
-        },
-        "\u25d0",
-      ),
-      element(
-        "button",
-        {
-          class: "button icon",
-          "data-role": "show-help",
-          "aria-label": "Keys",
-          title: "Keys (?)",
-          onclick: () => actions.showHelp(),
-        },
-        "?",
-      ),
+      button("Save", () => actions.showTake(), {
+        "data-role": "show-take",
+        title: "Recordings, the last minute, pictures (S)",
+      }),
+      button("Thresholds", () => actions.showThresholds(), { "data-role": "show-thresholds" }),
+      button("\u25d0", () => context.theme.toggle(), {
+        class: "icon",
+        "data-role": "theme",
+        "aria-label": "Light or dark",
+        title: "Light or dark (D)",
+      }),
+      button("?", () => actions.showHelp(), {
+        class: "icon",
+        "data-role": "show-help",
+        "aria-label": "Keys",
+        title: "Keys (?)",
+      }),
     );
   }
 
@@ -154,41 +135,35 @@ function makeRecord({ stream, live }: ViewContext, actions: BarActions): HTMLEle
 }
 
 function makePause({ paused, stream }: ViewContext, actions: BarActions): HTMLElement {
-  const button = element("button", {
-    class: "button",
+  const pause = button("", () => actions.togglePause(), {
     "data-role": "pause",
     title: "Stop the picture, go on (Space)",
-    onclick: () => actions.togglePause(),
   });
   stream.serverInfo.follow((info) => {
     const isPlayback = info?.capabilities.includes("playbackControl") === true;
     if (isPlayback) paused.value = false;
-    setHidden(button, isPlayback);
+    setHidden(pause, isPlayback);
   });
   paused.follow((isPaused) => {
-    button.setAttribute("aria-pressed", String(isPaused));
-    setText(button, isPaused ? "Paused" : "Pause");
+    pause.setAttribute("aria-pressed", String(isPaused));
+    setText(pause, isPaused ? "Paused" : "Pause");
   });
-  return button;
+  return pause;
 }
 
 function makeTare({ stream, suit }: ViewContext, actions: BarActions): HTMLElement {
-  const button = element(
-    "button",
-    { class: "button", "data-role": "tare", title: "What is shown now is zero (T)", onclick: () => actions.tare() },
-    "Tare",
-  );
+  const tare = button("Tare", () => actions.tare(), { "data-role": "tare", title: "What is shown now is zero (T)" });
   const enable = (): void => {
     const isCalibrated = suit.description.value.arrays.some(({ calibrated }) => calibrated);
-    button.disabled = !isCalibrated || typeof stream.parameters.value.get("/tare") !== "boolean";
-    button.title = isCalibrated ? "What is shown now is zero (T)" : "Counts have no zero: calibrate first";
+    tare.disabled = !isCalibrated || typeof stream.parameters.value.get("/tare") !== "boolean";
+    tare.title = isCalibrated ? "What is shown now is zero (T)" : "Counts have no zero: calibrate first";
   };
   suit.description.follow(enable);
   stream.parameters.follow((parameters) => {
     enable();
     const isOn = parameters.get("/tare") === true;
-    button.setAttribute("aria-pressed", String(isOn));
-    setText(button, isOn ? "Tared" : "Tare");
+    tare.setAttribute("aria-pressed", String(isOn));
+    setText(tare, isOn ? "Tared" : "Tare");
   });
-  return button;
+  return tare;
 }

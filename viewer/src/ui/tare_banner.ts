@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element, setHidden, setText } from "../dom";
+import { button, element, setHidden, setText } from "../dom";
 import type { Stream } from "../stream/stream";
+import "./banners.css";
 
 const UNDO_MS = 60_000; // docs/stream.md
 
@@ -12,17 +13,11 @@ export function makeTareBanner(stream: Stream): HTMLElement {
     "section",
     { class: "tare-banner", role: "alert", "aria-label": "Tare", "data-role": "tare-banner", hidden: true },
     words,
-    element(
-      "button",
-      {
-        class: "button",
-        "data-role": "tare-force",
-        title: "What lies there reads 0 N from then on",
-        onclick: () => stream.setParameter("/tare/force", true),
-      },
-      "Tare anyway",
-    ),
-    element("button", { class: "button", onclick: () => setHidden(banner, true) }, "Leave it"),
+    button("Tare anyway", () => stream.setParameter("/tare/force", true), {
+      "data-role": "tare-force",
+      title: "What lies there reads 0 N from then on",
+    }),
+    button("Leave it", () => setHidden(banner, true)),
   );
   let last: unknown = "";
   stream.parameters.follow((parameters) => {
@@ -38,24 +33,18 @@ export function makeTareBanner(stream: Stream): HTMLElement {
 
 /** Takes the last tare back, as long as that is possible. */
 export function makeUndoTare(stream: Stream): HTMLElement {
-  const button = element(
-    "button",
-    {
-      class: "button",
-      "data-role": "undo-tare",
-      title: "Back to the zero before the tare",
-      hidden: true,
-      onclick: () => stream.setParameter("/tare/undo", true),
-    },
-    "Undo",
-  );
+  const undo = button("Undo", () => stream.setParameter("/tare/undo", true), {
+    "data-role": "undo-tare",
+    title: "Back to the zero before the tare",
+    hidden: true,
+  });
   let timer = 0;
   stream.parameters.follow((parameters) => {
     const canUndo = parameters.get("/tare/undo") === true;
-    if (canUndo === !button.hidden) return;
-    setHidden(button, !canUndo);
+    if (canUndo === !undo.hidden) return;
+    setHidden(undo, !canUndo);
     window.clearTimeout(timer);
-    if (canUndo) timer = window.setTimeout(() => setHidden(button, true), UNDO_MS);
+    if (canUndo) timer = window.setTimeout(() => setHidden(undo, true), UNDO_MS);
   });
-  return button;
+  return undo;
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element, setHidden, setText } from "../dom";
-import { withUnit } from "../format";
+import { button, element, setHidden, setText } from "../dom";
+import { errorText, withUnit } from "../format";
 import type { ThreatBoard } from "../live/threat_board";
 import { type Threat, ThreatState } from "../messages/threat";
 import type { Stream } from "../stream/stream";
+import "./banners.css";
 
 const MOST_ROWS = 3;
 
@@ -12,11 +13,7 @@ const MOST_ROWS = 3;
 export function makeThreatBanner(board: ThreatBoard, stream: Stream): HTMLElement {
   const rows = Array.from({ length: MOST_ROWS }, () => element("li", { "data-role": "threat" }));
   const more = element("li", { class: "dim" });
-  const reset = element(
-    "button",
-    { class: "button", "data-role": "reset-threats", onclick: () => void resetThreats(stream) },
-    "Reset",
-  );
+  const reset = button("Reset", () => void resetThreats(stream), { "data-role": "reset-threats" });
   const banner = element(
     "section",
     { class: "threat-banner", role: "alert", "aria-label": "Threats", "data-role": "threat-banner", hidden: true },
@@ -50,6 +47,6 @@ async function resetThreats(stream: Stream): Promise<void> {
   try {
     await stream.callService("/threats/reset", {});
   } catch (error) {
-    stream.notice.value = { level: 2, message: error instanceof Error ? error.message : String(error) };
+    stream.notice.value = { level: 2, message: errorText(error) };
   }
 }

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { element, setText } from "../dom";
 import type { Stream } from "../stream/stream";
+import "./thresholds.css";
 
 interface Field {
   name: string;

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { element, setText } from "../dom";
 import type { Stream } from "../stream/stream";
+import "./token_form.css";
 
 /** Asks for the token where the server wants another. */
 export function makeTokenForm(stream: Stream): HTMLElement {

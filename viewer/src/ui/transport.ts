@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element, setHidden, setText } from "../dom";
+import { button, element, setHidden, setText } from "../dom";
 import { clock } from "../format";
 import { PlaybackClock } from "../stream/playback_clock";
 import { type ServerInfo, secondsOf } from "../stream/protocol";
 import type { Stream } from "../stream/stream";
+import "./transport.css";
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 8];
 const PERIOD_MS = 50;
@@ -14,7 +15,7 @@ const STEP_S = 1;
 export class Transport {
   readonly element: HTMLElement;
   readonly #stream: Stream;
-  readonly #play = element("button", { class: "button", "data-role": "play", onclick: () => this.toggle() }, "Play");
+  readonly #play = button("Play", () => this.toggle(), { "data-role": "play" });
   readonly #now = element("span", { class: "figure", "data-role": "playback-now" });
   readonly #length = element("span", { class: "figure dim" });
   readonly #bar: HTMLInputElement;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element, setData, setHidden, setText } from "../../dom";
+import { button, element, setData, setHidden, setText } from "../../dom";
 import { fixed, statusWord } from "../../format";
 import { regionName } from "../../live/region_force";
 import { type Area, HeatMaps } from "../../render/heat_maps";
@@ -20,6 +20,7 @@ import { FORCE, QUANTITIES, RAW } from "./quantities";
 import { Summary } from "./summary";
 import { TaxelTable } from "./taxel_table";
 import { drawZones } from "./zones";
+import "./array.css";
 
 const TEXT_PERIOD_MS = 100;
 const NOWHERE: Area = { left: 0, top: 0, width: 0, height: 0 };
@@ -159,15 +160,10 @@ class ArrayView implements View {
         {},
         "The counts are live. Newtons come with a calibration: known weights on single taxels, as the page asks for them.",
       ),
-      element(
-        "button",
-        {
-          class: "button primary large-button",
-          "data-role": "calibrate",
-          onclick: () => this.#context.open("calibration"),
-        },
-        "Calibrate",
-      ),
+      button("Calibrate", () => this.#context.open("calibration"), {
+        class: "primary large-button",
+        "data-role": "calibrate",
+      }),
     );
   }
 

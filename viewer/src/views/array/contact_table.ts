@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element, setData, setHidden, setText } from "../../dom";
+import { element, panel, setData, setHidden, setText, table } from "../../dom";
 import { fixed } from "../../format";
 import { SLOTS } from "../../live/contact_slots";
 import type { ArrayLive } from "../../live/live_data";
@@ -50,24 +50,14 @@ export class ContactTable {
   readonly #more = element("p", { class: "dim note" });
 
   constructor() {
-    const head = (text: string, index: number): HTMLElement =>
-      element("th", { scope: "col" }, text, element("span", { class: "unit" }, UNITS[index]!));
-    this.element = element(
-      "section",
-      { class: "panel", "aria-label": "Contacts" },
-      element("header", { class: "panel-title" }, element("h2", {}, "Contacts")),
-      element(
-        "div",
-        { class: "table-room", tabindex: 0, role: "region", "aria-label": "The contacts that are shown" },
-        element(
-          "table",
-          { class: "table contact-table" },
-          element("thead", {}, element("tr", {}, ...HEADS.map(head))),
-          element("tbody", { "data-role": "contacts" }, ...this.#rows.map((row) => row.element)),
-        ),
-        this.#more,
-      ),
-    );
+    const heads = HEADS.map((head, index) => [head, element("span", { class: "unit" }, UNITS[index]!)]);
+    const body = element("tbody", { "data-role": "contacts" }, ...this.#rows.map((row) => row.element));
+    const room = table(heads, "contact-table", body);
+    room.tabIndex = 0;
+    room.role = "region";
+    room.ariaLabel = "The contacts that are shown";
+    room.append(this.#more);
+    this.element = panel("Contacts", {}, room);
   }
 
   show({ contacts: frame, slots }: ArrayLive, isCalibrated: boolean): void {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element, setText } from "../../dom";
+import { element, panel, setText } from "../../dom";
 import type { GridFrame } from "../../messages/grids";
 import { setting } from "../../settings";
 import type { Signal } from "../../signal";
@@ -47,17 +47,9 @@ export class MapPanel {
       this.#ticks.push(label);
       ticks.append(label);
     }
-    this.element = element(
-      "section",
-      { class: "panel map-panel", "aria-label": `${quantity.title} map` },
-      element(
-        "header",
-        { class: "panel-title" },
-        element("h2", {}, quantity.title),
-        this.#unit,
-        this.#said,
-        this.#select,
-      ),
+    this.element = panel(
+      [element("h2", {}, quantity.title), this.#unit, this.#said, this.#select],
+      { class: "map-panel", "aria-label": `${quantity.title} map` },
       this.plot,
       element("div", { class: "scale" }, strip, ticks),
     );

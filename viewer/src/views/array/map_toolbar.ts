@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element, setHidden, setText } from "../../dom";
+import { button, element, setHidden, setText } from "../../dom";
 import { setting } from "../../settings";
 import { Signal } from "../../signal";
 import { TIME_SHARES, type TimeShare } from "./held_values";
@@ -69,35 +69,31 @@ function makeShare({ share }: MapChoices, actions: MapActions): HTMLElement {
     { class: "field compact", "data-role": "share", onchange: () => (share.value = select.value as TimeShare) },
     ...TIME_SHARES.map((name) => element("option", { value: name }, SHARE_WORDS[name])),
   );
-  const reset = element(
-    "button",
-    { class: "button compact", "data-role": "reset-share", onclick: () => actions.reset() },
-    "Reset",
-  );
+  const reset = button("Reset", () => actions.reset(), { class: "compact", "data-role": "reset-share" });
   share.follow((value) => setHidden(reset, value !== "highest"));
   return element("span", { class: "group" }, element("label", { class: "check" }, "Show", select), reset);
 }
 
 function makeRegion({ drawing }: MapChoices, { hasRegion, clearRegion }: MapActions): HTMLElement {
-  const button = element("button", {
-    class: `button compact ${NEEDS_FORCE}`,
-    "data-role": "draw-region",
-    title: "The force on a part of the map, here and over time: draw from corner to corner, or set both with Enter",
-    onclick: () => {
+  const draw = button(
+    "",
+    () => {
       if (hasRegion.value) clearRegion();
       else drawing.value = !drawing.value;
     },
-  });
+    {
+      class: `compact ${NEEDS_FORCE}`,
+      "data-role": "draw-region",
+      title: "The force on a part of the map, here and over time: draw from corner to corner, or set both with Enter",
+    },
+  );
   const describe = (): void => {
-    button.setAttribute("aria-pressed", String(drawing.value));
-    setText(
-      button,
-      drawing.value ? "From corner to corner \u2026" : hasRegion.value ? "Remove region" : "Draw a region",
-    );
+    draw.setAttribute("aria-pressed", String(drawing.value));
+    setText(draw, drawing.value ? "From corner to corner \u2026" : hasRegion.value ? "Remove region" : "Draw a region");
   };
   drawing.follow(describe);
   hasRegion.follow(describe);
-  return button;
+  return draw;
 }
 
 function makeMarks(): HTMLElement {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element, setData, setText } from "../../dom";
+import { element, panel, setData, setText } from "../../dom";
 import { fixed, statusWord } from "../../format";
 import type { ArrayLive } from "../../live/live_data";
 import { type RegionForce, regionName } from "../../live/region_force";
@@ -28,10 +28,9 @@ export class Summary {
 
   constructor() {
     const pairs = FIGURES.flatMap(([words], index) => [element("dt", {}, words), this.#values[index]!]);
-    this.element = element(
-      "section",
-      { class: "panel summary", "aria-label": "Total" },
-      element("header", { class: "panel-title" }, element("h2", {}, "Total of contacts")),
+    this.element = panel(
+      "Total of contacts",
+      { class: "summary", "aria-label": "Total" },
       element("p", { class: "total" }, this.#total, element("span", { class: "total-unit" }, "N"), this.#sigma),
       element("dl", { class: "pairs" }, ...pairs),
     );

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element, setData, setText } from "../../dom";
+import { element, panel, setData, setText, table } from "../../dom";
 import { engineering, fixed, statusWord } from "../../format";
 import type { GridFrame } from "../../messages/grids";
 import type { ArrayDescription } from "../../suit";
@@ -81,25 +81,11 @@ export class TaxelTable {
 
   constructor() {
     const heads = ["Taxel", "Counts", "Resistance", "Conductance", "Force", "1 \u03c3", "Pressure", "Status"];
-    this.element = element(
-      "section",
-      { class: "panel", "aria-label": "Taxels" },
-      element(
-        "header",
-        { class: "panel-title" },
-        element("h2", {}, "Taxels"),
-        element("span", { class: "dim" }, "click to pin, up to six"),
-      ),
-      element(
-        "div",
-        { class: "table-room" },
-        element(
-          "table",
-          { class: "table taxel-table" },
-          element("thead", {}, element("tr", {}, ...heads.map((head) => element("th", { scope: "col" }, head)))),
-          element("tbody", {}, this.#cursor.element, ...this.#pins.map((row) => row.element)),
-        ),
-      ),
+    const body = element("tbody", {}, this.#cursor.element, ...this.#pins.map((row) => row.element));
+    this.element = panel(
+      [element("h2", {}, "Taxels"), element("span", { class: "dim" }, "click to pin, up to six")],
+      { "aria-label": "Taxels" },
+      table(heads, "taxel-table", body),
     );
   }
 

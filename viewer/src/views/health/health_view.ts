@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element, setData, setText } from "../../dom";
+import { element, panel, setData, setText, table } from "../../dom";
 import { count, fixed } from "../../format";
+import { KeyedRows, type Row } from "../../keyed_rows";
 import { type ArrayStatistics, DiagnosticLevel, type HealthStatus, type Statistics } from "../../messages/statistics";
 import type { View, ViewContext, ViewFactory } from "../../view";
+import "./health.css";
 
 const HEADS = [
   "Array",
@@ -33,7 +35,7 @@ function known(value: number, digits: number, unit: string): string {
   return Number.isNaN(value) ? fixed(value, 0) : `${fixed(value, digits)} ${unit}`;
 }
 
-class ArrayRow {
+class ArrayRow implements Row<ArrayStatistics> {
   readonly element: HTMLTableRowElement;
   readonly #cells = HEADS.slice(1).map((head) =>
     element("td", { class: head === "State" ? "" : "figure", "data-field": head.toLowerCase() }),
@@ -79,11 +81,15 @@ class HealthView implements View {
   readonly title = "Health";
   readonly element: HTMLElement;
   readonly #context: ViewContext;
-  readonly #rows = element("tbody");
+  readonly #body = element("tbody");
+  readonly #rows = new KeyedRows<ArrayStatistics>(
+    this.#body,
+    ({ name }) => name,
+    ({ name }) => new ArrayRow(name, () => this.#context.open("array", name)),
+  );
   readonly #faults = element("ul", { class: "faults", "data-role": "faults" });
-  readonly #figures = element("dl", { class: "pairs wide-pairs", "data-role": "page-figures" });
+  readonly #figures = element("dl", { class: "pairs", "data-role": "page-figures" });
   readonly #unfollow: (() => void)[] = [];
-  #arrayRows = new Map<string, ArrayRow>();
   #seen = { ms: 0, frames: 0, messages: 0, bytes: 0 };
 
   constructor(context: ViewContext) {
@@ -91,36 +97,12 @@ class HealthView implements View {
     this.element = element(
       "div",
       { class: "view health-view", "data-view": "health" },
-      element(
-        "section",
-        { class: "panel", "aria-label": "Arrays" },
-        element("header", { class: "panel-title" }, element("h2", {}, "Arrays")),
-        element(
-          "div",
-          { class: "table-room" },
-          element(
-            "table",
-            { class: "table health-table" },
-            element("thead", {}, element("tr", {}, ...HEADS.map((head) => element("th", { scope: "col" }, head)))),
-            this.#rows,
-          ),
-        ),
-      ),
+      panel("Arrays", {}, table(HEADS, "health-table", this.#body)),
       element(
         "div",
         { class: "columns" },
-        element(
-          "section",
-          { class: "panel", "aria-label": "Faults" },
-          element("header", { class: "panel-title" }, element("h2", {}, "Faults")),
-          this.#faults,
-        ),
-        element(
-          "section",
-          { class: "panel", "aria-label": "Stream and page" },
-          element("header", { class: "panel-title" }, element("h2", {}, "Stream and page")),
-          this.#figures,
-        ),
+        panel("Faults", {}, this.#faults),
+        panel("Stream and page", {}, this.#figures),
       ),
     );
   }
@@ -172,14 +154,7 @@ class HealthView implements View {
   }
 
   #showArrays(statistics: Statistics | undefined): void {
-    if (statistics === undefined) return;
-    if (statistics.arrays.map(({ name }) => name).join("/") !== [...this.#arrayRows.keys()].join("/")) {
-      this.#arrayRows = new Map(
-        statistics.arrays.map(({ name }) => [name, new ArrayRow(name, () => this.#context.open("array", name))]),
-      );
-      this.#rows.replaceChildren(...[...this.#arrayRows.values()].map((row) => row.element));
-    }
-    for (const array of statistics.arrays) this.#arrayRows.get(array.name)!.show(array);
+    if (statistics !== undefined) this.#rows.show(statistics.arrays);
   }
 
   #showFaults(health: readonly HealthStatus[]): void {

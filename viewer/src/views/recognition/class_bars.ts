@@ -1,18 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element, setData, setHidden, setText } from "../../dom";
+import { element, panel, setData, setHidden, setText } from "../../dom";
 import { fixed } from "../../format";
+import { KeyedRows, type Row } from "../../keyed_rows";
 import type { Classification } from "../../messages/classification";
 
 const UNKNOWN = "unknown";
 
+interface Share {
+  name: string;
+  probability: number;
+  isAnswer: boolean;
+}
+
 /** A class, and how probable it is. */
-class Bar {
+class Bar implements Row<Share> {
   readonly element: HTMLElement;
   readonly #fill = element("span", { class: "class-fill" });
   readonly #share = element("span", { class: "figure" });
 
-  constructor(name: string) {
+  constructor({ name }: Share) {
     const track = element("span", { class: "class-track" }, this.#fill);
     this.element = element(
       "li",
@@ -23,7 +30,7 @@ class Bar {
     );
   }
 
-  show(probability: number, isAnswer: boolean): void {
+  show({ probability, isAnswer }: Share): void {
     const percent = fixed(100 * probability, 1);
     this.#fill.style.width = Number.isFinite(probability) ? `${percent}%` : "0";
     setText(this.#share, `${percent} %`);
@@ -39,19 +46,17 @@ export class ClassBars {
   readonly #age = element("span", { class: "dim figure", "data-role": "answer-age" });
   readonly #list = element("ul", { class: "class-bars", "data-role": "class-bars" });
   readonly #none = element("p", { class: "dim note" });
-  #bars = new Map<string, Bar>();
+  readonly #bars = new KeyedRows<Share>(
+    this.#list,
+    ({ name }) => name,
+    (share) => new Bar(share),
+  );
+  #names: readonly string[] = [];
 
   constructor() {
-    this.element = element(
-      "section",
-      { class: "panel", "aria-label": "What touches" },
-      element(
-        "header",
-        { class: "panel-title" },
-        element("h2", {}, "What touches"),
-        element("span", { class: "stretch" }),
-        this.#age,
-      ),
+    this.element = panel(
+      [element("h2", {}, "What touches"), element("span", { class: "stretch" }), this.#age],
+      { "aria-label": "What touches" },
       element("p", { class: "answer-line", "aria-live": "polite" }, this.#answer, this.#reason),
       this.#list,
       this.#none,
@@ -60,8 +65,8 @@ export class ClassBars {
 
   /** Nothing was recognised yet. */
   begin(array: string, classes: readonly string[]): void {
-    this.#bars = new Map(classes.map((name) => [name, new Bar(name)]));
-    this.#list.replaceChildren(...[...this.#bars.values()].map((bar) => bar.element));
+    this.#names = classes;
+    this.#bars.show(classes.map((name) => ({ name, probability: 0, isAnswer: false })));
     setHidden(this.#list, classes.length === 0);
     setHidden(this.#none, classes.length > 0);
     setText(
@@ -71,7 +76,6 @@ export class ClassBars {
     setText(this.#answer, "");
     setText(this.#reason, classes.length > 0 ? "nothing was recognised yet" : "");
     setText(this.#age, "");
-    for (const bar of this.#bars.values()) bar.show(0, false);
   }
 
   show({ answer, reason, classes, stampS }: Classification): void {
@@ -89,8 +93,14 @@ export class ClassBars {
         ? `${fixed(100 * (first?.probability ?? NaN), 1)} %`
         : `${reason}${reason.startsWith("between") ? between : ""}`,
     );
-    for (const { name, probability } of classes)
-      this.#bars.get(name)?.show(probability, name === answer && reason === "");
+    const shares = new Map(classes.map(({ name, probability }) => [name, probability]));
+    this.#bars.show(
+      this.#names.map((name) => ({
+        name,
+        probability: shares.get(name) ?? 0,
+        isAnswer: name === answer && reason === "",
+      })),
+    );
   }
 
   showAge(seconds: number): void {

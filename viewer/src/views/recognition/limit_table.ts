@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element, setData, setText } from "../../dom";
+import { element, panel, setData, setText, table } from "../../dom";
 import { timeOfDay, withUnit } from "../../format";
+import { KeyedRows, type Row } from "../../keyed_rows";
 import { stands, type Threat, ThreatState } from "../../messages/threat";
 
 const { clear, crossed, active, latched } = ThreatState;
@@ -14,53 +15,17 @@ const STATE_WORDS: Record<number, string> = {
 const STATE_LEVELS: Record<number, string> = { [clear]: "good", [crossed]: "warn", [active]: "bad", [latched]: "bad" };
 const HEADS = ["Limit", "Where", "Quantity", "Limit at", "Now", "1 \u03c3", "State"];
 
-/** How every limit stands. */
-export class LimitTable {
+class LimitRow implements Row<Threat> {
   readonly element: HTMLElement;
-  readonly #rows = element("tbody", { "data-role": "limits" });
-  readonly #none = element(
-    "p",
-    { class: "dim note" },
-    "No limits are watched: write them (docs/threats.md) and serve them (dermis serve --threats).",
+  readonly #cells = HEADS.slice(1).map((head) =>
+    element("td", { class: "figure", "data-field": head === "State" ? "state" : undefined }),
   );
-  #names = "";
 
-  constructor() {
-    const head = element("thead", {}, element("tr", {}, ...HEADS.map((text) => element("th", { scope: "col" }, text))));
-    this.element = element(
-      "section",
-      { class: "panel", "aria-label": "Limits" },
-      element(
-        "header",
-        { class: "panel-title" },
-        element("h2", {}, "Limits"),
-        element("span", { class: "dim" }, "no safety function"),
-      ),
-      element("div", { class: "table-room" }, element("table", { class: "table" }, head, this.#rows)),
-      this.#none,
-    );
+  constructor({ name }: Threat) {
+    this.element = element("tr", { "data-limit": name }, element("th", { scope: "row" }, name), ...this.#cells);
   }
 
-  show(limits: readonly Threat[]): void {
-    const names = limits.map(({ name, array }) => `${array}/${name}`).join("\n");
-    if (names !== this.#names) {
-      this.#names = names;
-      this.#rows.replaceChildren(
-        ...limits.map(({ name }) =>
-          element(
-            "tr",
-            { "data-limit": name },
-            element("th", { scope: "row" }, name),
-            ...HEADS.slice(1).map(() => element("td", { class: "figure" })),
-          ),
-        ),
-      );
-    }
-    this.#none.hidden = limits.length > 0;
-    limits.forEach((threat, row) => this.#showRow(this.#rows.children[row] as HTMLElement, threat));
-  }
-
-  #showRow(row: HTMLElement, { array, zone, quantity, limit, unit, value, sigma, state }: Threat): void {
+  show({ array, zone, quantity, limit, unit, value, sigma, state }: Threat): void {
     const texts = [
       zone === "" ? array : `${array}, ${zone}`,
       quantity.replaceAll("_", " "),
@@ -69,10 +34,38 @@ export class LimitTable {
       withUnit(sigma, unit),
       STATE_WORDS[state] ?? String(state),
     ];
-    texts.forEach((text, column) => setText(row.children[column + 1] as HTMLElement, text));
-    const last = row.lastElementChild as HTMLElement;
-    setData(last, "field", "state");
-    setData(last, "level", STATE_LEVELS[state] ?? "warn");
+    this.#cells.forEach((cell, column) => setText(cell, texts[column]!));
+    setData(this.#cells.at(-1)!, "level", STATE_LEVELS[state] ?? "warn");
+  }
+}
+
+/** How every limit stands. */
+export class LimitTable {
+  readonly element: HTMLElement;
+  readonly #body = element("tbody", { "data-role": "limits" });
+  readonly #rows = new KeyedRows<Threat>(
+    this.#body,
+    ({ array, name }) => `${array}/${name}`,
+    (threat) => new LimitRow(threat),
+  );
+  readonly #none = element(
+    "p",
+    { class: "dim note" },
+    "No limits are watched: write them (docs/threats.md) and serve them (dermis serve --threats).",
+  );
+
+  constructor() {
+    this.element = panel(
+      [element("h2", {}, "Limits"), element("span", { class: "dim" }, "no safety function")],
+      { "aria-label": "Limits" },
+      table(HEADS, "", this.#body),
+      this.#none,
+    );
+  }
+
+  show(limits: readonly Threat[]): void {
+    this.#rows.show(limits);
+    this.#none.hidden = limits.length > 0;
   }
 }
 
@@ -82,12 +75,7 @@ export class ThreatLog {
   readonly #list = element("ul", { class: "threat-log", "data-role": "threat-log" });
 
   constructor() {
-    this.element = element(
-      "section",
-      { class: "panel", "aria-label": "Log of threats" },
-      element("header", { class: "panel-title" }, element("h2", {}, "Log")),
-      this.#list,
-    );
+    this.element = panel("Log", { "aria-label": "Log of threats" }, this.#list);
   }
 
   show(log: readonly Threat[]): void {

@@ -6,6 +6,7 @@ import type { View, ViewContext, ViewFactory } from "../../view";
 import { ClassBars } from "./class_bars";
 import { LimitTable, ThreatLog } from "./limit_table";
 import { TeachPanel } from "./teach_panel";
+import "./recognition.css";
 
 const AGE_PERIOD_MS = 200;
 

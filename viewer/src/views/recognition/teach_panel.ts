@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element, setHidden, setText } from "../../dom";
-import { fixed } from "../../format";
+import { button, element, panel, setHidden, setText } from "../../dom";
+import { errorText, fixed } from "../../format";
+import { KeyedRows, type Row } from "../../keyed_rows";
 import { rgbOf } from "../../render/color_map";
 import type { Stream } from "../../stream/stream";
 import type { ArrayDescription } from "../../suit";
@@ -52,6 +53,28 @@ function thumbnail(
   );
 }
 
+/** A class and its examples. */
+class TaughtClass implements Row<[string, TaughtTouch[]]> {
+  readonly element: HTMLElement;
+  readonly #title = element("strong");
+  readonly #list = element("span", { class: "examples" });
+  readonly #examples: KeyedRows<TaughtTouch>;
+
+  constructor(name: string, picture: (touch: TaughtTouch) => HTMLElement) {
+    this.element = element("li", { "data-taught": name }, this.#title, this.#list);
+    this.#examples = new KeyedRows(
+      this.#list,
+      ({ id }) => String(id),
+      (touch) => ({ element: picture(touch) }),
+    );
+  }
+
+  show([name, touches]: [string, TaughtTouch[]]): void {
+    setText(this.#title, `${name} (${touches.length})`);
+    this.#examples.show(touches);
+  }
+}
+
 /** Names touches, collects them and has classes learned of them. */
 export class TeachPanel {
   readonly element: HTMLElement;
@@ -69,31 +92,31 @@ export class TeachPanel {
     { class: "button primary", "data-role": "teach-listen", type: "submit" },
     "Begin",
   );
-  readonly #train = element(
-    "button",
-    { class: "button", "data-role": "teach-train", disabled: true, onclick: () => void this.#learn() },
-    "Train",
-  );
+  readonly #train = button("Train", () => void this.#learn(), { "data-role": "teach-train", disabled: true });
   readonly #saved = element("select", { class: "field", "data-role": "teach-saved" });
   readonly #before = element(
     "div",
     { class: "teach-form", "data-role": "teach-before", hidden: true },
     element("label", {}, "Taught before", this.#saved),
-    element(
-      "button",
-      { class: "button", type: "button", "data-role": "teach-load", onclick: () => void this.#load() },
-      "Load",
-    ),
+    button("Load", () => void this.#load(), { "data-role": "teach-load" }),
   );
   readonly #status = element("p", { class: "note", role: "status", "data-role": "teach-status" });
-  readonly #classes = element("ul", { class: "taught", "data-role": "taught" });
-  readonly #lines = element("ul", { class: "note dim", "data-role": "teach-warnings" });
+  readonly #taught = element("ul", { class: "taught", "data-role": "taught" });
+  readonly #classes = new KeyedRows<[string, TaughtTouch[]]>(
+    this.#taught,
+    ([name]) => name,
+    ([name]) => new TaughtClass(name, (touch) => this.#picture(touch)),
+  );
+  readonly #warnings = element("ul", { class: "note dim", "data-role": "teach-warnings" });
+  readonly #lines = new KeyedRows<string>(
+    this.#warnings,
+    (line) => line,
+    (line) => ({ element: element("li", {}, line) }),
+  );
   readonly #result = element("ul", { class: "note", "data-role": "teach-result" });
-  readonly #pictures = new Map<number, HTMLElement>();
   #array: ArrayDescription | undefined;
   #known = 0;
   #listening = "";
-  #shown = "";
   #pollMs = 0;
   #isBusy = false;
 
@@ -113,15 +136,14 @@ export class TeachPanel {
       event.preventDefault();
       void this.#toggle();
     });
-    this.element = element(
-      "section",
-      { class: "panel", "aria-label": "Teach touches", "data-role": "teach" },
-      element("header", { class: "panel-title" }, element("h2", {}, "Teach touches")),
+    this.element = panel(
+      "Teach touches",
+      { "data-role": "teach" },
       form,
       this.#before,
       this.#status,
-      this.#classes,
-      this.#lines,
+      this.#taught,
+      this.#warnings,
       this.#result,
     );
     stream.services.follow((services) => {
@@ -133,9 +155,7 @@ export class TeachPanel {
   begin(array: ArrayDescription): void {
     this.#array = array;
     this.#known = 0;
-    this.#shown = "";
-    this.#pictures.clear();
-    this.#classes.replaceChildren();
+    this.#classes.show([]);
     this.#result.replaceChildren();
     void this.#listSaved();
   }
@@ -185,14 +205,7 @@ export class TeachPanel {
     const answer = (await this.#call("/recognition/examples", { known: this.#known })) as Examples | undefined;
     if (answer === undefined || array !== this.#array || array === undefined) return;
     this.#listening = answer.listening;
-    for (const touch of answer.examples) {
-      this.#known = Math.max(this.#known, touch.id);
-      if (touch.picture !== undefined)
-        this.#pictures.set(
-          touch.id,
-          thumbnail(touch, array, () => void this.#call("/recognition/throw_away", { example: touch.id })),
-        );
-    }
+    this.#known = Math.max(this.#known, ...answer.examples.map(({ id }) => id));
     this.#show(answer);
   }
 
@@ -215,20 +228,13 @@ export class TeachPanel {
           : "Name another class, or train.",
     );
     this.#train.disabled = listening !== "" || lacking !== "";
-    const ids = examples.map(({ id }) => id).join();
-    if (ids === this.#shown) return;
-    this.#shown = ids;
-    this.#classes.replaceChildren(
-      ...[...byClass(examples)].map(([name, touches]) =>
-        element(
-          "li",
-          { "data-taught": name },
-          element("strong", {}, `${name} (${touches.length})`),
-          element("span", { class: "examples" }, ...touches.map(({ id }) => this.#pictures.get(id) ?? "")),
-        ),
-      ),
-    );
-    this.#lines.replaceChildren(...warnings(examples).map((line) => element("li", {}, line)));
+    this.#classes.show([...byClass(examples)]);
+    this.#lines.show(warnings(examples));
+  }
+
+  #picture(touch: TaughtTouch): HTMLElement {
+    const throwAway = (): void => void this.#call("/recognition/throw_away", { example: touch.id });
+    return thumbnail(touch, this.#array!, throwAway);
   }
 
   /** One call of the poll at a time. */
@@ -246,9 +252,7 @@ export class TeachPanel {
       return await this.#stream.callService(service, { array: this.#array?.name ?? "", ...request });
     } catch (error) {
       if (!SILENT.includes(service))
-        this.#result.replaceChildren(
-          element("li", { class: "attention" }, error instanceof Error ? error.message : String(error)),
-        );
+        this.#result.replaceChildren(element("li", { class: "attention" }, errorText(error)));
       return undefined;
     }
   }

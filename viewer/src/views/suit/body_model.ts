@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import * as three from "three";
+import { errorText } from "../../format";
 import type { BodyDescription, BodyVisual, PlacedPose } from "../../suit";
 
 const ROUND = 32;
@@ -84,9 +85,7 @@ export class BodyModel {
         holder.add(mesh);
         changed();
       })
-      .catch((error: unknown) =>
-        failed(`${visual.name ?? file}: ${error instanceof Error ? error.message : String(error)}`),
-      );
+      .catch((error: unknown) => failed(`${visual.name ?? file}: ${errorText(error)}`));
   }
 
   move(name: string, pose: PlacedPose): void {

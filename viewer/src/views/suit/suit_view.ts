@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element, setData, setHidden, setText } from "../../dom";
+import { button, element, setData, setHidden, setText } from "../../dom";
 import { fixed } from "../../format";
 import { type PointsFrame, readPoints } from "../../messages/grids";
 import { readTransforms } from "../../messages/transforms";
@@ -231,7 +231,7 @@ class SuitView implements View {
       { class: "toolbar" },
       element("div", { class: "scale suit-scale" }, strip, this.#ticks),
       select,
-      element("button", { class: "button", onclick: () => this.#scene?.home() }, "Whole suit"),
+      button("Whole suit", () => this.#scene?.home()),
       element("p", { class: "dim" }, "Drag to turn, scroll to come nearer, click an array to open it"),
     );
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import uPlot from "uplot";
-import { element, setText } from "../../dom";
+import { element, panel, setText } from "../../dom";
 import { fixed } from "../../format";
 import type { TimedEvent } from "../../live/event_log";
 import { BIN_S, type ForceHistory } from "../../live/force_history";
@@ -40,10 +40,9 @@ export class ForcePlot {
   #nowS = 0;
 
   constructor(title: string, role: string) {
-    this.element = element(
-      "section",
-      { class: "panel plot-panel", "data-role": role },
-      element("header", { class: "panel-title" }, this.#title, this.#unit, this.#legend),
+    this.element = panel(
+      [this.#title, this.#unit, this.#legend],
+      { class: "plot-panel", "data-role": role },
       this.#room,
     );
     this.setTitle(title, "N");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import "uplot/dist/uPlot.min.css";
-import { element, setHidden, setText } from "../../dom";
+import { button, element, setHidden, setText } from "../../dom";
 import { fixed } from "../../format";
 import { SLOTS } from "../../live/contact_slots";
 import { EVENT_KINDS } from "../../live/event_log";
@@ -12,6 +12,7 @@ import type { View, ViewContext, ViewFactory } from "../../view";
 import { EVENT_LOOKS } from "./event_marks";
 import { ForcePlot, type Line } from "./force_plot";
 import { ReadingHistories } from "./reading_histories";
+import "./time.css";
 
 const WINDOWS_S = [10, 60];
 const PERIOD_MS = 45;
@@ -128,16 +129,11 @@ class TimeView implements View {
         element("legend", { class: "only-spoken" }, "Window"),
         ...WINDOWS_S.map(choice),
       ),
-      element(
-        "button",
-        {
-          class: "button compact",
-          "data-role": "mark",
-          title: "A line at this moment (M)",
-          onclick: () => this.#mark(),
-        },
-        "Mark this moment",
-      ),
+      button("Mark this moment", () => this.#mark(), {
+        class: "compact",
+        "data-role": "mark",
+        title: "A line at this moment (M)",
+      }),
       this.#lastEvent,
       element("p", { class: "marks dim" }, ...kinds),
     );
