@@ -6,6 +6,8 @@ import { ConnectionPill } from "./connection_pill";
 import { makeUndoTare } from "./tare_banner";
 import "./bar.css";
 
+const ACTIONS = "bar-actions";
+
 export interface BarActions {
   toggleRecording(): void;
   togglePause(): void;
@@ -39,27 +41,12 @@ export class Bar {
       makeSelector(context),
       element("span", { class: "stretch" }),
       this.#pill.element,
-      makeRecord(context, actions),
-      makePause(context, actions),
-      makeTare(context, actions),
-      makeUndoTare(context.stream),
-      button("Save", () => actions.showTake(), {
-        "data-role": "show-take",
-        title: "Recordings, the last minute, pictures (S)",
-      }),
-      button("Thresholds", () => actions.showThresholds(), { "data-role": "show-thresholds" }),
-      button("\u25d0", () => context.theme.toggle(), {
-        class: "icon",
-        "data-role": "theme",
-        "aria-label": "Light or dark",
-        title: "Light or dark (D)",
-      }),
-      button("?", () => actions.showHelp(), {
-        class: "icon",
-        "data-role": "show-help",
-        "aria-label": "Keys",
-        title: "Keys (?)",
-      }),
+      element(
+        "button",
+        { class: "button icon bar-menu", popovertarget: ACTIONS, "aria-label": "More", "data-role": "more" },
+        "\u22ef",
+      ),
+      makeActions(context, actions),
     );
   }
 
@@ -78,6 +65,35 @@ export class Bar {
     event.preventDefault();
     context.open(name);
   }
+}
+
+/** A menu where the page is narrow. */
+function makeActions(context: ViewContext, actions: BarActions): HTMLElement {
+  return element(
+    "div",
+    { id: ACTIONS, class: "bar-actions", popover: "auto" },
+    makeRecord(context, actions),
+    makePause(context, actions),
+    makeTare(context, actions),
+    makeUndoTare(context.stream),
+    button("Save", () => actions.showTake(), {
+      "data-role": "show-take",
+      title: "Recordings, the last minute, pictures (S)",
+    }),
+    button("Thresholds", () => actions.showThresholds(), { "data-role": "show-thresholds" }),
+    button("\u25d0", () => context.theme.toggle(), {
+      class: "icon",
+      "data-role": "theme",
+      "aria-label": "Light or dark",
+      title: "Light or dark (D)",
+    }),
+    button("?", () => actions.showHelp(), {
+      class: "icon",
+      "data-role": "show-help",
+      "aria-label": "Keys",
+      title: "Keys (?)",
+    }),
+  );
 }
 
 function makeSuitName({ suit }: ViewContext): HTMLElement {

@@ -30,3 +30,13 @@ test("a label without a free place nearby is left out", () => {
   const placed = Array.from({ length: 9 }, () => room.place(label(50, 20)));
   expect(placed.at(-1)).toBeUndefined();
 });
+
+test("a label stands outside of a circle, and on it only where there is no other place", () => {
+  const room = new LabelRoom(400, 300);
+  room.avoid({ x: 200, y: 100, radius: 20 });
+  const beside = room.place(label(200, 100))!;
+  expect(Math.max(Math.abs(beside.x - 200) - 30, Math.abs(beside.y - 100) - 8)).toBeGreaterThanOrEqual(20);
+  const full = new LabelRoom(100, 60);
+  full.avoid({ x: 50, y: 30, radius: 200 });
+  expect(full.place(label(50, 30))).toEqual(label(50, 30));
+});

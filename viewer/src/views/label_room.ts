@@ -9,6 +9,13 @@ export interface LabelBox {
   height: number;
 }
 
+/** By its middle, in CSS pixels. */
+interface Circle {
+  x: number;
+  y: number;
+  radius: number;
+}
+
 const GAP = 2;
 /** Where a label is tried, in its own widths and heights from where it belongs: the nearest first. */
 const STEPS: readonly (readonly [number, number])[] = [
@@ -41,9 +48,16 @@ function overlap(a: LabelBox, b: LabelBox): boolean {
   );
 }
 
+function meets({ x, y, width, height }: LabelBox, circle: Circle): boolean {
+  const right = Math.max(0, Math.abs(x - circle.x) - 0.5 * width);
+  const down = Math.max(0, Math.abs(y - circle.y) - 0.5 * height);
+  return Math.hypot(right, down) < circle.radius + GAP;
+}
+
 /** Gives each label a place in the picture that no other label takes. */
 export class LabelRoom {
   readonly #taken: LabelBox[] = [];
+  readonly #avoided: Circle[] = [];
 
   constructor(
     readonly width: number,
@@ -55,15 +69,24 @@ export class LabelRoom {
     this.#taken.push(box);
   }
 
+  /** Labels stand outside of this while there is room for them. */
+  avoid(circle: Circle): void {
+    this.#avoided.push(circle);
+  }
+
   /** The nearest free place inside the picture, which is taken from now on; undefined: there is none near enough. */
   place(wanted: LabelBox): LabelBox | undefined {
+    return this.#placeOutside(wanted, this.#avoided) ?? this.#placeOutside(wanted, []);
+  }
+
+  #placeOutside(wanted: LabelBox, circles: readonly Circle[]): LabelBox | undefined {
     for (const [right, down] of STEPS) {
       const box = this.#inside({
         ...wanted,
         x: wanted.x + right * (wanted.width + GAP),
         y: wanted.y + down * (wanted.height + GAP),
       });
-      if (this.#taken.some((other) => overlap(box, other))) continue;
+      if (this.#taken.some((other) => overlap(box, other)) || circles.some((circle) => meets(box, circle))) continue;
       this.#taken.push(box);
       return box;
     }

@@ -196,7 +196,9 @@ export class Overlay {
       this.#drawTrail(live, live.slots.indexOf(contact.id), originX, originY, pixelsX, pixelsY);
       const [x, y] = [originX + contact.x * pixelsX, originY + contact.y * pixelsY];
       this.#drawOutline(contact, x, y, pixelsX, pixelsY);
-      room.take({ x: x - area.left, y: y - area.top, width: MIDDLE_PIXELS, height: MIDDLE_PIXELS });
+      const middle = { x: x - area.left, y: y - area.top };
+      room.take({ ...middle, width: MIDDLE_PIXELS, height: MIDDLE_PIXELS });
+      room.avoid({ ...middle, radius: Math.sqrt(contact.areaM2 / Math.PI) * Math.max(pixelsX, pixelsY) });
     }
     for (const contact of touching) {
       const reach = 0.75 * Math.sqrt(contact.areaM2 / Math.PI);
