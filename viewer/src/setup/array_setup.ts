@@ -91,14 +91,24 @@ export function makeArraySetup(stream: Stream, suit: Suit, theme: Theme): HTMLEl
     if (shape === undefined || !stream.services.value.has("/array/watch")) feed.stop();
     else void feed.watch(shape);
   };
-  stream.services.follow(watch); // they come after the description
+  const submit = element("button", { class: "button primary large-button", type: "submit" }, "Show it");
+  // They come after the description.
+  stream.services.follow((services) => {
+    submit.disabled = !services.has("/array/describe");
+    watch();
+  });
+  /** The guide to the corners has begun meanwhile: its rest must not be learned anew while somebody presses. */
+  const isWatched = (): boolean => {
+    const [shape, watched] = [sentShape(), feed.shape];
+    return shape !== undefined && shape.rows === watched?.rows && shape.cols === watched.cols;
+  };
   let typing = 0;
   for (const input of [rows, cols]) {
     input.addEventListener("input", () => {
       isSwapped = false;
       corners.forget();
       window.clearTimeout(typing);
-      typing = window.setTimeout(watch, TYPING_MS);
+      typing = window.setTimeout(() => isWatched() || watch(), TYPING_MS);
     });
   }
   feed.latest.follow((touch) => {
@@ -158,7 +168,7 @@ export function makeArraySetup(stream: Stream, suit: Suit, theme: Theme): HTMLEl
     ...field("Bits of the ADC (10: Arduino Uno, 12: ESP32)", bits),
     element("p", { class: "dim" }, "This becomes an array.toml. The circuit is found by the calibration."),
     problem,
-    element("button", { class: "button primary large-button", type: "submit" }, "Show it"),
+    submit,
   );
   form.addEventListener("submit", (event) => {
     event.preventDefault();

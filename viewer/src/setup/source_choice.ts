@@ -85,12 +85,8 @@ export function makeSourceChoice(stream: Stream, known: KnownArrays): HTMLElemen
   }
 
   const recordingPart = part("A recording of this folder", recordings);
-  const network = element(
-    "form",
-    { class: "setup-row", "data-role": "network" },
-    address,
-    element("button", { class: "button", type: "submit" }, "Connect"),
-  );
+  const connect = element("button", { class: "button", type: "submit" }, "Connect");
+  const network = element("form", { class: "setup-row", "data-role": "network" }, address, connect);
   network.addEventListener("submit", (event) => {
     event.preventDefault();
     void open({ address: address.value.trim() }, address.value.trim());
@@ -118,6 +114,7 @@ export function makeSourceChoice(stream: Stream, known: KnownArrays): HTMLElemen
     part("In the simulator", simulations),
   );
   stream.services.follow((services) => {
+    connect.disabled = !services.has("/source/open");
     if (services.has("/source/list")) void look();
   });
   known.chosen.follow((chosen) => setText(words, chosen === undefined ? "" : `Where is ${chosen.name} now?`));

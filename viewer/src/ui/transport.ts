@@ -59,6 +59,8 @@ export class Transport {
     stream.serverInfo.follow((info) => this.#begin(info));
     stream.playback.follow((state) => {
       if (state !== undefined) this.#clock?.tell(state, performance.now());
+      // Before it is known, a seek would say whether to play, too.
+      setHidden(this.element, this.#clock === undefined || state === undefined);
     });
   }
 
@@ -98,7 +100,7 @@ export class Transport {
     const { dataStartTime: start, dataEndTime: end } = info ?? {};
     const canPlay = info?.capabilities.includes("playbackControl") === true && start !== undefined && end !== undefined;
     this.#clock = canPlay ? new PlaybackClock(secondsOf(start), secondsOf(end)) : undefined;
-    setHidden(this.element, !canPlay);
+    setHidden(this.element, true);
     if (this.#clock !== undefined) setText(this.#length, clock(this.#clock.lengthS));
   }
 
