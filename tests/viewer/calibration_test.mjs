@@ -4,11 +4,20 @@
 import assert from "node:assert/strict";
 import { readdirSync, writeFileSync } from "node:fs";
 import { it } from "node:test";
-import { arrayToml, assertUnhurt, becomes, bench, browser, openPage, readCsv, useBench, WAIT_MS } from "./harness.mjs";
+import {
+  arrayToml,
+  assertUnhurt,
+  becomes,
+  bench,
+  browser,
+  openPage,
+  part,
+  readCsv,
+  useBench,
+  WAIT_MS,
+} from "./harness.mjs";
 
 useBench(() => writeFileSync(bench.path("palm.toml"), arrayToml("palm", 2, 3)));
-
-const part = (page, role) => page.locator(`[data-role=${role}]`);
 
 /** Until the guide says something of the pattern. */
 async function hears(page, pattern) {

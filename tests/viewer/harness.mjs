@@ -53,6 +53,45 @@ export function freePort() {
   });
 }
 
+/** `dermis serve` in a folder and with these arguments, once it says where it serves. */
+async function serve(binary, folder, ...command) {
+  const server = spawn(binary, ["serve", ...command], { stdio: ["ignore", "pipe", "pipe"], cwd: folder });
+  const ended = new Promise((resolve) => server.on("exit", resolve));
+  let said = "";
+  const url = await new Promise((found, reject) => {
+    const hear = (text) => {
+      said += text;
+      const address = /http:\/\/[^\s/]+\//.exec(said);
+      if (address !== null) found(address[0]);
+    };
+    server.stdout.on("data", hear);
+    server.stderr.on("data", hear);
+    ended.then((status) => reject(new Error(`serve ended with ${status}: ${said}`)));
+  });
+  const stop = () => {
+    server.kill("SIGINT");
+    return ended;
+  };
+  return { url, port: Number(new URL(url).port), stop };
+}
+
+/** A device on the network that says something every so often. */
+export async function networkDevice(say, periodMs = 20) {
+  const sockets = new Set();
+  const server = createServer((socket) => {
+    const timer = setInterval(() => socket.destroyed || socket.write(say()), periodMs);
+    sockets.add(socket);
+    socket.on("error", () => undefined).on("close", () => clearInterval(timer));
+  });
+  await new Promise((listening) => server.listen(0, "127.0.0.1", listening));
+  const address = `127.0.0.1:${server.address().port}`;
+  const close = () => {
+    server.close();
+    for (const socket of sockets) socket.destroy();
+  };
+  return { address, uri: `tcp://${address}`, close };
+}
+
 /** A temporary folder with array.toml, model.safetensors, recording.mcap (200 frames, a second apart), and as CSV its counts
  *  and what `dermis run` makes of it. */
 export class Bench {
@@ -94,30 +133,8 @@ export class Bench {
     execFileSync(this.binary, command, { stdio: ["ignore", "ignore", "pipe"], timeout: 120000 });
   }
 
-  /** `dermis serve` with these arguments, once it says where it serves. */
-  async serve(...command) {
-    const server = spawn(this.binary, ["serve", ...command], { stdio: ["ignore", "pipe", "pipe"], cwd: this.folder });
-    let said = "";
-    const url = await new Promise((found, reject) => {
-      const hear = (text) => {
-        said += text;
-        const address = /http:\/\/[^\s/]+\//.exec(said);
-        if (address !== null) found(address[0]);
-      };
-      server.stdout.on("data", hear);
-      server.stderr.on("data", hear);
-      server.on("exit", (status) => reject(new Error(`serve ended with ${status}: ${said}`)));
-    });
-    return {
-      url,
-      port: Number(new URL(url).port),
-      stop: () =>
-        new Promise((ended) => {
-          server.removeAllListeners("exit");
-          server.on("exit", ended);
-          server.kill("SIGINT");
-        }),
-    };
+  serve(...command) {
+    return serve(this.binary, this.folder, ...command);
   }
 
   close() {
@@ -160,9 +177,12 @@ export function assertUnhurt(page) {
   assert.deepEqual(page.failures, []);
 }
 
-/** Those of useBench(), during the tests of a file. */
+export const part = (page, role) => page.locator(`[data-role=${role}]`);
+
+/** Those of useBench() or useEmptyFolder(), during the tests of a file. */
 export let bench;
 export let browser;
+export let folder;
 
 /** The tests of this file share a bench and a browser; `prepare()` adds to the bench what they need. */
 export function useBench(prepare = () => {}) {
@@ -176,6 +196,21 @@ export function useBench(prepare = () => {}) {
     bench?.close();
   });
 }
+
+/** The tests of this file share a browser and a folder in which nothing is written yet. */
+export function useEmptyFolder() {
+  before(async () => {
+    folder = mkdtempSync(join(tmpdir(), "dermis-viewer-"));
+    browser = await openBrowser();
+  });
+  after(async () => {
+    await browser?.close();
+    rmSync(folder, { recursive: true, force: true });
+  });
+}
+
+/** `dermis serve` in that folder, on any port. */
+export const serveEmpty = (...command) => serve(resolve(process.argv[2]), folder, "--port", "0", ...command);
 
 /** Becomes true in the page. */
 export async function eventually(page, check, argument, limitMs = WAIT_MS) {

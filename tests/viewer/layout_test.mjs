@@ -4,7 +4,6 @@
 // Measures the boxes of all texts and controls of each view: nothing is cut, nothing lies over something else.
 import assert from "node:assert/strict";
 import { writeFileSync } from "node:fs";
-import { createServer } from "node:net";
 import { it } from "node:test";
 import {
   arrayToml,
@@ -12,8 +11,10 @@ import {
   becomes,
   bench,
   browser,
+  networkDevice,
   openPage,
   readCsv,
+  shown,
   useBench,
   VIEWS,
   WAIT_MS,
@@ -27,6 +28,8 @@ const SIZES = [
 const ARRAYS = ["chest", "back", "left_arm", "right_arm", "left_shoulder"];
 const CONTACTS = 12;
 const SIDE = 16;
+/** The bar, and the title of a map, on a telephone. */
+const HIGHEST_BAR_PX = 130;
 
 useBench(() => {
   const array = ["--array", bench.path("whole.toml")];
@@ -46,18 +49,9 @@ async function crowdedDevice() {
   const pressed = new Set(
     Array.from({ length: CONTACTS }, (_, contact) => SIDE * (2 + 5 * Math.floor(contact / 4)) + 2 + 4 * (contact % 4)),
   );
-  const server = createServer((socket) => {
-    const timer = setInterval(() => {
-      const counts = rest.map((count, taxel) =>
-        Math.max(0, Math.round(count + (pressed.has(taxel) ? 400 : 0) + Math.random())),
-      );
-      if (!socket.destroyed) socket.write(`${counts.join(",")}\n`);
-    }, 20);
-    socket.on("error", () => undefined);
-    socket.on("close", () => clearInterval(timer));
-  });
-  await new Promise((listening) => server.listen(0, "127.0.0.1", listening));
-  return server;
+  const counts = () =>
+    rest.map((count, taxel) => Math.max(0, Math.round(count + (pressed.has(taxel) ? 400 : 0) + Math.random())));
+  return networkDevice(() => `${counts().join(",")}\n`);
 }
 
 /** Serves a suit of five arrays, the first of them with twelve contacts. */
@@ -65,7 +59,7 @@ async function serveCrowd() {
   const device = await crowdedDevice();
   const array = (name, index) => `[[array]]
 name = "${name}"
-from = "${index === 0 ? `tcp://127.0.0.1:${device.address().port}?rows=${SIDE}&cols=${SIDE}` : `sim:contacts?rate=100&seed=${index}`}"
+from = "${index === 0 ? `${device.uri}?rows=${SIDE}&cols=${SIDE}` : `sim:contacts?rate=100&seed=${index}`}"
 model = "${index === 0 ? "whole" : "model"}.safetensors"
 base_from_array = {translation_mm = [${180 * index}, 0, 0]}
 `;
@@ -208,39 +202,58 @@ it("shows the whole guide to somebody with a telephone beside the mat", async ()
   }
 });
 
+it("begins with the map on a telephone, and has what the bar offers in a menu", async () => {
+  await shown(["--from", "sim:contacts?rate=100", ...bench.model], "array", async (page) => {
+    await page.setViewportSize(SIZES[0]);
+    for (const [view, map] of [
+      ["array", ".map-plot:visible"],
+      ["suit", ".suit-room"],
+    ]) {
+      await page.locator(`[data-tab=${view}]`).click();
+      const { y } = await page.locator(map).boundingBox();
+      assert.ok(y <= HIGHEST_BAR_PX, `${view} begins at ${y} px`);
+    }
+    assert.ok(await page.locator("[data-role=tare]").isHidden());
+    await page.locator("[data-role=more]").click();
+    for (const role of ["record", "pause", "tare", "show-take", "show-thresholds", "theme", "show-help"])
+      assert.ok(await page.locator(`[data-role=${role}]`).isVisible(), role);
+    await page.locator("[data-role=pause]").click();
+    await page.locator("[data-role=connection]", { hasText: "Paused" }).waitFor();
+    await page.locator("[data-role=show-help]").click();
+    await page.locator("dialog[open]").waitFor();
+  });
+});
+
 for (const size of SIZES) {
-  for (const colorScheme of ["light", "dark"]) {
-    it(`cuts nothing and lays nothing over another at ${size.width} px, ${colorScheme}, with five arrays and twelve contacts`, async () => {
-      const server = await serveCrowd();
-      try {
-        const page = await openPage(browser, server.url);
-        await page.addInitScript(keepLabels);
-        await page.reload();
-        await page.emulateMedia({ colorScheme });
-        await page.setViewportSize(size);
-        await becomes(page, "live");
-        await page.waitForFunction(
-          (most) => Number(document.querySelector("dd[data-role=contacts]").textContent) >= most,
-          CONTACTS,
-          { timeout: WAIT_MS },
-        );
-        const found = {};
-        for (const view of VIEWS) {
-          await page.locator(`[data-tab=${view}]`).click();
-          await page.locator(`[data-view=${view}]`).waitFor();
-          await fill[view]?.(page);
-          await page.waitForTimeout(400);
-          const faults = await page.evaluate(faultsOfBoxes);
-          if (view === "array") faults.push(...(await page.evaluate(faultsOfLabels)));
-          if (view === "suit") assert.ok((await page.locator(".suit-room").boundingBox()).height > 300);
-          if (faults.length > 0) found[view] = faults;
-        }
-        assert.deepEqual(found, {});
-        assertUnhurt(page);
-        await page.close();
-      } finally {
-        await server.stop();
+  it(`cuts nothing and lays nothing over another at ${size.width} px, with five arrays and twelve contacts`, async () => {
+    const server = await serveCrowd();
+    try {
+      const page = await openPage(browser, server.url);
+      await page.addInitScript(keepLabels);
+      await page.reload();
+      await page.setViewportSize(size);
+      await becomes(page, "live");
+      await page.waitForFunction(
+        (most) => Number(document.querySelector("dd[data-role=contacts]").textContent) >= most,
+        CONTACTS,
+        { timeout: WAIT_MS },
+      );
+      const found = {};
+      for (const view of VIEWS) {
+        await page.locator(`[data-tab=${view}]`).click();
+        await page.locator(`[data-view=${view}]`).waitFor();
+        await fill[view]?.(page);
+        await page.waitForTimeout(400);
+        const faults = await page.evaluate(faultsOfBoxes);
+        if (view === "array") faults.push(...(await page.evaluate(faultsOfLabels)));
+        if (view === "suit") assert.ok((await page.locator(".suit-room").boundingBox()).height > 300);
+        if (faults.length > 0) found[view] = faults;
       }
-    });
-  }
+      assert.deepEqual(found, {});
+      assertUnhurt(page);
+      await page.close();
+    } finally {
+      await server.stop();
+    }
+  });
 }

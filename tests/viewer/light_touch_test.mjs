@@ -4,7 +4,7 @@
 // What shows a light touch, and what was before: scales, held values, pressures, regions, events.
 import assert from "node:assert/strict";
 import { it } from "node:test";
-import { bench, eventually, shown, useBench } from "./harness.mjs";
+import { bench, eventually, part, shown, useBench } from "./harness.mjs";
 
 const AREA_M2 = 38.48e-6; // as in the harness's array.toml
 
@@ -12,7 +12,6 @@ useBench();
 
 const showMaps = (test) => shown(["--from", "sim:contacts?rate=200", ...bench.model], "array", test, "light");
 
-const part = (page, role) => page.locator(`[data-role=${role}]`);
 const numberIn = (text) => Number(text.replace("\u2212", "-").replace(/[^-\d.]/g, ""));
 
 /** Puts the cursor on the taxel r1c2. */

@@ -6,12 +6,12 @@ import assert from "node:assert/strict";
 import { writeFileSync } from "node:fs";
 import { connect, createServer } from "node:net";
 import { it } from "node:test";
-import { arrayToml, assertUnhurt, becomes, bench, browser, openPage, useBench } from "./harness.mjs";
+import { arrayToml, assertUnhurt, becomes, bench, browser, networkDevice, openPage, useBench } from "./harness.mjs";
 
 const TICK_MS = 20;
 const HELD_BYTES = 4096;
-const SETTLE_MS = 8000;
-const LOOK_MS = 4000;
+const SETTLE_MS = 4000;
+const LOOK_MS = 3000;
 const SAID_MS = 1000;
 /** After so long without frames the page says so. */
 const QUIET_MS = 2000;
@@ -144,19 +144,10 @@ for (const kbits of [100, 750, Infinity]) {
 
   it(`says within a second that a device has gone silent and is back, at ${kbits} kbit/s`, async () => {
     let isSilent = false;
-    const device = createServer((socket) => {
-      const timer = setInterval(
-        () =>
-          isSilent ||
-          socket.destroyed ||
-          socket.write("11,12,13,14,15\n21,22,23,24,25\n31,32,33,34,35\n41,42,43,44,45\n\n"),
-        20,
-      );
-      socket.on("error", () => undefined);
-      socket.on("close", () => clearInterval(timer));
-    });
-    await new Promise((listening) => device.listen(0, "127.0.0.1", listening));
-    const from = ["--from", `tcp://127.0.0.1:${device.address().port}`];
+    const device = await networkDevice(() =>
+      isSilent ? "" : "11,12,13,14,15\n21,22,23,24,25\n31,32,33,34,35\n41,42,43,44,45\n\n",
+    );
+    const from = ["--from", device.uri];
     try {
       await over(kbits, from, async (page, says) => {
         await page.locator("[data-role=array-setup]").waitFor();
@@ -179,20 +170,8 @@ for (const kbits of [100, 750, Infinity]) {
 }
 
 it("says that what comes is not readable, and why", async () => {
-  const device = createServer((socket) => {
-    const timer = setInterval(() => socket.destroyed || socket.write("x".repeat(4000)), 20);
-    socket.on("error", () => undefined);
-    socket.on("close", () => clearInterval(timer));
-  });
-  await new Promise((listening) => device.listen(0, "127.0.0.1", listening));
-  const server = await bench.serve(
-    "--port",
-    "0",
-    "--from",
-    `tcp://127.0.0.1:${device.address().port}`,
-    "--model",
-    bench.path("whole.toml"),
-  );
+  const device = await networkDevice(() => "x".repeat(4000));
+  const server = await bench.serve("--port", "0", "--from", device.uri, "--model", bench.path("whole.toml"));
   try {
     const page = await openPage(browser, `${server.url}#/array`);
     await page.locator("[data-role=connection]", { hasText: "Not readable" }).waitFor();

@@ -13,6 +13,7 @@ import {
   browser,
   eventually,
   openPage,
+  part,
   readCsv,
   shown,
   useBench,
@@ -23,7 +24,6 @@ const LIVE = ["--from", "sim:contacts?rate=100&frames=300"];
 
 useBench();
 
-const part = (page, role) => page.locator(`[data-role=${role}]`);
 const words = (page, role, text) => page.locator(`[data-role=${role}]`, { hasText: text }).waitFor();
 
 const served = (command, look) => shown([...command, ...bench.model], "array", look);

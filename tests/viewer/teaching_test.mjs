@@ -5,7 +5,18 @@
 import assert from "node:assert/strict";
 import { readdirSync, writeFileSync } from "node:fs";
 import { it } from "node:test";
-import { assertUnhurt, becomes, bench, browser, eventually, openPage, readCsv, useBench, WAIT_MS } from "./harness.mjs";
+import {
+  assertUnhurt,
+  becomes,
+  bench,
+  browser,
+  eventually,
+  openPage,
+  part,
+  readCsv,
+  useBench,
+  WAIT_MS,
+} from "./harness.mjs";
 
 const [ROWS, COLS] = [8, 8];
 const HZ = 50;
@@ -78,8 +89,6 @@ function recordTouches() {
 }
 
 useBench(recordTouches);
-
-const part = (page, role) => page.locator(`[data-role=${role}]`);
 
 /** Its button says what a click would do. */
 const says = (page, word) => part(page, "play").getByText(word, { exact: true }).waitFor();
