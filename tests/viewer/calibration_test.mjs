@@ -20,12 +20,25 @@ import {
 useBench(() => writeFileSync(bench.path("palm.toml"), arrayToml("palm", 2, 3)));
 
 /** Until the guide says something of the pattern. */
+/** In the page: keeps all that the guide says. */
+function listen() {
+  const guide = document.querySelector("[data-role=instruction]");
+  window.said = [guide.textContent];
+  new MutationObserver(() => window.said.push(guide.textContent)).observe(guide, { childList: true, subtree: true });
+}
+
+/** The guide says this, at present or since what was heard last: a mistake of the hand is over in half a second. */
 async function hears(page, pattern) {
-  await page.waitForFunction(
-    (source) => new RegExp(source).test(document.querySelector("[data-role=instruction]").textContent),
-    pattern.source,
+  if (page.heard === undefined) await page.evaluate(listen);
+  const found = await page.waitForFunction(
+    ([source, from]) => {
+      const at = window.said.findIndex((words, index) => index >= from && new RegExp(source).test(words));
+      return at >= 0 && { at };
+    },
+    [pattern.source, page.heard ?? 0],
     { polling: 30, timeout: WAIT_MS },
   );
+  page.heard = (await found.jsonValue()).at;
 }
 
 async function reaches(page, presses) {
@@ -57,7 +70,8 @@ async function walk(page, server) {
   await page.keyboard.press("b");
   await hears(page, /That is r\dc\d: put/);
   await reaches(page, 8);
-  await hears(page, /^Put/); // before, the press is to be released: it is kept, and nothing is there to skip
+  // Before, the press is to be released: it is kept, and nothing is there to skip.
+  await page.locator("[data-role=instruction]", { hasText: /^Put/ }).waitFor();
   await page.keyboard.press("n");
   await hears(page, /^17 presses of 1 to 10 N\./);
   assert.match(await part(page, "instruction").textContent(), /median error \d+\.\d %.*It holds for about 22 C/);
