@@ -20,13 +20,13 @@ const [binary, array, model, folder, out] = process.argv.slice(2);
 function readTruth() {
   const truth = [];
   for (const { frame, where, value } of readCsv(join(folder, "loads.csv")))
-    truth[Number(frame)] = { ...truth[Number(frame)], [where]: Number(value) };
+    truth[Number(frame)] = (truth[Number(frame)] ?? new Map()).set(where, Number(value));
   return truth;
 }
 
 function strongestGhost(frames, truth) {
   const taxels = Object.keys(frames[0]).filter((name) => /^r\d+c\d+$/.test(name));
-  const force = (frame, row, col) => truth[frame]?.[`r${row}c${col}`] ?? 0;
+  const force = (frame, row, col) => truth[frame]?.get(`r${row}c${col}`) ?? 0;
   let best = { share: 0, frame: 0 };
   frames.forEach((line, frame) => {
     const forces = [...(truth[frame]?.values() ?? [])];
