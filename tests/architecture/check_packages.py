@@ -226,13 +226,13 @@ def steps(makefile, texts):
     yield "who runs it by hand", [], by_hand
 
 
-def violations(setup, makefile, texts):
+def violations(setup, steps_of_targets, texts):
     groups = groups_of(setup)
     everything = {package for packages in groups.values() for package in packages}
     own_modules = {name.removesuffix("/__init__.py").split("/")[-1].removesuffix(".py") for name in texts}
     idle = {(group, package) for group, packages in groups.items() for package in packages}
     lacking = defaultdict(list)
-    for who, installed, files in steps(makefile, texts):
+    for who, installed, files in steps_of_targets:
         group_of = {package: group for group in reversed(installed) for package in groups.get(group, [])}
         for name, text in files.items():
             for what, package, is_needed in uses(name, text):
@@ -247,7 +247,8 @@ def violations(setup, makefile, texts):
 
 def main():
     root = Path(sys.argv[1])
-    found = list(violations((root / "scripts/setup").read_text(), (root / "Makefile").read_text(), texts_of(root)))
+    texts = texts_of(root)
+    found = list(violations((root / "scripts/setup").read_text(), steps((root / "Makefile").read_text(), texts), texts))
     print("\n".join(found) if found else "each target installs what it uses")
     return 1 if found else 0
 

@@ -9,12 +9,13 @@ import sys
 import unittest
 from pathlib import Path
 
-from check_packages import groups_of, texts_of, violations
+from check_packages import groups_of, steps, texts_of, violations
 
 ROOT = Path(sys.argv.pop())
 SETUP = (ROOT / "scripts/setup").read_text()
 MAKEFILE = (ROOT / "Makefile").read_text()
 TEXTS = texts_of(ROOT)
+STEPS = list(steps(MAKEFILE, TEXTS))
 
 
 def without(package, group):
@@ -24,7 +25,9 @@ def without(package, group):
 
 class Packages(unittest.TestCase):
     def named(self, what, setup=SETUP, makefile=MAKEFILE, changed=None):
-        lines = [line for line in violations(setup, makefile, TEXTS | (changed or {})) if what in line]
+        texts = TEXTS | (changed or {})
+        steps_of_targets = STEPS if makefile is MAKEFILE and not changed else steps(makefile, texts)
+        lines = [line for line in violations(setup, steps_of_targets, texts) if what in line]
         self.assertTrue(lines, what)
         return lines[0]
 
