@@ -17,7 +17,7 @@ BRINGS = {
     "libeigen3-dev": "Eigen3", "libhwy-dev": "HWY", "libtbb-dev": "TBB", "libtomlplusplus-dev": "tomlplusplus",
     "libcli11-dev": "CLI11", "libfmt-dev": "fmt", "nlohmann-json3-dev": "nlohmann_json", "libboost-dev": "Boost",
     "liblz4-dev": "liblz4", "libzstd-dev": "libzstd", "zlib1g-dev": "ZLIB", "libdeflate-dev": "libdeflate",
-    "libbz2-dev": "BZip2", "libexpat1-dev": "EXPAT", "libpng-dev": "PNG", "libhdf5-dev": "hdf5-serial",
+    "libbz2-dev": "BZip2", "libzip-dev": "libzip", "libexpat1-dev": "EXPAT", "libpng-dev": "PNG", "libhdf5-dev": "hdf5-serial",
     "pybind11-dev": "pybind11", "libfastrtps-dev": "fastrtps", "python3-numpy": "numpy",
     "libgtest-dev": "GTest", "libbenchmark-dev": "benchmark", "ngspice": "ngspice", "python3-h5py": "h5py",
     "abigail-tools": "abidiff", "chromium": "chromium", "cyclonedds-dev": "CycloneDDS", "cyclonedds-tools": "idlc",
