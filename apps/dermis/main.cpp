@@ -41,7 +41,7 @@ constexpr std::array kCommands{
     CommandEntry{"convert", "Convert frames to another file format, by the ending of the name", add_convert},
     CommandEntry{"info", "Show what a recording, another file of frames or a model holds", add_info},
     CommandEntry{"recover", "Repair a cut or damaged recording, and say what is lost", add_recover},
-    CommandEntry{"image", "Draw a frame as PNG or SVG, or some seconds as an animated PNG", add_image},
+    CommandEntry{"image", "Draw a frame as PNG or SVG, or some seconds as a film (GIF)", add_image},
     CommandEntry{"top", "Show a live heat map in the terminal, until q or Ctrl-C", add_top},
     CommandEntry{"watch", "Compare forces with limits, and stop a program if one is crossed", add_watch},
     CommandEntry{"serve", "Show an array or a suit live in the browser and stream it", add_serve},

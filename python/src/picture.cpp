@@ -19,7 +19,7 @@ py::bytes picture(const py::object& values, const std::string& title, const std:
   frame.values.assign(taxels.data(), taxels.data() + taxels.size());
   frame.high = views::force_scale(views::largest_of(frame.values));
   frame.unit = unit;
-  return report::png(report::frame_pixels(frame));
+  return report::frame_png(frame);
 }
 
 }  // namespace

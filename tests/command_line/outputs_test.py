@@ -194,10 +194,12 @@ class NothingIsOverwritten(SmallArray):
         self.assertNotEqual(model.read_bytes(), earlier)
 
     def test_tables_and_pictures_are_replaced_and_it_says_so(self):
-        forces, contacts, picture, drawing = (self.work / name for name in ("forces.csv", "contacts.csv", "map.png", "map.svg"))
+        forces, contacts, picture, drawing, film = (self.work / name for name in
+                                                    ("forces.csv", "contacts.csv", "map.png", "map.svg", "map.gif"))
         for arguments, paths in (((*self.run_arguments(forces), "--contacts", contacts), (forces, contacts)),
                                  (("image", "--in", self.contacts / "frames.csv", "--out", picture), (picture,)),
-                                 (("image", "--in", self.contacts / "frames.csv", "--out", drawing), (drawing,))):
+                                 (("image", "--in", self.contacts / "frames.csv", "--out", drawing), (drawing,)),
+                                 (("image", "--in", self.contacts / "frames.csv", "--from", 0, "--to", 1, "--out", film), (film,))):
             self.succeed(*arguments)
             result = dermis(*arguments)
             said = "".join(f"'{path}' exists and will be replaced\n" for path in paths)

@@ -2,12 +2,13 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <chrono>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "dermis/core/contacts.hpp"
-#include "dermis/report/png.hpp"
 #include "dermis/report/svg.hpp"
 
 namespace dermis::report {
@@ -30,7 +31,11 @@ struct FramePicture {
 /// For svg_document().
 [[nodiscard]] Drawing frame_drawing(const FramePicture& picture);
 
-/// The same in pixels; all pictures of one size of array have one size.
-[[nodiscard]] Pixels frame_pixels(const FramePicture& picture);
+/// The bytes of a PNG file.
+[[nodiscard]] std::string frame_png(const FramePicture& picture);
+
+/// The bytes of a GIF file that plays for ever. At least one picture, all of one shape and pitch; each is shown for
+/// `time`, in whole hundredths of a second.
+[[nodiscard]] std::string frame_film(std::span<const FramePicture> pictures, std::chrono::milliseconds time);
 
 }  // namespace dermis::report
