@@ -11,4 +11,7 @@ namespace dermis::app {
 /// as long as the action.
 Option add_example_options(Command& command, recognising::ExampleOptions& examples);
 
+/// The same of examples to learn from, whose --labels are required; and --model, --frames and --rate.
+void add_taught_examples(Command& command, recognising::ExampleOptions& examples);
+
 }  // namespace dermis::app

@@ -34,7 +34,7 @@ constexpr std::array kCommands{
     CommandEntry{"circuit", "Compute a readout circuit, for people who design one", add_circuit},
     CommandEntry{"doctor", "Check the health of an array: line faults, noise, drift", add_doctor},
     CommandEntry{"check", "Weigh a known object: has the calibration aged?", add_check},
-    CommandEntry{"paper", "Reproduce the equations, figures and claims of the paper", add_paper},
+    CommandEntry{"paper", "Reproduce the paper, and judge its networks beside dermis", add_paper},
     CommandEntry{"record", "Record a device, or any other source of frames", add_record},
     CommandEntry{"replay", "Play a recording at the pace of its frames, as counts or newtons", add_replay},
     CommandEntry{"emulate", "Play a device from a recording, to develop without hardware", add_emulate},

@@ -10,12 +10,13 @@ from support import SmallArray, dermis
 
 # What each command reads and writes: options, or arguments by their place.
 COMMANDS = {
-    "calibrate": (("--array", "--frames", "--loads"), ("--out", "--bank")),
+    "calibrate": (("--array", "--frames", "--loads"), ("--out",)),
     "circuit forward": (("--array", "--conductance"), ("--out",)),
     "circuit invert": (("--array", "--readings"), ("--out", "--sigma")),
     "convert": (("in", "--array"), ("out",)),
     "image": (("--in", "--model"), ("--out",)),
     "learn": (("--labels", "--in", "--model", "--splits", "--open"), ("--out", "--predictions", "--open-predictions")),
+    "paper calibrate": (("--array", "--frames", "--loads"), ("--bank",)),
     "recalibrate": (("--model", "--frames", "--loads"), ("--out",)),
     "recognise": (("--classes", "--in", "--model", "--extra"), ("--out",)),
     "record": (("--from", "--array", "--model"), ("--out",)),
@@ -26,10 +27,11 @@ COMMANDS = {
 # And what is written into a folder.
 FOLDERS = {
     "simulate": (("--array", "--physics"), "--out", ("frames.csv", "loads.csv", "contacts.csv", "origin.toml")),
-    "evaluate": (("--model", "--frames", "--loads", "--bank", "--classes", "--in", "--labels"), "--report", ("index.html",)),
+    "evaluate": (("--model", "--frames", "--loads", "--classes", "--in", "--labels"), "--report", ("index.html",)),
+    "paper evaluate": (("--model", "--frames", "--loads", "--bank"), "--report", ("index.html",)),
     "learn": (("--labels", "--in", "--model", "--splits", "--open"), "--report", ("index.html",)),
 }
-MODELS = {("calibrate", "--out"), ("calibrate", "--bank"), ("learn", "--out"), ("recalibrate", "--out")}
+MODELS = {("calibrate", "--out"), ("learn", "--out"), ("paper calibrate", "--bank"), ("recalibrate", "--out")}
 PROTECTED = {
     "a recording": b"\x89MCAP0\r\n", "a model": b"\x10\0\0\0\0\0\0\0{}              ", "a description": b"[array]\nrows = 4\n",
     "frames": b"time_s,r0c0,r0c1\n0,1,2\n", "loads": b"frame,kind,where,value\n", "an array of NumPy": b"\x93NUMPY",
@@ -68,7 +70,7 @@ class NothingIsOverwritten(SmallArray):
 
     def test_every_command_that_writes_is_named_here(self):
         commands = re.findall(r"^  (\w+) {2,}", dermis("--help").stdout.split("Subcommands:")[1], re.MULTILINE)
-        names = [*(set(commands) - {"circuit"}), "circuit forward", "circuit invert"]
+        names = [*(set(commands) - {"circuit"}), "circuit forward", "circuit invert", "paper calibrate", "paper evaluate"]
         writing = {name for name in names if "--force" in dermis(*name.split(), "--help").stdout}
         self.assertEqual(writing, {*COMMANDS, *FOLDERS, "paper"})
 
@@ -87,7 +89,8 @@ class NothingIsOverwritten(SmallArray):
                         path.unlink()
 
     def test_a_folder_is_not_written_over_an_input(self):
-        required = {"simulate": {"--array": self.array, "--scene": "idle"}, "evaluate": {}, "learn": {"--labels": self.array}}
+        required = {"simulate": {"--array": self.array, "--scene": "idle"}, "evaluate": {}, "paper evaluate": {"--bank": self.array},
+                    "learn": {"--labels": self.array}}
         folder, link = self.work / "folder", self.work / "link"
         folder.mkdir()
         for command, (inputs, option, files) in FOLDERS.items():
@@ -98,7 +101,7 @@ class NothingIsOverwritten(SmallArray):
                 for named in (path, link):
                     with self.subTest(command=command, read=read, file=file, named=named):
                         options = {**required[command], read: named, option: folder}
-                        result = dermis(command, *itertools.chain(*options.items()), "--force")
+                        result = dermis(*command.split(), *itertools.chain(*options.items()), "--force")
                         self.assertEqual((result.returncode, result.stderr),
                                          (2, f"dermis: {option}: is the file of {read}; name another\n"))
                         self.assertEqual(path.read_text(), "valuable")
