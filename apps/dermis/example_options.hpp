@@ -3,7 +3,7 @@
 #pragma once
 
 #include "command_line.hpp"
-#include "dermis/recognising/labelled_examples.hpp"
+#include "recognising/labelled_examples.hpp"
 
 namespace dermis::app {
 

@@ -12,11 +12,11 @@
 #include "commands.hpp"
 #include "dermis/files/atomic_file.hpp"
 #include "dermis/report/frame_picture.hpp"
-#include "dermis/views/array_view.hpp"
-#include "dermis/views/view_pictures.hpp"
 #include "seconds.hpp"
 #include "source_options.hpp"
 #include "stop_flag.hpp"
+#include "views/array_view.hpp"
+#include "views/view_pictures.hpp"
 
 namespace dermis::app {
 namespace {

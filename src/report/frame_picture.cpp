@@ -196,6 +196,21 @@ class Painter {
 
 }  // namespace
 
+double force_scale(double newtons) {
+  double decade = 1.0;
+  while (decade < 1e9 && 10.0 * decade <= newtons) decade *= 10.0;
+  for (const double step : {1.0, 2.0, 5.0}) {
+    if (newtons <= step * decade) return step * decade;
+  }
+  return 10.0 * decade;
+}
+
+double largest_of(const std::vector<double>& values) {
+  double largest = 0.0;
+  for (const double value : values) largest = std::max(largest, std::isfinite(value) ? value : 0.0);
+  return largest;
+}
+
 Drawing frame_drawing(const FramePicture& picture) {
   const Painter painter(picture);
   SvgBrush brush;

@@ -7,6 +7,7 @@
 #include <png.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
@@ -101,6 +102,20 @@ class Film {
   std::string bytes_;
   GifFileType* file_;
 };
+
+TEST(ForceScale, ends_at_one_two_or_five_times_a_power_of_ten_and_at_one_at_least) {
+  EXPECT_EQ(force_scale(0.0), 1.0);
+  EXPECT_EQ(force_scale(1.0), 1.0);
+  EXPECT_EQ(force_scale(1.1), 2.0);
+  EXPECT_EQ(force_scale(3.0), 5.0);
+  EXPECT_EQ(force_scale(5.1), 10.0);
+  EXPECT_EQ(force_scale(120.0), 200.0);
+}
+
+TEST(LargestOf, counts_finite_values_alone) {
+  EXPECT_EQ(largest_of({}), 0.0);
+  EXPECT_EQ(largest_of({NAN, 2.0, INFINITY, 1.0}), 2.0);
+}
 
 TEST(FramePicture, a_taxel_has_the_colour_of_its_value_on_the_scale) {
   FramePicture picture = picture_of(4, 4);

@@ -28,6 +28,12 @@ struct FramePicture {
   std::vector<Contact> contacts;  ///< Those that have ended are not drawn.
 };
 
+/// 0 where none is finite.
+[[nodiscard]] double largest_of(const std::vector<double>& values);
+
+/// End of a colour scale that covers a value: 1, 2 or 5 times a power of ten newtons, at least 1.
+[[nodiscard]] double force_scale(double newtons);
+
 /// For svg_document().
 [[nodiscard]] Drawing frame_drawing(const FramePicture& picture);
 

@@ -17,9 +17,6 @@
 
 namespace dermis::views {
 
-/// End of a colour scale that covers a value: 1, 2 or 5 times a power of ten newtons, at least 1.
-[[nodiscard]] double force_scale(double newtons);
-
 /// A source of frames, ready to be shown. With a model, or if a recording says that its readings are forces, it shows
 /// newtons and contacts. Otherwise it shows counts. Not thread-safe.
 class ArrayView {
@@ -47,8 +44,8 @@ class ArrayView {
   [[nodiscard]] const char* unit() const noexcept { return work_ ? "N" : "counts"; }
   [[nodiscard]] double row_pitch_m() const noexcept { return row_pitch_m_; }
   [[nodiscard]] double col_pitch_m() const noexcept { return col_pitch_m_; }
-  /// End of a colour scale that covers the largest of the values. For forces it is force_scale(). For counts it is that
-  /// of the ADC, as described or as large as needed.
+  /// End of a colour scale that covers the largest of the values. For forces it is report::force_scale(). For counts it
+  /// is that of the ADC, as described or as large as needed.
   [[nodiscard]] double scale(double largest) const;
   [[nodiscard]] bool is_live() const { return source_->is_live(); }
   [[nodiscard]] bool has_model() const noexcept { return work_.has_value(); }
@@ -74,8 +71,5 @@ class ArrayView {
   ContactReport report_;
   std::vector<double> values_;
 };
-
-/// 0 where none is finite.
-[[nodiscard]] double largest_of(const std::vector<double>& values);
 
 }  // namespace dermis::views

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/recognising/labelled_examples.hpp"
+#include "recognising/labelled_examples.hpp"
 
 #include <fmt/core.h>
 
@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "dermis/core/quantile.hpp"
-#include "dermis/recognising/load_source.hpp"
+#include "recognising/load_source.hpp"
 
 namespace dermis::recognising {
 namespace {

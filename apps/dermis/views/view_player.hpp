@@ -9,7 +9,7 @@
 
 #include "dermis/core/result.hpp"
 #include "dermis/report/terminal_picture.hpp"
-#include "dermis/views/array_view.hpp"
+#include "views/array_view.hpp"
 
 namespace dermis::views {
 

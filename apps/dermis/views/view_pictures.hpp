@@ -11,13 +11,13 @@
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
 #include "dermis/report/frame_picture.hpp"
-#include "dermis/views/array_view.hpp"
+#include "views/array_view.hpp"
 
 namespace dermis::views {
 
-/// How long a picture of an animation is seen.
+/// How long a picture of a film is seen.
 inline constexpr Nanos kPictureTime = std::chrono::milliseconds(40);
-inline constexpr std::size_t kMostPictures = 1500;  ///< Of an animation.
+inline constexpr std::size_t kMostPictures = 1500;  ///< Of a film.
 
 /// The frames to draw, by their number from 0 or by their times after the first.
 struct PictureRange {
@@ -29,7 +29,7 @@ struct PictureRange {
 
 /// At least one picture, each with its time after the first frame, the contacts and their total. `view` stands before
 /// its first frame. `high`: end of the colour scale of all pictures; empty: ArrayView::scale() of the largest value
-/// that is drawn. An animation ends early with its source and where `stop` (null: nothing) is set. Fails where the
+/// that is drawn. A film ends early with its source and where `stop` (null: nothing) is set. Fails where the
 /// source does, where it ends or is stopped before the first picture, and on more than kMostPictures.
 [[nodiscard]] Result<std::vector<report::FramePicture>> draw_pictures(ArrayView& view, const PictureRange& range,
                                                                       std::optional<double> high = {},

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "dermis/core/result.hpp"
-#include "dermis/recognising/array_loads.hpp"
-#include "dermis/recognising/further_readings.hpp"
 #include "dermis/recognition/segment.hpp"
 #include "dermis/sources/open_source.hpp"
+#include "recognising/array_loads.hpp"
+#include "recognising/further_readings.hpp"
 
 namespace dermis::recognising {
 

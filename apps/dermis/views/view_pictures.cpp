@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/views/view_pictures.hpp"
+#include "views/view_pictures.hpp"
 
 #include <fmt/core.h>
 
@@ -56,8 +56,8 @@ Result<Nanos> go_to(const PictureRange& range, ArrayView& view, const std::atomi
   return failed("interrupted");
 }
 
-Result<std::vector<FramePicture>> animation_of(const PictureRange& range, ArrayView& view, Nanos first,
-                                               const std::atomic<bool>* stop) {
+Result<std::vector<FramePicture>> film_of(const PictureRange& range, ArrayView& view, Nanos first,
+                                          const std::atomic<bool>* stop) {
   std::vector<FramePicture> pictures;
   FramePicture shown = picture_of(view, view.raw().time - first);
   for (Nanos moment = range.from; moment < *range.to;) {
@@ -84,14 +84,14 @@ Result<std::vector<FramePicture>> draw_pictures(ArrayView& view, const PictureRa
   if (!first) return first.error();
   std::vector<FramePicture> pictures;
   if (range.to) {
-    Result<std::vector<FramePicture>> drawn = animation_of(range, view, *first, stop);
+    Result<std::vector<FramePicture>> drawn = film_of(range, view, *first, stop);
     if (!drawn) return drawn.error();
     pictures = *std::move(drawn);
   } else {
     pictures.push_back(picture_of(view, view.raw().time - *first));
   }
   double largest = 0.0;
-  for (const FramePicture& picture : pictures) largest = std::max(largest, largest_of(picture.values));
+  for (const FramePicture& picture : pictures) largest = std::max(largest, report::largest_of(picture.values));
   for (FramePicture& picture : pictures) picture.high = high.value_or(view.scale(largest));
   return pictures;
 }

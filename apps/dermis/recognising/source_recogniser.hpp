@@ -10,9 +10,9 @@
 
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
-#include "dermis/recognising/load_source.hpp"
 #include "dermis/recognition/stream_recogniser.hpp"
 #include "dermis/sources/open_source.hpp"
+#include "recognising/load_source.hpp"
 
 namespace dermis::recognising {
 

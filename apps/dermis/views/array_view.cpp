@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/views/array_view.hpp"
+#include "views/array_view.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,23 +11,9 @@
 #include "dermis/operation/frame_output.hpp"
 #include "dermis/pipeline/direct_model.hpp"
 #include "dermis/recordings/frame_files.hpp"
+#include "dermis/report/frame_picture.hpp"
 
 namespace dermis::views {
-
-double force_scale(double newtons) {
-  double decade = 1.0;
-  while (decade < 1e9 && 10.0 * decade <= newtons) decade *= 10.0;
-  for (const double step : {1.0, 2.0, 5.0}) {
-    if (newtons <= step * decade) return step * decade;
-  }
-  return 10.0 * decade;
-}
-
-double largest_of(const std::vector<double>& values) {
-  double largest = 0.0;
-  for (const double value : values) largest = std::max(largest, std::isfinite(value) ? value : 0.0);
-  return largest;
-}
 
 Result<std::unique_ptr<ArrayView>> ArrayView::open(const std::string& from, const std::string& model,
                                                    sources::SourceOptions options) {
@@ -95,7 +81,7 @@ FrameShape ArrayView::shape() const {
 }
 
 double ArrayView::scale(double largest) const {
-  if (work_) return force_scale(largest);
+  if (work_) return report::force_scale(largest);
   if (full_scale_counts_) return *full_scale_counts_;
   double high = 255.0;
   while (high < largest) high = 2.0 * high + 1.0;

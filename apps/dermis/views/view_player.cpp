@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/views/view_player.hpp"
+#include "views/view_player.hpp"
 
 #include <algorithm>
 
@@ -45,7 +45,7 @@ void ViewPlayer::run() {
 
 /// The scale grows where it must, and never shrinks.
 void ViewPlayer::update() {
-  largest_ = std::max(largest_, largest_of(view_.values()));
+  largest_ = std::max(largest_, report::largest_of(view_.values()));
   const std::scoped_lock lock(mutex_);
   picture_.name = view_.name();
   picture_.unit = view_.unit();
