@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/network/gradient_check.hpp"
+#pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <vector>
 
-namespace dermis::network {
+#include "dermis/network/levenberg_marquardt.hpp"
 
-double jacobian_deviation(const ResidualFunction& residual_function, std::size_t residual_count,
-                          std::span<const double> parameters) {
+namespace dermis::support {
+
+/// The largest deviation of a Jacobian from central finite differences, whose relative step is cbrt(epsilon). It is the
+/// maximum over all entries of |J - J_fd| / max(1, |J|, |J_fd|). A correct Jacobian of a smooth function stays below
+/// 1e-7. Infinite if an entry is not finite.
+inline double jacobian_deviation(const network::ResidualFunction& residual_function, std::size_t residual_count,
+                                 std::span<const double> parameters) {
   const std::size_t n = parameters.size();
   std::vector<double> point(parameters.begin(), parameters.end());
   std::vector<double> residuals(residual_count);
@@ -39,4 +46,4 @@ double jacobian_deviation(const ResidualFunction& residual_function, std::size_t
   return deviation;
 }
 
-}  // namespace dermis::network
+}  // namespace dermis::support
