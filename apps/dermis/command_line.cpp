@@ -126,7 +126,7 @@ std::string unknown(const std::string& argument, const CLI::App& command, const 
   if (known.empty()) return fmt::format("'{}' is one argument too many", argument);
   const std::string name = argument.substr(0, argument.find('='));
   const std::string nearest = nearest_name(name, known);
-  const std::string what = fmt::format("unknown {} '{}'", is_option ? "option" : "command", name);
+  std::string what = fmt::format("unknown {} '{}'", is_option ? "option" : "command", name);
   if (!nearest.empty()) return fmt::format("{}; did you mean '{}'?", what, nearest);
   constexpr std::size_t kFew = 2;
   const std::vector<std::string> takers = is_option ? takers_of(name, app, app.get_name()) : std::vector<std::string>();

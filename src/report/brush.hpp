@@ -11,7 +11,7 @@
 
 namespace dermis::report {
 
-/// Of labels, and of marks on any ground.
+/// The colours of labels, and of marks on any ground.
 constexpr Colour kMark{255, 255, 255};
 constexpr Colour kMarkEdge{20, 20, 24};
 constexpr double kLabelEdge = 3.0;  ///< Its width on both sides of a line together.
