@@ -37,7 +37,7 @@ struct FramePicture {
 /// For svg_document().
 [[nodiscard]] Drawing frame_drawing(const FramePicture& picture);
 
-/// The bytes of a PNG file.
+/// The bytes of a PNG file. Its texts have the sans-serif face of the machine.
 [[nodiscard]] std::string frame_png(const FramePicture& picture);
 
 /// The bytes of a GIF file that plays for ever. At least one picture, all of one shape and pitch; each is shown for
