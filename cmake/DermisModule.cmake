@@ -96,7 +96,7 @@ endfunction()
 add_custom_target(dermis_checked_numerics)
 
 # A release spends its time in the other modules: these take a third less to compile so.
-set(DERMIS_CALCULATES_LITTLE health operation recognising report serve views)
+set(DERMIS_CALCULATES_LITTLE health operation report serve)
 
 # Under the sanitizers, code is compiled twice as fast without optimisation; but the tests wait for numerics and for these.
 set(DERMIS_AWAITED core acquisition)

@@ -13,12 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (const auto shape = messages::decode_image(message, frame)) {
     if (frame.counts.size() != shape->taxel_count()) std::abort();
   }
-  dermis::ForceFrame force;
-  if (const auto shape = messages::decode_grid(message, force)) {
-    if (force.newtons.size() != shape->taxel_count() || force.taxels.size() != shape->taxel_count()) std::abort();
-  }
   static_cast<void>(messages::decode_acquisition(message, frame));
   static_cast<void>(messages::decode_temperature(message));
-  static_cast<void>(messages::decode_frame_status(message, force));
   return 0;
 }

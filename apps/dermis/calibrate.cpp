@@ -17,8 +17,6 @@
 #include "dermis/files/array_toml.hpp"
 #include "dermis/files/content_hash.hpp"
 #include "dermis/files/loads_csv.hpp"
-#include "dermis/paper/bank_training.hpp"
-#include "dermis/paper/paper_bank_file.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "interruption.hpp"
 #include "kept_model.hpp"
@@ -32,7 +30,6 @@ namespace {
 
 using calibration::Calibration;
 using calibration::CalibrationReport;
-using paper::BankTrainingReport;
 
 using Clock = std::chrono::steady_clock;
 
@@ -41,7 +38,6 @@ double seconds_since(Clock::time_point start) {
 }
 
 constexpr double kPoorFit = 0.1;  // relative error
-constexpr std::uint64_t kBankSeed = 1;
 // Single presses hide what is wrong with circuit and ADC: each law takes it in.
 constexpr const char* kProofPresses =
     "fewer than eight presses on two to six taxels: whether circuit and ADC are as described is not told; add some, "
@@ -52,7 +48,6 @@ struct CalibrateOptions {
   std::string frames;
   std::string loads;
   std::string out;
-  std::string bank;
   double settle_s = 0.0;
   bool json = false;
 };
@@ -72,19 +67,7 @@ Status add_hashes(const CalibrateOptions& options, std::map<std::string, std::st
   return Done{};
 }
 
-void print_bank(const BankTrainingReport& bank, const ArrayDescription& array) {
-  fmt::print("the paper's bank: {} unknowns, error {:.2g} after {} steps\n", bank.unknowns, bank.curve.back(),
-             bank.steps);
-  for (const std::size_t taxel : bank.never_loaded) {
-    fmt::print("taxel {} is never loaded: the bank knows no force on it\n", array.taxel_name(taxel));
-  }
-  for (const std::size_t taxel : bank.constant_readings) {
-    fmt::print("taxel {} always reads the same: the bank learns nothing from it\n", array.taxel_name(taxel));
-  }
-}
-
-void print_text(const CalibrationReport& report, const std::optional<BankTrainingReport>& bank,
-                const ArrayDescription& array) {
+void print_text(const CalibrationReport& report, const ArrayDescription& array) {
   const calibration::TrainingReport& training = report.training;
   fmt::print("{} labelled frames, {} rejected{}\n", report.frames, report.frames_rejected,
              report.frames_rejected > 0 ? " (" + report.first_rejection + ")" : "");
@@ -105,7 +88,6 @@ void print_text(const CalibrationReport& report, const std::optional<BankTrainin
   for (const std::size_t taxel : training.dead_taxels) {
     fmt::print("dead taxel {}: it does not answer to its loads\n", array.taxel_name(taxel));
   }
-  if (bank) print_bank(*bank, array);
   fmt::print("time:");
   for (const calibration::StageTime& stage : report.stages) fmt::print(" {} {:.2f} s", stage.stage, stage.seconds);
   fmt::print("\n");
@@ -143,8 +125,8 @@ nlohmann::ordered_json circuit_json(const calibration::CircuitFit& fit) {
   return json;
 }
 
-void print_json(const CalibrationReport& report, const std::optional<BankTrainingReport>& bank,
-                const ArrayDescription& array, const std::optional<calibration::CircuitFit>& circuit) {
+void print_json(const CalibrationReport& report, const ArrayDescription& array,
+                const std::optional<calibration::CircuitFit>& circuit) {
   const calibration::TrainingReport& training = report.training;
   nlohmann::ordered_json json = {{"frames", report.frames},
                                  {"frames_rejected", report.frames_rejected},
@@ -183,22 +165,7 @@ void print_json(const CalibrationReport& report, const std::optional<BankTrainin
   if (uncertainty.relative_sigma_of_unpressed) {
     json["relative_sigma_of_unpressed"] = *uncertainty.relative_sigma_of_unpressed;
   }
-  if (bank) {
-    json["bank"] = {{"unknowns", bank->unknowns}, {"steps", bank->steps}, {"last_error", bank->curve.back()}};
-    json["bank"]["never_loaded"] = taxel_names(bank->never_loaded, array);
-    json["bank"]["constant_readings"] = taxel_names(bank->constant_readings, array);
-  }
   fmt::print("{}\n", json.dump(2));
-}
-
-Result<BankTrainingReport> train_bank(const CalibrateOptions& options, const calibration::SampleDatabase& database,
-                                      Progress& progress) {
-  Result<paper::TrainedBank> trained = paper::train_paper_bank(database, paper::kBankSteps, kBankSeed,
-                                                               [&](double share) { progress.show("bank", share); });
-  if (!trained) return trained.error();
-  if (Status kept = keep_earlier_model(options.bank); !kept) return kept.error();
-  if (Status written = paper::write_paper_bank(options.bank, trained->bank); !written) return written.error();
-  return std::move(trained->report);
 }
 
 Status calibrate(const CalibrateOptions& options) {
@@ -207,9 +174,6 @@ Status calibrate(const CalibrateOptions& options) {
   const Result<ArrayDescription> array = files::read_array(options.array);
   if (!array) return array.error();
   if (Status writable = check_writable(options.out); !writable) return writable;
-  if (!options.bank.empty()) {
-    if (Status writable = check_writable(options.bank); !writable) return writable;
-  }
   auto start = Clock::now();
   const Result<std::vector<RawFrame>> frames = sources::read_frames(options.frames, source_options(&*array));
   if (!frames) return frames.error();
@@ -227,9 +191,6 @@ Status calibrate(const CalibrateOptions& options) {
   if (!database) return database.error();
   const double circuit_s = seconds_since(start);
   progress.show("circuit", 1.0);
-  if (!options.bank.empty()) {
-    if (Status checked = paper::check_bank_samples(*database); !checked) return checked;
-  }
   Result<Calibration> calibration = calibration::calibrate(
       *database, *frames, [&](const std::string& stage, double share) { progress.show(stage, share); });
   if (!calibration) return calibration.error();
@@ -243,14 +204,8 @@ Status calibrate(const CalibrateOptions& options) {
   if (Status hashed = add_hashes(options, calibration->model.provenance); !hashed) return hashed;
   if (Status kept = keep_earlier_model(options.out); !kept) return kept;
   if (Status written = pipeline::write_model(options.out, calibration->model); !written) return written;
-  std::optional<BankTrainingReport> bank;
-  if (!options.bank.empty()) {
-    Result<BankTrainingReport> trained = train_bank(options, *database, progress);
-    if (!trained) return trained.error();
-    bank = std::move(*trained);
-  }
-  options.json ? print_json(calibration->report, bank, *array, database->circuit_fit)
-               : print_text(calibration->report, bank, *array);
+  options.json ? print_json(calibration->report, *array, database->circuit_fit)
+               : print_text(calibration->report, *array);
   if (!options.json && calibration->model.strip) {
     fmt::print("positions along the strip: learned from {} touches, \u00b1 {:.2f} mm\n", positions->size(),
                1e3 * calibration->model.strip->sigma_m);
@@ -267,8 +222,6 @@ void add_calibrate(Command& command) {
       .required();
   command.input_file("--loads", options->loads, "loads.csv: which load pressed where in which frame").required();
   command.output_model("--out", options->out, "Model file to write (safetensors)").required();
-  command.output_model("--bank", options->bank,
-                       "Also train the paper's bank of N-N-N-1 networks and write it here (16x16: minutes, 135 MB)");
   command.option("--settle", options->settle_s, "Skip the first seconds, while the array warms up [s]").shows_default();
   command.flag("--json", options->json, "Print the report as JSON");
   command.action([options] {

@@ -28,7 +28,6 @@
 #include "dermis/files/force_text.hpp"
 #include "dermis/files/safetensors.hpp"
 #include "dermis/files/text.hpp"
-#include "dermis/paper/paper_bank_file.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "dermis/recognition/classes_file.hpp"
 #include "reference.hpp"
@@ -108,15 +107,31 @@ const CLI::App& chosen_command(const CLI::App& app) {
   return named.empty() ? app : chosen_command(*named.back());
 }
 
-/// Names the problem of an unknown argument, and the name that may have been meant.
-std::string unknown(const std::string& argument, const CLI::App& command) {
+/// The commands at and below `command` that take an option, by their whole names in quotes.
+std::vector<std::string> takers_of(const std::string& option, const CLI::App& command, const std::string& name) {
+  std::vector<std::string> takers;
+  if (command.get_option_no_throw(option) != nullptr) takers.push_back(files::in_quotes(name));
+  for (const CLI::App* each : command.get_subcommands(nullptr)) {
+    const std::vector<std::string> below = takers_of(option, *each, name + " " + each->get_name());
+    takers.insert(takers.end(), below.begin(), below.end());
+  }
+  return takers;
+}
+
+/// Names the problem of an unknown argument of a command of `app`, and what may have been meant: a name that is near,
+/// or the few commands that take such an option.
+std::string unknown(const std::string& argument, const CLI::App& command, const CLI::App& app) {
   const bool is_option = argument.starts_with('-');
   const std::set<std::string> known = is_option ? options_of(command) : commands_of(command);
   if (known.empty()) return fmt::format("'{}' is one argument too many", argument);
   const std::string name = argument.substr(0, argument.find('='));
   const std::string nearest = nearest_name(name, known);
-  const std::string what = fmt::format("unknown {} '{}'", is_option ? "option" : "command", name);
-  return nearest.empty() ? what : fmt::format("{}; did you mean '{}'?", what, nearest);
+  std::string what = fmt::format("unknown {} '{}'", is_option ? "option" : "command", name);
+  if (!nearest.empty()) return fmt::format("{}; did you mean '{}'?", what, nearest);
+  constexpr std::size_t kFew = 2;
+  const std::vector<std::string> takers = is_option ? takers_of(name, app, app.get_name()) : std::vector<std::string>();
+  if (takers.empty() || takers.size() > kFew) return what;
+  return fmt::format("{}; it is one of {}", what, fmt::join(takers, " and "));
 }
 
 /// The mend where somebody wrote a force as two arguments, "200 g"; else empty.
@@ -133,7 +148,7 @@ std::string message_of(const CLI::ParseError& error, const CLI::App& app, std::s
   const std::vector<std::string> nobody_took = app.remaining(true);
   if (nobody_took.empty()) return first_line(error.what());
   const std::string& first = nobody_took.front();
-  return unknown(first, chosen_command(app)) + force_in_two(first, arguments);
+  return unknown(first, chosen_command(app), app) + force_in_two(first, arguments);
 }
 
 /// "simulate, calibrate, ... or serve"
@@ -147,10 +162,8 @@ std::string names_of(std::span<const CommandEntry> commands) {
 
 /// Says which of the command's files, of those that dermis writes, were written before such files had checksums.
 void tell_missing_checksums(const CLI::App& command) {
-  static constexpr std::array<std::pair<const char*, files::FileFormat>, 3> kFiles{
-      {{"--model", pipeline::kModelFormat},
-       {"--classes", recognition::kClassesFormat},
-       {"--bank", paper::kPaperBankFormat}}};
+  static constexpr std::array<std::pair<const char*, files::FileFormat>, 2> kFiles{
+      {{"--model", pipeline::kModelFormat}, {"--classes", recognition::kClassesFormat}}};
   for (const auto& [name, format] : kFiles) {
     const CLI::Option* const option = command.get_option_no_throw(name);
     if (option == nullptr || option->count() == 0) continue;
@@ -179,7 +192,7 @@ Result<std::string> help_of(const CLI::App& app, const std::vector<std::string>&
   std::string full_name = app.get_name();
   for (const std::string& name : names) {
     const auto commands = command->get_subcommands([&](const CLI::App* each) { return each->get_name() == name; });
-    if (commands.empty()) return bad_input(unknown(name, *command) + " (see dermis --help)");
+    if (commands.empty()) return bad_input(unknown(name, *command, app) + " (see dermis --help)");
     command = commands.front();
     full_name += " " + name;
   }
@@ -316,7 +329,7 @@ Option Command::output_folder(const std::string& name, std::string& folder, cons
 }
 
 Command Command::subcommand(const std::string& name, const std::string& summary) {
-  app_.require_subcommand(1);
+  app_.require_subcommand(has_action_ ? 0 : 1, 1);
   return {*app_.add_subcommand(name, summary), chosen_};
 }
 
@@ -329,7 +342,9 @@ void Command::action(std::function<Status()> action) {
 }
 
 void Command::action_with_exit_status(Action action) {
+  has_action_ = true;
   app_.callback([&chosen = chosen_, &command = app_, places = places_, action = std::move(action)] {
+    if (!command.get_subcommands().empty()) return;
     tell_missing_checksums(command);
     chosen = [places, action]() -> Result<int> {
       if (Status kept = places->files.check(places->is_forced); !kept) return kept.error();

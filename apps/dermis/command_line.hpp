@@ -66,7 +66,7 @@ class Command {
   Option output_folder(const std::string& name, std::string& folder, const std::vector<std::string>& files,
                        const std::string& help);
 
-  /// A command of this command, of which the user must name one.
+  /// A command of this command. The user must name one, unless this command has got an action before.
   Command subcommand(const std::string& name, const std::string& summary);
 
   void action(std::function<Status()> action);
@@ -83,6 +83,7 @@ class Command {
 
   CLI::App& app_;
   Action& chosen_;
+  bool has_action_ = false;
   std::shared_ptr<Places> places_ = std::make_shared<Places>();
 };
 

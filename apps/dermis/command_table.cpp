@@ -55,6 +55,7 @@ CommandTable table_of(const CLI::App& app, const std::string& above) {
   for (const CLI::App* command : app.get_subcommands(is_shown)) {
     table.commands.push_back(table_of(*command, table.name + " "));
   }
+  table.needs_command = app.get_require_subcommand_min() > 0;
   return table;
 }
 

@@ -30,6 +30,7 @@ struct CommandTable {
   std::vector<OptionRow> options;
   std::vector<OptionRow> arguments;
   std::vector<CommandTable> commands;
+  bool needs_command = false;  ///< One of these must be named.
 };
 
 /// The --help of a command and of all that are below it.

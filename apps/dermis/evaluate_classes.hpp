@@ -5,7 +5,7 @@
 #include <string>
 
 #include "dermis/core/result.hpp"
-#include "dermis/recognising/labelled_examples.hpp"
+#include "recognising/labelled_examples.hpp"
 
 namespace dermis::app {
 

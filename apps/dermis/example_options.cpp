@@ -16,4 +16,13 @@ Option add_example_options(Command& command, recognising::ExampleOptions& exampl
   return command.input("--labels", data.labels, "labels.csv: which frames are an example of which class");
 }
 
+void add_taught_examples(Command& command, recognising::ExampleOptions& examples) {
+  add_example_options(command, examples).required();
+  command.input_file("--model", examples.model,
+                     "Learn from the forces [N] of --in by this model of its array, or suit.toml of several");
+  command.input("--frames", examples.data.frames, "frames.npy: tared frames, the readings of all arrays side by side");
+  command.option("--rate", examples.data.rate_hz,
+                 "Frames a second [Hz]; default with --in: by the times of its frames");
+}
+
 }  // namespace dermis::app

@@ -22,13 +22,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How results begin: forces, contacts, answers, answers of splits, answers as JSON, PNG, reports.
-constexpr std::array<std::string_view, 7> kResults = {"time_s,status,",
+/// How results begin: forces, contacts, answers, answers of splits, answers as JSON, PNG, GIF, reports.
+constexpr std::array<std::string_view, 8> kResults = {"time_s,status,",
                                                       "time_s,id,phase,",
                                                       "first,last,time_s,class,",
                                                       "split,id,class,",
                                                       "{\"first\":",
                                                       "\x89PNG",
+                                                      "GIF89a",
                                                       "<!DOCTYPE html>\n<html lang=\"en\" xmlns="};
 
 bool is_result(std::string_view first_bytes) {

@@ -7,17 +7,16 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "commands.hpp"
 #include "dermis/files/atomic_file.hpp"
 #include "dermis/report/frame_picture.hpp"
-#include "dermis/views/array_view.hpp"
-#include "dermis/views/view_pictures.hpp"
 #include "seconds.hpp"
 #include "source_options.hpp"
 #include "stop_flag.hpp"
+#include "views/array_view.hpp"
+#include "views/view_pictures.hpp"
 
 namespace dermis::app {
 namespace {
@@ -49,16 +48,17 @@ Result<PictureRange> range_of(const ImageOptions& options) {
   if (!time) return time.error();
   if (*time <= range.from) return bad_input("--to: must be later than --from");
   range.to = *time;
-  if (range.to && !options.out.ends_with(".png")) {
-    return bad_input("--out: only .png can move; leave --from and --to out for one frame (--at)");
-  }
   return range;
 }
 
 Status check(const ImageOptions& options) {
   if (options.out == kStandardOutput) return bad_input("--out: '-' is no file; name one");
-  if (!options.out.ends_with(".png") && !options.out.ends_with(".svg")) {
-    return bad_input("--out: '" + options.out + "': must end in .png or .svg");
+  const bool is_film = options.to_s.has_value();
+  const bool has_ending =
+      is_film ? options.out.ends_with(".gif") : options.out.ends_with(".png") || options.out.ends_with(".svg");
+  if (!has_ending) {
+    return bad_input("--out: '" + options.out + "': must end in " +
+                     (is_film ? ".gif, as a film does" : ".png or .svg; a film (.gif) needs --from and --to"));
   }
   if (options.high && !(*options.high > 0.0 && std::isfinite(*options.high))) {
     return bad_input("--high: must be more than 0");
@@ -67,14 +67,11 @@ Status check(const ImageOptions& options) {
 }
 
 std::string bytes_of(const ImageOptions& options, const std::vector<report::FramePicture>& pictures) {
-  if (options.out.ends_with(".svg")) return report::svg_document(report::frame_drawing(pictures.front()));
-  if (!options.to_s) return report::png(report::frame_pixels(pictures.front()));
-  report::AnimatedPng moving;
-  for (const report::FramePicture& picture : pictures) {
-    moving.add(report::frame_pixels(picture),
-               static_cast<unsigned>(views::kPictureTime / std::chrono::milliseconds(1)));
+  if (options.to_s) {
+    return report::frame_film(pictures, std::chrono::duration_cast<std::chrono::milliseconds>(views::kPictureTime));
   }
-  return std::move(moving).take();
+  if (options.out.ends_with(".svg")) return report::svg_document(report::frame_drawing(pictures.front()));
+  return report::frame_png(pictures.front());
 }
 
 Status image(const ImageOptions& options) {
@@ -101,10 +98,10 @@ void add_image(Command& command) {
   command.input_file(
       "--model", options->model,
       "Model file, or array.toml where readings are forces: draws newtons and contacts instead of counts");
-  command.output("--out", options->out, "Picture to write: .png or .svg").required();
+  command.output("--out", options->out, "Picture to write: .png or .svg, or a film: .gif").required();
   const Option frame = command.option("--frame", options->frame, "Number of the frame, from 0");
   const Option at = command.option("--at", options->at_s, "The frame at this time after the first [s]").excludes(frame);
-  const Option from = command.option("--from", options->from_s, "Start of an animation, after the first frame [s]")
+  const Option from = command.option("--from", options->from_s, "Start of a film, after the first frame [s]")
                           .excludes(frame)
                           .excludes(at);
   const Option to = command.option("--to", options->to_s, "Its end [s]").excludes(frame).excludes(at);

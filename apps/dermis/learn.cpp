@@ -6,14 +6,12 @@
 #include <chrono>
 #include <memory>
 #include <numeric>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "commands.hpp"
 #include "confusion_table.hpp"
 #include "dermis/files/atomic_file.hpp"
-#include "dermis/paper/bp_classifier.hpp"
 #include "dermis/recognition/classes_file.hpp"
 #include "dermis/recognition/comparison.hpp"
 #include "dermis/recognition/dataset.hpp"
@@ -96,8 +94,7 @@ void print_report(const Learned& learned, double seconds) {
 Status write_report(const std::string& folder, const LabelledFrames& data, const LearningSet& set,
                     const Learned& learned, Progress& progress) {
   if (folder.empty()) return Done{};
-  const recognition::ComparedEstimator network{"BP network", paper::answer_by_bp_network};
-  const auto estimators = recognition::compare_estimators(data, set, learned, std::span(&network, 1),
+  const auto estimators = recognition::compare_estimators(data, set, learned, {},
                                                           [&](double share) { progress.show("comparison", share); });
   if (!estimators) return estimators.error();
   return report::write_recognition_report(folder, data, learned, *estimators);
@@ -161,13 +158,7 @@ Status learn(const LearnOptions& options) {
 
 void add_learn(Command& command) {
   auto options = std::make_shared<LearnOptions>();
-  add_example_options(command, options->examples).required();
-  command.input_file("--model", options->examples.model,
-                     "Learn from the forces [N] of --in by this model of its array, or suit.toml of several");
-  command.input("--frames", options->examples.data.frames,
-                "frames.npy: tared frames, the readings of all arrays side by side");
-  command.option("--rate", options->examples.data.rate_hz,
-                 "Frames a second [Hz]; default with --in: by the times of its frames");
+  add_taught_examples(command, options->examples);
   command.output_model("--out", options->out, "Classes to write (safetensors)");
   command.input("--splits", options->splits, "splits.csv: for each split, learn from all labels that it does not name");
   command.output("--predictions", options->predictions, "File to write: the answers for the labels of --splits");

@@ -81,7 +81,11 @@ std::string synopsis(const CommandTable& command) {
     const std::string name = usage(argument, true);
     text += argument.is_required ? " " + name : " [" + name + "]";
   }
-  if (!command.commands.empty()) text += " " + italic("command");
+  if (command.needs_command) {
+    text += " " + italic("command");
+  } else if (!command.commands.empty()) {
+    text += " [" + italic("command") + "]";
+  }
   return text + "\n";
 }
 

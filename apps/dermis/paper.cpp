@@ -15,6 +15,7 @@
 #include "dermis/paper/bank_reproduction.hpp"
 #include "dermis/paper/paper_report.hpp"
 #include "dermis/paper/peaks_reproduction.hpp"
+#include "paper_commands.hpp"
 #include "status_line.hpp"
 
 namespace dermis::app {
@@ -147,6 +148,13 @@ void add_paper(Command& command) {
   command.flag("--quick", options->quick,
                "A 4x4 array and few steps: it shows that everything works, not what the paper says");
   command.action([options] { return paper(*options); });
+  Command calibrate = command.subcommand("calibrate", "Train the paper's bank of N-N-N-1 networks on known loads");
+  add_paper_calibrate(calibrate);
+  Command evaluate =
+      command.subcommand("evaluate", "Measure the bank's accuracy on known loads, beside that of dermis");
+  add_paper_evaluate(evaluate);
+  Command learn = command.subcommand("learn", "Compare a BP network with dermis on examples of poses or gestures");
+  add_paper_learn(learn);
 }
 
 }  // namespace dermis::app

@@ -10,7 +10,7 @@
 #include "commands.hpp"
 #include "dermis/files/atomic_file.hpp"
 #include "dermis/files/text.hpp"
-#include "dermis/recognising/source_recogniser.hpp"
+#include "recognising/source_recogniser.hpp"
 #include "source_options.hpp"
 #include "status_line.hpp"
 

@@ -16,10 +16,10 @@
 
 #include "commands.hpp"
 #include "dermis/report/terminal_picture.hpp"
-#include "dermis/views/array_view.hpp"
-#include "dermis/views/view_player.hpp"
 #include "source_options.hpp"
 #include "stop_flag.hpp"
+#include "views/array_view.hpp"
+#include "views/view_player.hpp"
 
 namespace dermis::app {
 namespace {

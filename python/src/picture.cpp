@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "bindings.hpp"
 #include "dermis/report/frame_picture.hpp"
-#include "dermis/views/array_view.hpp"
 
 namespace dermis::python {
 namespace {
@@ -17,9 +16,9 @@ py::bytes picture(const py::object& values, const std::string& title, const std:
   frame.rows = static_cast<std::size_t>(taxels.shape(0));
   frame.cols = static_cast<std::size_t>(taxels.shape(1));
   frame.values.assign(taxels.data(), taxels.data() + taxels.size());
-  frame.high = views::force_scale(views::largest_of(frame.values));
+  frame.high = report::force_scale(report::largest_of(frame.values));
   frame.unit = unit;
-  return report::png(report::frame_pixels(frame));
+  return report::frame_png(frame);
 }
 
 }  // namespace

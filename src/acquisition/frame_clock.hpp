@@ -9,7 +9,7 @@
 
 #include "acquisition/arrival_meter.hpp"
 #include "acquisition/chunk_stamps.hpp"
-#include "dermis/acquisition/clock_mapping.hpp"
+#include "acquisition/clock_mapping.hpp"
 #include "dermis/core/frame_source.hpp"
 #include "dermis/core/frames.hpp"
 

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "calibration/memory/memory_training.hpp"
-#include "dermis/calibration/baselines.hpp"
+#include "calibration/tables/baselines.hpp"
 
 namespace dermis::calibration {
 namespace {

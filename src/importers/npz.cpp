@@ -11,7 +11,7 @@
 #include "dermis/files/input.hpp"
 #include "dermis/files/npy.hpp"
 #include "dermis/files/text.hpp"
-#include "importers/zip_entries.hpp"
+#include "importers/zip_archive.hpp"
 
 namespace dermis::importers {
 namespace {
@@ -19,39 +19,38 @@ namespace {
 constexpr std::string_view kEnding = ".npy";
 
 /// As numpy.load() calls it.
-std::string_view array_name(const ZipEntry& entry) {
-  std::string_view name = entry.name;
-  if (name.ends_with(kEnding)) name.remove_suffix(kEnding.size());
-  return name;
+std::string array_name(std::string entry) {
+  if (entry.ends_with(kEnding)) entry.resize(entry.size() - kEnding.size());
+  return entry;
 }
 
-Result<ZipEntry> choose(const std::vector<ZipEntry>& entries, const std::string& file, const std::string& array) {
-  if (entries.empty()) return bad_input(file + ": holds no array");
-  if (array.empty() && entries.size() == 1) return entries.front();
-  const auto found =
-      std::find_if(entries.begin(), entries.end(), [&](const ZipEntry& entry) { return array_name(entry) == array; });
-  if (found != entries.end()) return *found;
+/// The place of the array in `arrays`.
+Result<std::size_t> choose(const std::vector<std::string>& arrays, const std::string& file, const std::string& array) {
+  if (arrays.empty()) return bad_input(file + ": holds no array");
+  if (array.empty() && arrays.size() == 1) return std::size_t{0};
+  const auto found = std::find(arrays.begin(), arrays.end(), array);
+  if (found != arrays.end()) return static_cast<std::size_t>(found - arrays.begin());
   constexpr std::size_t kMostNames = 50;
   std::string names;
-  for (std::size_t i = 0; i < std::min(entries.size(), kMostNames); ++i) {
-    names += (i > 0 ? ", " : "") + files::in_quotes(array_name(entries[i]));
+  for (std::size_t i = 0; i < std::min(arrays.size(), kMostNames); ++i) {
+    names += (i > 0 ? ", " : "") + files::in_quotes(arrays[i]);
   }
   const std::string which = array.empty() ? "name one" : "has no array " + files::in_quotes(array);
-  return bad_input(file + ": " + which + ", as " +
-                   files::in_quotes(file + "#" + std::string(array_name(entries.front()))) + "; it has: " + names);
+  return bad_input(file + ": " + which + ", as " + files::in_quotes(file + "#" + arrays.front()) +
+                   "; it has: " + names);
 }
 
 class Npz final : public FrameSource {
  public:
-  /// `reader` reads from `bytes`.
-  Npz(std::unique_ptr<files::NpyReader> reader, const ZipEntryStream& bytes, std::string name)
-      : reader_(std::move(reader)), bytes_(bytes), name_(std::move(name)) {}
+  /// `reader` reads from `archive`.
+  Npz(std::unique_ptr<ZipArchive> archive, std::unique_ptr<files::NpyReader> reader, std::string name)
+      : archive_(std::move(archive)), reader_(std::move(reader)), name_(std::move(name)) {}
 
   Result<bool> next(RawFrame& frame) override {
     Result<bool> more = reader_->next(frame);
-    if (bytes_.bad()) return files::read_failure(name_);
-    if ((!more || !*more) && bytes_.is_damaged()) {
-      return bad_input(name_ + ": is damaged: its bytes have not the checksum of the archive; save it again");
+    if (archive_->is_bad()) return files::read_failure(name_);
+    if ((!more || !*more) && !archive_->damage().empty()) {
+      return bad_input(name_ + ": is damaged: " + archive_->damage() + "; save it again");
     }
     return more;
   }
@@ -59,8 +58,8 @@ class Npz final : public FrameSource {
   [[nodiscard]] std::optional<FrameShape> shape() const override { return reader_->shape(); }
 
  private:
+  std::unique_ptr<ZipArchive> archive_;
   std::unique_ptr<files::NpyReader> reader_;
-  const ZipEntryStream& bytes_;
   std::string name_;
 };
 
@@ -68,19 +67,21 @@ class Npz final : public FrameSource {
 
 Result<std::unique_ptr<FrameSource>> open_npz(std::unique_ptr<std::istream> in, const std::string& name,
                                               const ImportOptions& options) {
-  const Result<std::vector<ZipEntry>> entries = list_zip(*in);
-  if (in->bad()) return files::read_failure(name);
-  if (!entries) return bad_input(name + ": " + entries.error().message);
-  const Result<ZipEntry> entry = choose(*entries, name, options.array);
-  if (!entry) return entry.error();
-  Result<std::unique_ptr<ZipEntryStream>> opened = open_zip_entry(std::move(in), *entry, name);
+  Result<std::unique_ptr<ZipArchive>> opened = ZipArchive::open(std::move(in), name);
   if (!opened) return opened.error();
-  const ZipEntryStream& bytes = **opened;
-  const std::string place = entries->size() > 1 ? name + "#" + std::string(array_name(*entry)) : name;
+  std::unique_ptr<ZipArchive> archive = *std::move(opened);
+  std::vector<std::string> arrays = archive->entries();
+  std::transform(arrays.begin(), arrays.end(), arrays.begin(), array_name);
+  const Result<std::size_t> chosen = choose(arrays, name, options.array);
+  if (!chosen) return chosen.error();
+  const Status entered = archive->enter(*chosen);
+  if (archive->is_bad()) return files::read_failure(name);
+  if (!entered) return bad_input(name + ": " + entered.error().message);
+  const std::string place = arrays.size() > 1 ? name + "#" + arrays[*chosen] : name;
   Result<std::unique_ptr<files::NpyReader>> reader =
-      files::NpyReader::open(*std::move(opened), place, {*options.rate_hz, options.shape});
+      files::NpyReader::open(std::make_unique<std::istream>(archive.get()), place, {*options.rate_hz, options.shape});
   if (!reader) return reader.error();
-  return std::unique_ptr<FrameSource>(std::make_unique<Npz>(*std::move(reader), bytes, place));
+  return std::unique_ptr<FrameSource>(std::make_unique<Npz>(std::move(archive), *std::move(reader), place));
 }
 
 }  // namespace dermis::importers

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/messages/cdr.hpp"
+#include "messages/cdr.hpp"
 
 namespace dermis::messages {
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "messages/grid.hpp"
 
-#include "dermis/messages/cdr.hpp"
+#include "messages/cdr.hpp"
 #include "messages/header.hpp"
 
 namespace dermis::messages {

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "dermis/core/frames.hpp"
-#include "dermis/messages/cdr.hpp"
+#include "messages/cdr.hpp"
 
 namespace dermis::messages {
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <cstring>
 
-#include "dermis/messages/cdr.hpp"
+#include "messages/cdr.hpp"
 #include "messages/grid.hpp"
 #include "messages/header.hpp"
 #include "messages/point_field.hpp"

@@ -8,7 +8,7 @@
 #include <cstring>
 
 #include "dermis/core/array_description.hpp"
-#include "dermis/messages/cdr.hpp"
+#include "messages/cdr.hpp"
 #include "messages/count_words.hpp"
 #include "messages/grid.hpp"
 #include "messages/header.hpp"
@@ -61,30 +61,6 @@ void read_floats(std::span<const std::uint8_t> row, bool big_endian, std::span<f
 constexpr std::array<GridField, 3> kGridFields{GridField{"newtons", 0, PackedElementType::float32},
                                                {"sigma_newtons", kSigmaOffset, PackedElementType::float32},
                                                {"status", kCellStatusOffset, PackedElementType::uint8}};
-
-bool read_grid_fields(CdrReader& reader) {
-  bool expected = reader.read<std::uint32_t>() == kGridFields.size();
-  for (const GridField& field : kGridFields) {
-    expected = expected && reader.read_text() == field.name && reader.read<std::uint32_t>() == field.offset &&
-               reader.read<std::uint8_t>() == static_cast<std::uint8_t>(field.type);
-  }
-  return expected;
-}
-
-bool read_cells(std::span<const std::uint8_t> cells, ForceFrame& frame) {
-  const std::size_t taxel_count = cells.size() / kCellBytes;
-  frame.newtons.resize(taxel_count);
-  frame.sigma_newtons.resize(taxel_count);
-  frame.taxels.resize(taxel_count);
-  for (std::size_t i = 0; i < taxel_count; ++i) {
-    const std::uint8_t* cell = cells.data() + i * kCellBytes;
-    std::memcpy(&frame.newtons[i], cell, sizeof(float));
-    std::memcpy(&frame.sigma_newtons[i], cell + kSigmaOffset, sizeof(float));
-    if (cell[kCellStatusOffset] > static_cast<std::uint8_t>(TaxelStatus::invalid)) return false;
-    frame.taxels[i] = static_cast<TaxelStatus>(cell[kCellStatusOffset]);
-  }
-  return true;
-}
 
 bool is_possible(std::size_t rows, std::size_t cols) {
   return rows >= 1 && rows <= kMaxLines && cols >= 1 && cols <= kMaxLines;
@@ -205,38 +181,10 @@ void encode_grid(const ForceFrame& frame, const FrameShape& shape, const Pitch& 
                message);
 }
 
-Result<FrameShape> decode_grid(std::span<const std::uint8_t> message, ForceFrame& frame) {
-  CdrReader reader(message);
-  frame.time = read_header(reader);
-  for (int i = 0; i < 7; ++i) static_cast<void>(reader.read<double>());  // pose
-  const std::size_t cols = reader.read<std::uint32_t>();
-  static_cast<void>(reader.read<double>());  // pitch
-  static_cast<void>(reader.read<double>());
-  const std::size_t row_stride = reader.read<std::uint32_t>();
-  const std::size_t cell_stride = reader.read<std::uint32_t>();
-  const bool are_forces = read_grid_fields(reader) && cell_stride == kCellBytes;
-  const std::span<const std::uint8_t> cells = are_forces ? reader.read_bytes() : std::span<const std::uint8_t>{};
-  if (!reader.good()) return not_whole(grid_type());
-  if (!are_forces) return bad_input("the grid has other fields than newtons, sigma_newtons and status");
-  if (cols == 0 || cols > kMaxLines || row_stride != cols * kCellBytes || cells.size() % row_stride != 0 ||
-      !is_possible(cells.size() / row_stride, cols) || !read_cells(cells, frame)) {
-    return bad_input("the grid holds no forces of 1x1 to 1024x1024 taxels");
-  }
-  return FrameShape{cells.size() / row_stride, cols};
-}
-
 void encode_frame_status(const ForceFrame& frame, std::vector<std::uint8_t>& message) {
   CdrWriter writer(message);
   writer.write(frame.time.count());
   writer.write(static_cast<std::uint16_t>(frame.status));
-}
-
-Status decode_frame_status(std::span<const std::uint8_t> message, ForceFrame& frame) {
-  CdrReader reader(message);
-  frame.time = read_nanos(reader);
-  frame.status = static_cast<FrameStatus>(reader.read<std::uint16_t>());
-  if (!reader.good()) return not_whole(frame_status_type());
-  return Done{};
 }
 
 }  // namespace dermis::messages

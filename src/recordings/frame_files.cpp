@@ -17,7 +17,7 @@
 #include "dermis/importers/text_matrix.hpp"
 #include "dermis/importers/xsensor.hpp"
 #include "dermis/recordings/recording.hpp"
-#include "dermis/recordings/wiresens_hdf5.hpp"
+#include "recordings/wiresens_hdf5.hpp"
 
 namespace dermis::recordings {
 namespace {

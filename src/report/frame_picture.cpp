@@ -9,10 +9,12 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <optional>
+#include <utility>
 
-#include "dermis/report/canvas.hpp"
-#include "dermis/report/heat_map.hpp"
-#include "report/raster.hpp"
+#include "report/brush.hpp"
+#include "report/gif.hpp"
+#include "report/pixel_brush.hpp"
 
 namespace dermis::report {
 namespace {
@@ -29,31 +31,12 @@ constexpr double kBarWidth = 14.0;
 constexpr double kBarLabels = 64.0;
 constexpr std::size_t kBarSteps = 100;
 constexpr std::size_t kMostTicks = 8;
-constexpr double kPixelsPerLength = 2.0;
 constexpr double kLeastWidth = 340.0;
 
 constexpr Colour kPaper{255, 255, 255};
 constexpr Colour kInk{32, 33, 36};
 constexpr Colour kMuted{110, 113, 120};
 constexpr Colour kNothing{226, 227, 230};
-constexpr Colour kMark{255, 255, 255};
-constexpr Colour kMarkEdge{20, 20, 24};
-
-/// The tools for painting a picture.
-class Brush {
- public:
-  Brush() = default;
-  Brush(const Brush&) = delete;
-  Brush& operator=(const Brush&) = delete;
-  virtual ~Brush() = default;
-
-  virtual void fill(Point corner, double width, double height, Colour colour) = 0;
-  virtual void lines(const std::vector<std::vector<Point>>& lines, double width, Colour colour) = 0;
-  /// `size` is the height of a capital.
-  virtual void text(Anchor anchor, Point place, double size, Colour colour, const std::string& words) = 0;
-  /// A text with an edge, which can be read on any ground.
-  virtual void label(Point centre, double size, const std::string& words) = 0;
-};
 
 class SvgBrush final : public Brush {
  public:
@@ -76,55 +59,24 @@ class SvgBrush final : public Brush {
   }
   void label(Point centre, double size, const std::string& words) override {
     write(Anchor::middle, {centre.x, centre.y + 0.5 * size}, size,
-          fmt::format("fill:{};stroke:{};stroke-width:3px;paint-order:stroke;font-weight:600", to_hex(kMark),
-                      to_hex(kMarkEdge)),
+          fmt::format("fill:{};stroke:{};stroke-width:{}px;paint-order:stroke;font-weight:600", to_hex(kMark),
+                      to_hex(kMarkEdge), kLabelEdge),
           words);
   }
   [[nodiscard]] std::string take() && { return std::move(elements_); }
 
  private:
   void write(Anchor anchor, Point place, double size, const std::string& style, const std::string& words) {
-    static constexpr double kCapitalShare = 0.72;  // of the size of a sans-serif face
     const char* const anchors[] = {"start", "middle", "end"};
     fmt::format_to(
         std::back_inserter(elements_),
         "<text x=\"{}\" y=\"{}\" text-anchor=\"{}\" style=\"font-family:system-ui,sans-serif;font-size:{}px;{}\""
         ">{}</text>\n",
         coordinate(place.x), coordinate(place.y), anchors[static_cast<std::size_t>(anchor)],
-        coordinate(size / kCapitalShare), style, escape_xml(words));
+        coordinate(font_size(size)), style, escape_xml(words));
   }
 
   std::string elements_;
-};
-
-class PixelBrush final : public Brush {
- public:
-  PixelBrush(double width, double height) : raster_(width, height, kPixelsPerLength, kPaper) {}
-
-  void fill(Point corner, double width, double height, Colour colour) override {
-    raster_.fill(corner, width, height, colour);
-  }
-  void lines(const std::vector<std::vector<Point>>& lines, double width, Colour colour) override {
-    raster_.stroke(lines, width, colour);
-  }
-  void text(Anchor anchor, Point place, double size, Colour colour, const std::string& words) override {
-    const double share = anchor == Anchor::start ? 0.0 : anchor == Anchor::middle ? 0.5 : 1.0;
-    place.x -= share * stroke_text_width(words, size);
-    write(place, size, 0.14 * size, colour, words);
-  }
-  void label(Point centre, double size, const std::string& words) override {
-    const Point place{centre.x - 0.5 * stroke_text_width(words, size), centre.y + 0.5 * size};
-    write(place, size, 0.14 * size + 3.0, kMarkEdge, words);
-    write(place, size, 0.17 * size, kMark, words);
-  }
-  [[nodiscard]] Pixels take() && { return std::move(raster_).take(); }
-
- private:
-  void write(Point place, double size, double width, Colour colour, const std::string& words) {
-    raster_.stroke(text_strokes(words, place, size), width, colour);
-  }
-
-  Raster raster_;
 };
 
 class Painter {
@@ -244,6 +196,21 @@ class Painter {
 
 }  // namespace
 
+double force_scale(double newtons) {
+  double decade = 1.0;
+  while (decade < 1e9 && 10.0 * decade <= newtons) decade *= 10.0;
+  for (const double step : {1.0, 2.0, 5.0}) {
+    if (newtons <= step * decade) return step * decade;
+  }
+  return 10.0 * decade;
+}
+
+double largest_of(const std::vector<double>& values) {
+  double largest = 0.0;
+  for (const double value : values) largest = std::max(largest, std::isfinite(value) ? value : 0.0);
+  return largest;
+}
+
 Drawing frame_drawing(const FramePicture& picture) {
   const Painter painter(picture);
   SvgBrush brush;
@@ -251,11 +218,24 @@ Drawing frame_drawing(const FramePicture& picture) {
   return {painter.width(), painter.height(), picture.title + ", " + picture.subtitle, std::move(brush).take()};
 }
 
-Pixels frame_pixels(const FramePicture& picture) {
+std::string frame_png(const FramePicture& picture) {
   const Painter painter(picture);
   PixelBrush brush(painter.width(), painter.height());
   painter.paint(brush);
-  return std::move(brush).take();
+  return brush.png();
+}
+
+std::string frame_film(std::span<const FramePicture> pictures, std::chrono::milliseconds time) {
+  assert(!pictures.empty());
+  std::optional<Gif> film;
+  for (const FramePicture& picture : pictures) {
+    const Painter painter(picture);
+    PixelBrush brush(painter.width(), painter.height());
+    painter.paint(brush);
+    if (!film) film.emplace(brush.width(), brush.height(), time);
+    film->add(brush);
+  }
+  return std::move(*film).take();
 }
 
 }  // namespace dermis::report

@@ -28,10 +28,7 @@ constexpr std::size_t kPanelColumns = 4;
 constexpr const char* kHowToRead =
     "All learn from the same examples, are asked the same ones and see the same folds; dermis is the recipe of "
     "docs/recognition.md, and what 'dermis learn' writes. The nearest frame compares what is held, taxel by taxel, and "
-    "gives no probability. The BP network sees the features of dermis; its size and the end of its training are chosen "
-    "by a fold of what it learns from, and its probabilities are shares of the odds of its outputs. There is no "
-    "convolutional network: it would have to learn thousands of weights from these examples, and dermis has no engine "
-    "for one.";
+    "gives no probability.";
 
 std::string share(double value) {
   return fmt::format("{:.1f} %", 100.0 * value);

@@ -99,18 +99,22 @@ std::string open_svg(const Drawing& drawing) {
 
 }  // namespace
 
-std::string escape_xml(std::string_view text) {
-  std::string escaped;
+std::string valid_utf8(std::string_view text) {
+  std::string valid;
   while (!text.empty()) {
     const std::size_t size = character_bytes(text);
-    if (size == 0) {
-      escaped += kReplacement;
-    } else if (const std::string_view name = entity(text.front()); !name.empty()) {
-      escaped += name;
-    } else {
-      escaped += text.substr(0, size);
-    }
+    valid += size == 0 ? kReplacement : text.substr(0, size);
     text.remove_prefix(std::max<std::size_t>(size, 1));
+  }
+  return valid;
+}
+
+std::string escape_xml(std::string_view text) {
+  std::string escaped;
+  for (const char character : valid_utf8(text)) {
+    const std::string_view name = entity(character);
+    if (name.empty()) escaped += character;
+    escaped += name;
   }
   return escaped;
 }

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "dermis/report/tactile_image.hpp"
 #include "dermis/report/wording.hpp"
 #include "report/figures.hpp"
+#include "report/tactile_image.hpp"
 
 namespace dermis::report {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/report/tactile_image.hpp"
+#include "report/tactile_image.hpp"
 
 #include <algorithm>
 #include <cassert>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/acquisition/clock_mapping.hpp"
+#include "acquisition/clock_mapping.hpp"
 
 #include <gtest/gtest.h>
 

@@ -148,11 +148,9 @@ class MissingFiles(SmallArray):
 
     def test_a_bank(self):
         absent = self.work / "absent"
-        self.refuse([*self.evaluate_arguments(), "--bank", absent], [absent])
-        self.refuse(
-            [*self.evaluate_arguments(), "--bank", self.model],
-            [self.model, "not a bank of the paper", "dermis calibrate"],
-        )
+        evaluate = ["paper", *self.evaluate_arguments(), "--bank"]
+        self.refuse([*evaluate, absent], [absent])
+        self.refuse([*evaluate, self.model], [self.model, "not a bank of the paper", "dermis paper calibrate"])
 
     def test_a_folder_instead_of_a_file(self):
         self.refuse(self.run_arguments(self.work / "f.csv", **{"in": self.root}), [self.root])

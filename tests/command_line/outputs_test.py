@@ -11,12 +11,13 @@ from support import SmallArray, dermis
 
 # What each command reads and writes: options, or arguments by their place.
 COMMANDS = {
-    "calibrate": (("--array", "--frames", "--loads"), ("--out", "--bank")),
+    "calibrate": (("--array", "--frames", "--loads"), ("--out",)),
     "circuit forward": (("--array", "--conductance"), ("--out",)),
     "circuit invert": (("--array", "--readings"), ("--out", "--sigma")),
     "convert": (("in", "--array"), ("out",)),
     "image": (("--in", "--model"), ("--out",)),
     "learn": (("--labels", "--in", "--model", "--splits", "--open"), ("--out", "--predictions", "--open-predictions")),
+    "paper calibrate": (("--array", "--frames", "--loads"), ("--bank",)),
     "recalibrate": (("--model", "--frames", "--loads"), ("--out",)),
     "recognise": (("--classes", "--in", "--model", "--extra"), ("--out",)),
     "record": (("--from", "--array", "--model"), ("--out",)),
@@ -27,14 +28,11 @@ COMMANDS = {
 # And what is written into a folder.
 FOLDERS = {
     "simulate": (("--array", "--physics"), "--out", ("frames.csv", "loads.csv", "contacts.csv", "origin.toml")),
-    "evaluate": (
-        ("--model", "--frames", "--loads", "--bank", "--classes", "--in", "--labels"),
-        "--report",
-        ("index.html",),
-    ),
+    "evaluate": (("--model", "--frames", "--loads", "--classes", "--in", "--labels"), "--report", ("index.html",)),
+    "paper evaluate": (("--model", "--frames", "--loads", "--bank"), "--report", ("index.html",)),
     "learn": (("--labels", "--in", "--model", "--splits", "--open"), "--report", ("index.html",)),
 }
-MODELS = {("calibrate", "--out"), ("calibrate", "--bank"), ("learn", "--out"), ("recalibrate", "--out")}
+MODELS = {("calibrate", "--out"), ("learn", "--out"), ("paper calibrate", "--bank"), ("recalibrate", "--out")}
 PROTECTED = {
     "a recording": b"\x89MCAP0\r\n",
     "a model": b"\x10\0\0\0\0\0\0\0{}              ",
@@ -81,7 +79,7 @@ class NothingIsOverwritten(SmallArray):
 
     def test_every_command_that_writes_is_named_here(self):
         commands = re.findall(r"^  (\w+) {2,}", dermis("--help").stdout.split("Subcommands:")[1], re.MULTILINE)
-        names = [*(set(commands) - {"circuit"}), "circuit forward", "circuit invert"]
+        names = [*(set(commands) - {"circuit"}), "circuit forward", "circuit invert", "paper calibrate", "paper evaluate"]
         writing = {name for name in names if "--force" in dermis(*name.split(), "--help").stdout}
         self.assertEqual(writing, {*COMMANDS, *FOLDERS, "paper"})
 
@@ -100,11 +98,8 @@ class NothingIsOverwritten(SmallArray):
                         path.unlink()
 
     def test_a_folder_is_not_written_over_an_input(self):
-        required = {
-            "simulate": {"--array": self.array, "--scene": "idle"},
-            "evaluate": {},
-            "learn": {"--labels": self.array},
-        }
+        required = {"simulate": {"--array": self.array, "--scene": "idle"}, "evaluate": {}, "paper evaluate": {"--bank": self.array},
+                    "learn": {"--labels": self.array}}
         folder, link = self.work / "folder", self.work / "link"
         folder.mkdir()
         for command, (inputs, option, files) in FOLDERS.items():
@@ -115,11 +110,9 @@ class NothingIsOverwritten(SmallArray):
                 for named in (path, link):
                     with self.subTest(command=command, read=read, file=file, named=named):
                         options = {**required[command], read: named, option: folder}
-                        result = dermis(command, *itertools.chain(*options.items()), "--force")
-                        self.assertEqual(
-                            (result.returncode, result.stderr),
-                            (2, f"dermis: {option}: is the file of {read}; name another\n"),
-                        )
+                        result = dermis(*command.split(), *itertools.chain(*options.items()), "--force")
+                        self.assertEqual((result.returncode, result.stderr),
+                                         (2, f"dermis: {option}: is the file of {read}; name another\n"))
                         self.assertEqual(path.read_text(), "valuable")
                 link.unlink()
                 path.unlink()
@@ -237,14 +230,12 @@ class NothingIsOverwritten(SmallArray):
         self.assertNotEqual(model.read_bytes(), earlier)
 
     def test_tables_and_pictures_are_replaced_and_it_says_so(self):
-        forces, contacts, picture, drawing = (
-            self.work / name for name in ("forces.csv", "contacts.csv", "map.png", "map.svg")
-        )
-        for arguments, paths in (
-            ((*self.run_arguments(forces), "--contacts", contacts), (forces, contacts)),
-            (("image", "--in", self.contacts / "frames.csv", "--out", picture), (picture,)),
-            (("image", "--in", self.contacts / "frames.csv", "--out", drawing), (drawing,)),
-        ):
+        forces, contacts, picture, drawing, film = (self.work / name for name in
+                                                    ("forces.csv", "contacts.csv", "map.png", "map.svg", "map.gif"))
+        for arguments, paths in (((*self.run_arguments(forces), "--contacts", contacts), (forces, contacts)),
+                                 (("image", "--in", self.contacts / "frames.csv", "--out", picture), (picture,)),
+                                 (("image", "--in", self.contacts / "frames.csv", "--out", drawing), (drawing,)),
+                                 (("image", "--in", self.contacts / "frames.csv", "--from", 0, "--to", 1, "--out", film), (film,))):
             self.succeed(*arguments)
             result = dermis(*arguments)
             said = "".join(f"'{path}' exists and will be replaced\n" for path in paths)

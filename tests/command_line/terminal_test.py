@@ -12,30 +12,11 @@ from support import SmallArray, dermis
 
 # Each command that reads or writes a model or classes, a recording or a folder, by an option of that.
 NO_STREAMS = (
-    ("calibrate", "--frames"),
-    ("calibrate", "--out"),
-    ("calibrate", "--bank"),
-    ("check", "--model"),
-    ("doctor", "--model"),
-    ("evaluate", "--model"),
-    ("evaluate", "--bank"),
-    ("evaluate", "--classes"),
-    ("evaluate", "--report"),
-    ("image", "--model"),
-    ("learn", "--model"),
-    ("learn", "--out"),
-    ("learn", "--report"),
-    ("paper", "--report"),
-    ("recalibrate", "--model"),
-    ("recalibrate", "--out"),
-    ("recognise", "--classes"),
-    ("recognise", "--model"),
-    ("record", "--model"),
-    ("replay", "--model"),
-    ("run", "--model"),
-    ("simulate", "--out"),
-    ("top", "--model"),
-    ("watch", "--model"),
+    ("calibrate", "--frames"), ("calibrate", "--out"), ("check", "--model"), ("doctor", "--model"), ("evaluate", "--model"),
+    ("evaluate", "--classes"), ("evaluate", "--report"), ("image", "--model"), ("learn", "--model"),
+    ("learn", "--out"), ("learn", "--report"), ("paper", "--report"), ("paper calibrate", "--bank"), ("paper evaluate", "--bank"), ("recalibrate", "--model"), ("recalibrate", "--out"),
+    ("recognise", "--classes"), ("recognise", "--model"), ("record", "--model"), ("replay", "--model"), ("run", "--model"),
+    ("simulate", "--out"), ("top", "--model"), ("watch", "--model"),
 )
 
 
@@ -123,7 +104,7 @@ class Terminal(SmallArray):
     def test_what_is_no_table_is_no_stream(self):
         for command, option in NO_STREAMS:
             with self.subTest(command=command, option=option):
-                self.refuse((command, option, "-"), [f"{option}: '-' is no file; name one"])
+                self.refuse((*command.split(), option, "-"), [f"{option}: '-' is no file; name one"])
         self.refuse(("image", "--in", self.contacts / "frames.csv", "--out", "-"), ["--out: '-' is no file; name one"])
         self.refuse(("info", "-"), ["'-' is no file; name one"])
         self.refuse(("recover", "-", "--out", self.work / "r.mcap"), ["'-' is no file; name one"])

@@ -216,11 +216,15 @@ class Workflow(SmallArray):
 
 
 class PaperBank(SmallArray):
+    def train(self, bank, *arguments, **keywords):
+        return self.succeed("paper", "calibrate", "--array", self.array, "--frames", self.calibration / "frames.csv", "--loads",
+                            self.calibration / "loads.csv", "--bank", bank, *arguments, **keywords)
+
     def test_a_bank_is_one_more_estimator(self):
         bank = self.work / "bank.safetensors"
-        self.succeed(*self.calibrate_arguments(self.work / "m"), "--bank", bank)
-        presses = ("--frames", self.calibration / "frames.csv", "--loads", self.calibration / "loads.csv")
-        arguments = ("evaluate", "--model", self.work / "m", *presses, "--bank", bank)
+        self.assertIn("the paper's bank: 17620 unknowns", self.train(bank))
+        arguments = ("paper", "evaluate", "--model", self.model, "--bank", bank, "--frames", self.calibration / "frames.csv",
+                     "--loads", self.calibration / "loads.csv")
         estimators = json.loads(self.succeed(*arguments, "--json"))["estimators"]
         self.assertEqual([entry["name"] for entry in estimators][-1], "paper_bank")
         self.assertLess(estimators[-1]["median_relative_error"], 0.25)
@@ -229,10 +233,15 @@ class PaperBank(SmallArray):
         self.assertIn("N-N-N-1", (self.work / "report" / "index.html").read_text())
 
     def test_a_bank_gives_the_same_bytes_on_one_core(self):
-        arguments = self.calibrate_arguments(self.work / "m")
-        self.succeed(*arguments, "--bank", self.work / "a")
-        self.succeed(*arguments, "--bank", self.work / "b", prefix=("taskset", "-c", "0"))
+        found = json.loads(self.train(self.work / "a", "--json"))
+        self.assertEqual(found["never_loaded"], [])
+        self.train(self.work / "b", prefix=("taskset", "-c", "0"))
         self.assertEqual((self.work / "a").read_bytes(), (self.work / "b").read_bytes())
+
+    def test_who_asks_a_daily_command_for_the_bank_is_told_where_it_is(self):
+        taken = "unknown option '--bank'; it is one of 'dermis paper calibrate' and 'dermis paper evaluate'"
+        self.refuse([*self.calibrate_arguments(self.work / "m"), "--bank", self.work / "b"], [taken])
+        self.refuse([*self.evaluate_arguments(), "--bank", self.work / "b"], [taken])
 
 
 class Paper(SmallArray):

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "dermis/messages/cdr.hpp"
 #include "dermis/messages/ros_messages.hpp"
+#include "messages/cdr.hpp"
 
 namespace dermis::messages {
 
@@ -53,6 +53,7 @@ class DefinitionReader {
   [[nodiscard]] nlohmann::json read(CdrReader& reader, const std::string& type) const {
     if (type == "bool") return reader.read<std::uint8_t>() != 0;
     if (type == "uint8" || type == "byte") return reader.read<std::uint8_t>();
+    if (type == "uint16") return reader.read<std::uint16_t>();
     if (type == "int32") return reader.read<std::int32_t>();
     if (type == "uint32") return reader.read<std::uint32_t>();
     if (type == "int64") return reader.read<std::int64_t>();

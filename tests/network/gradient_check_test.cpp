@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/network/gradient_check.hpp"
+#include "support/gradient_check.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,11 +10,11 @@
 #include <limits>
 #include <vector>
 
-namespace dermis::network {
+namespace dermis::support {
 namespace {
 
 /// Two smooth residuals of three parameters; `error` is added to the entry [1, 2] of the Jacobian.
-ResidualFunction with_error(double error) {
+network::ResidualFunction with_error(double error) {
   return [error](std::span<const double> p, std::span<double> r, std::span<double> jacobian) {
     r[0] = p[0] * p[1] + 50.0 * p[2];
     r[1] = std::sin(p[0]) + std::exp(p[2]);
@@ -60,4 +60,4 @@ TEST(GradientCheck, finds_a_wrong_sign) {
 }
 
 }  // namespace
-}  // namespace dermis::network
+}  // namespace dermis::support

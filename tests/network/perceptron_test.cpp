@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "dermis/core/random.hpp"
-#include "dermis/network/gradient_check.hpp"
+#include "support/gradient_check.hpp"
 
 namespace dermis::network {
 namespace {
@@ -103,7 +103,7 @@ TEST(Perceptron, gradient_agrees_with_finite_differences) {
       const auto residual = [&](std::span<const double> parameters, std::span<double> y, std::span<double> jacobian) {
         y[0] = jacobian.empty() ? output(shape, parameters, x) : output_and_gradient(shape, parameters, x, jacobian);
       };
-      EXPECT_LT(jacobian_deviation(residual, 1, random_values(shape.parameter_count(), 1.0, random)), 1e-7);
+      EXPECT_LT(support::jacobian_deviation(residual, 1, random_values(shape.parameter_count(), 1.0, random)), 1e-7);
     }
   }
 }
@@ -219,7 +219,7 @@ TEST(MonotonePerceptron, chained_gradient_agrees_with_finite_differences) {
       y[0] = output_and_gradient(shape, parameters, x, jacobian);
       monotone::chain_gradient(shape, parameters, jacobian);
     };
-    EXPECT_LT(jacobian_deviation(residual, 1, random_values(shape.parameter_count(), 0.7, random)), 1e-7);
+    EXPECT_LT(support::jacobian_deviation(residual, 1, random_values(shape.parameter_count(), 0.7, random)), 1e-7);
   }
 }
 

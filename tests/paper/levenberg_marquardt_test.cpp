@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/paper/levenberg_marquardt.hpp"
+#include "paper/training/levenberg_marquardt.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/paper/surface.hpp"
+#include "paper/report/surface.hpp"
 
 #include <gtest/gtest.h>
 

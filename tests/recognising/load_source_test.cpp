@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/recognising/load_source.hpp"
+#include "recognising/load_source.hpp"
 
 #include <gtest/gtest.h>
 

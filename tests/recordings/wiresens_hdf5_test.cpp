@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/recordings/wiresens_hdf5.hpp"
+#include "recordings/wiresens_hdf5.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/views/array_view.hpp"
+#include "views/array_view.hpp"
 
 #include <gtest/gtest.h>
 
@@ -22,20 +22,6 @@ std::unique_ptr<ArrayView> opened(const std::string& from, const std::string& mo
   Result<std::unique_ptr<ArrayView>> view = ArrayView::open(from, model);
   EXPECT_TRUE(view) << error_of(view);
   return view ? *std::move(view) : nullptr;
-}
-
-TEST(ForceScale, ends_at_one_two_or_five_times_a_power_of_ten_and_at_one_at_least) {
-  EXPECT_EQ(force_scale(0.0), 1.0);
-  EXPECT_EQ(force_scale(1.0), 1.0);
-  EXPECT_EQ(force_scale(1.1), 2.0);
-  EXPECT_EQ(force_scale(3.0), 5.0);
-  EXPECT_EQ(force_scale(5.1), 10.0);
-  EXPECT_EQ(force_scale(120.0), 200.0);
-}
-
-TEST(LargestOf, counts_finite_values_alone) {
-  EXPECT_EQ(largest_of({}), 0.0);
-  EXPECT_EQ(largest_of({NAN, 2.0, INFINITY, 1.0}), 2.0);
 }
 
 TEST(ArrayView, shows_newtons_and_contacts_by_a_model) {

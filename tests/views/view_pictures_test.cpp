@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/views/view_pictures.hpp"
+#include "views/view_pictures.hpp"
 
 #include <gtest/gtest.h>
 
@@ -56,7 +56,7 @@ TEST(DrawPictures, of_one_frame_by_its_number_or_its_time) {
   EXPECT_EQ(numbers_of(counting.drawn({.from = 75 * kMs})), (std::vector<double>{8.0}));
 }
 
-TEST(DrawPictures, of_an_animation_every_40_ms_until_its_end_or_that_of_the_source) {
+TEST(DrawPictures, of_a_film_every_40_ms_until_its_end_or_that_of_the_source) {
   const Counting counting(20);
   EXPECT_EQ(numbers_of(counting.drawn({.from = 40 * kMs, .to = 160 * kMs})), (std::vector<double>{4.0, 7.0, 11.0}));
   EXPECT_EQ(numbers_of(counting.drawn({.from = 120 * kMs, .to = 1000 * kMs})).size(), 2U);

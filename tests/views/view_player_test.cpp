@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/views/view_player.hpp"
+#include "views/view_player.hpp"
 
 #include <gtest/gtest.h>
 

@@ -62,12 +62,8 @@ struct Pitch {
 /// is at the origin of `frame_id`, with columns along x and rows along y.
 void encode_grid(const ForceFrame& frame, const FrameShape& shape, const Pitch& pitch, std::string_view frame_id,
                  std::vector<std::uint8_t>& message);
-/// Sets time to the stamp, newtons, sigma_newtons and taxels. Reads the messages of encode_grid().
-[[nodiscard]] Result<FrameShape> decode_grid(std::span<const std::uint8_t> message, ForceFrame& frame);
 
 /// dermis_msgs/msg/FrameStatus: the time and the status of a frame of forces.
 void encode_frame_status(const ForceFrame& frame, std::vector<std::uint8_t>& message);
-/// Sets time and status.
-[[nodiscard]] Status decode_frame_status(std::span<const std::uint8_t> message, ForceFrame& frame);
 
 }  // namespace dermis::messages

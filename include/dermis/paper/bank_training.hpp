@@ -21,10 +21,6 @@ enum class BankStart {
   xavier,         ///< Random, scaled by the number of connections.
 };
 
-/// Whether the paper's bank can be trained on these samples. Errors: no sample has a known force on a single taxel; an
-/// array whose bank would have more than kMostUnknowns.
-[[nodiscard]] Status check_bank_samples(const calibration::SampleDatabase& database);
-
 /// The training of the paper's bank on a sample database: Fig. 9 for all networks at once, in mini-batches.
 ///
 /// A network's own presses are a few of very many samples (14 of 3,584 if every taxel is pressed alone). So half of

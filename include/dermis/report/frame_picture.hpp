@@ -2,12 +2,13 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <chrono>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "dermis/core/contacts.hpp"
-#include "dermis/report/png.hpp"
 #include "dermis/report/svg.hpp"
 
 namespace dermis::report {
@@ -27,10 +28,20 @@ struct FramePicture {
   std::vector<Contact> contacts;  ///< Those that have ended are not drawn.
 };
 
+/// 0 where none is finite.
+[[nodiscard]] double largest_of(const std::vector<double>& values);
+
+/// End of a colour scale that covers a value: 1, 2 or 5 times a power of ten newtons, at least 1.
+[[nodiscard]] double force_scale(double newtons);
+
 /// For svg_document().
 [[nodiscard]] Drawing frame_drawing(const FramePicture& picture);
 
-/// The same in pixels; all pictures of one size of array have one size.
-[[nodiscard]] Pixels frame_pixels(const FramePicture& picture);
+/// The bytes of a PNG file. Its texts have the sans-serif face of the machine.
+[[nodiscard]] std::string frame_png(const FramePicture& picture);
+
+/// The bytes of a GIF file that plays for ever. At least one picture, all of one shape and pitch; each is shown for
+/// `time`, in whole hundredths of a second.
+[[nodiscard]] std::string frame_film(std::span<const FramePicture> pictures, std::chrono::milliseconds time);
 
 }  // namespace dermis::report

@@ -11,8 +11,10 @@
 /// "inf" reaches a picture. Lengths are CSS pixels.
 namespace dermis::report {
 
-/// Text for XML and HTML, in elements and in quoted attributes. & < > " ' are escaped. Bytes that are not UTF-8, and
-/// control characters that XML forbids, become U+FFFD.
+/// The text with U+FFFD in place of bytes that are not UTF-8, and of control characters that XML forbids.
+[[nodiscard]] std::string valid_utf8(std::string_view text);
+
+/// Text for XML and HTML, in elements and in quoted attributes: valid_utf8(), and & < > " ' are escaped.
 [[nodiscard]] std::string escape_xml(std::string_view text);
 
 /// A finished picture. It carries no ids, so that any number of them may share a page.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/calibration/baselines.hpp"
+#include "calibration/tables/baselines.hpp"
 
 #include <algorithm>
 #include <utility>

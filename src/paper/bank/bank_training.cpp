@@ -88,8 +88,6 @@ std::vector<float> with_further_input(const std::vector<float>& parameters, std:
   return widened;
 }
 
-}  // namespace
-
 Status check_bank_samples(const SampleDatabase& database) {
   if (heaviest_force(database) <= 0.0) {
     return bad_input("the paper's bank needs loads on single taxels; these loads tell only totals or none");
@@ -103,6 +101,8 @@ Status check_bank_samples(const SampleDatabase& database) {
   }
   return Done{};
 }
+
+}  // namespace
 
 Result<BankTraining> BankTraining::create(const SampleDatabase& database, std::uint64_t seed) {
   if (Status checked = check_bank_samples(database); !checked) return checked.error();

@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "dermis/network/activation.hpp"
-#include "dermis/paper/network_diagram.hpp"
 #include "dermis/paper/paper_bank.hpp"
 #include "dermis/report/plot.hpp"
 #include "dermis/report/wording.hpp"
+#include "paper/report/network_diagram.hpp"
 #include "paper/report/paper_figures.hpp"
 #include "paper/report/training_plot.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/paper/network_diagram.hpp"
+#include "paper/report/network_diagram.hpp"
 
 #include <algorithm>
 #include <cassert>

@@ -7,12 +7,12 @@
 #include <functional>
 #include <utility>
 
-#include "dermis/paper/network_diagram.hpp"
-#include "dermis/paper/surface.hpp"
 #include "dermis/report/heat_map.hpp"
 #include "dermis/report/plot.hpp"
 #include "dermis/report/wording.hpp"
+#include "paper/report/network_diagram.hpp"
 #include "paper/report/paper_figures.hpp"
+#include "paper/report/surface.hpp"
 #include "paper/report/training_plot.hpp"
 
 namespace dermis::paper {

@@ -11,9 +11,9 @@
 #include "dermis/calibration/parallel.hpp"
 #include "dermis/core/random.hpp"
 #include "dermis/paper/initialisation.hpp"
-#include "dermis/paper/levenberg_marquardt.hpp"
 #include "dermis/paper/peaks.hpp"
 #include "dermis/paper/training.hpp"
+#include "paper/training/levenberg_marquardt.hpp"
 
 namespace dermis::paper {
 namespace {

@@ -13,8 +13,8 @@
 
 #include "dermis/paper/feed_forward.hpp"
 #include "dermis/paper/initialisation.hpp"
-#include "dermis/paper/levenberg_marquardt.hpp"
 #include "paper/training/algorithm.hpp"
+#include "paper/training/levenberg_marquardt.hpp"
 
 namespace dermis::paper {
 namespace {

@@ -10,6 +10,7 @@
 
 #include "dermis/files/text.hpp"
 #include "recognition/answer/rank_table.hpp"
+#include "recognition/answer/softmax.hpp"
 #include "recognition/features/segment_features.hpp"
 #include "recognition/features/standardisation.hpp"
 #include "recognition/matrix.hpp"
@@ -133,16 +134,6 @@ std::pair<std::size_t, std::size_t> two_largest(std::span<const double> values) 
   return {first, second};
 }
 
-void to_probabilities(std::span<double> scores) {
-  const double largest = *std::max_element(scores.begin(), scores.end());
-  double sum = 0.0;
-  for (double& score : scores) {
-    score = std::exp(score - largest);
-    sum += score;
-  }
-  for (double& score : scores) score /= sum;
-}
-
 }  // namespace
 
 const char* to_string(Verdict verdict) {
@@ -191,7 +182,7 @@ Answer Recogniser::recognise(const Segment& segment) {
       probabilities[label] += classes.experts[i].weight * experts[i].scores()[label];
     }
   }
-  to_probabilities(probabilities);
+  softmax(probabilities);
   const auto [likeliest, second] = two_largest(probabilities);
   Answer answer{probabilities, likeliest, second};
   double strangeness = 0.0;

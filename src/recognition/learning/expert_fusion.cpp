@@ -7,26 +7,20 @@
 #include <cmath>
 #include <limits>
 
+#include "recognition/answer/softmax.hpp"
+
 namespace dermis::recognition {
 namespace {
 
 constexpr double kWeightPenalty = 1e-3;
 constexpr double kMostSharpness = 1e4;
 
-/// `row`: scores of one example, replaced by probabilities. Returns ln of the sum, so that -ln P = it - score.
-template <typename Row>
-double softmax_row(const std::vector<std::uint8_t>& is_known, Row&& row) {
-  double largest = -std::numeric_limits<double>::infinity();
+/// softmax() of the scores of one example, among the known classes.
+double softmax_of_known(const std::vector<std::uint8_t>& is_known, double* scores) {
   for (std::size_t i = 0; i < is_known.size(); ++i) {
-    if (is_known[i] != 0) largest = std::max(largest, row(index(i)));
+    if (is_known[i] == 0) scores[i] = -std::numeric_limits<double>::infinity();
   }
-  double sum = 0.0;
-  for (std::size_t i = 0; i < is_known.size(); ++i) {
-    row(index(i)) = is_known[i] != 0 ? std::exp(row(index(i)) - largest) : 0.0;
-    sum += row(index(i));
-  }
-  row /= sum;
-  return largest + std::log(sum);
+  return softmax({scores, is_known.size()});
 }
 
 std::size_t counted(const Judged& judged) {
@@ -57,7 +51,7 @@ Expansion expand(const Judged& judged, const std::vector<Matrix>& scores, const 
     probability.noalias() = weights.transpose() * of_example;
     const Vector right = of_example.col(index(judged.classes[i]));
     const double right_score = weights.dot(right);
-    result.value += share * (softmax_row(judged.is_known[judged.fold_of[i]], probability) - right_score);
+    result.value += share * (softmax_of_known(judged.is_known[judged.fold_of[i]], probability.data()) - right_score);
     const Vector mean = of_example * probability.transpose();
     result.gradient += share * (mean - right);
     result.hessian +=
@@ -93,7 +87,7 @@ Slope slope_at(const Judged& judged, const Matrix& scores, double sharpness) {
     if (!judged.counts(i)) continue;
     const auto row = scores.row(index(i));
     probability = sharpness * row;
-    softmax_row(judged.is_known[judged.fold_of[i]], probability);
+    softmax_of_known(judged.is_known[judged.fold_of[i]], probability.data());
     const double mean = probability.dot(row);
     slope.first += mean - row(index(judged.classes[i]));
     slope.second += probability.dot(row.cwiseProduct(row)) - mean * mean;
@@ -105,7 +99,7 @@ Slope slope_at(const Judged& judged, const Matrix& scores, double sharpness) {
 
 void softmax(const Judged& judged, Matrix& scores) {
   for (Eigen::Index row = 0; row < scores.rows(); ++row) {
-    softmax_row(judged.is_known[judged.fold_of[static_cast<std::size_t>(row)]], scores.row(row));
+    softmax_of_known(judged.is_known[judged.fold_of[static_cast<std::size_t>(row)]], scores.row(row).data());
   }
 }
 
@@ -116,7 +110,7 @@ double log_loss(const Judged& judged, const Matrix& scores, double sharpness) {
     if (!judged.counts(i)) continue;
     probability = sharpness * scores.row(index(i));
     const double right = probability(index(judged.classes[i]));
-    sum += softmax_row(judged.is_known[judged.fold_of[i]], probability) - right;
+    sum += softmax_of_known(judged.is_known[judged.fold_of[i]], probability.data()) - right;
   }
   return sum / static_cast<double>(counted(judged));
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { describe, expect, it } from "vitest";
-import { filmPalette, highest, PaletteFinder, roundEnd } from "./frame_picture";
+import { highest, roundEnd } from "./frame_picture";
 
 describe("the end of a scale", () => {
   it("is the next of 1, 2, 5, 10, ...", () => {
@@ -19,22 +19,5 @@ describe("the end of a scale", () => {
       statuses: Uint8Array.of(0, 3, 0, 1),
     };
     expect(highest(frame)).toBe(2);
-  });
-});
-
-describe("the palette of a film", () => {
-  it("has its own colours, black and white", () => {
-    const palette = filmPalette();
-    const finder = new PaletteFinder(palette);
-    const own = Uint8ClampedArray.from({ length: 4 * 256 }, (_, at) =>
-      at % 4 === 3 ? 255 : palette[3 * (at >> 2) + (at % 4)]!,
-    );
-    finder.indices(own).forEach((found, index) => {
-      for (let at = 0; at < 3; ++at) expect(palette[3 * found + at]).toBe(palette[3 * index + at]);
-    });
-    const [black, white] = finder.indices(Uint8ClampedArray.of(0, 0, 0, 255, 255, 255, 255, 255));
-    expect([...palette.subarray(3 * black!, 3 * black! + 3), ...palette.subarray(3 * white!, 3 * white! + 3)]).toEqual([
-      0, 0, 0, 255, 255, 255,
-    ]);
   });
 });

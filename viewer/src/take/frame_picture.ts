@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { timeOfDay } from "../format";
-import { type GridFrame, TaxelStatus } from "../messages/grids";
-import { colorOf, rgbOf, TOE_COLORS, TOE_SHARE } from "../render/color_map";
+import { TaxelStatus, type GridFrame } from "../messages/grids";
+import { colorOf } from "../render/color_map";
 
 /** A frame to be drawn, with what stands beside it. */
 export interface Pictured {
@@ -20,8 +20,6 @@ const LINE_PX = 24;
 const SCALE_PX = 12;
 const FONT = "14px sans-serif";
 const NO_VALUE = "#9a9a9a";
-/** So many colours of the palette of a film are of the scale; the others are grey. */
-const SCALE_COLORS = 208;
 
 /** 1, 2 or 5 times a power of ten: the least that holds the value. */
 export function roundEnd(value: number): number {
@@ -83,57 +81,4 @@ function drawScale(context: CanvasRenderingContext2D, top: number, width: number
   context.textAlign = "right";
   context.fillText(end, MARGIN_PX + width, top + SCALE_PX + LINE_PX / 2);
   context.textAlign = "left";
-}
-
-/** The share of the scale at a place of the palette. */
-function shareOf(place: number): number {
-  return place < TOE_COLORS
-    ? (place * TOE_SHARE) / TOE_COLORS
-    : TOE_SHARE + ((place - TOE_COLORS) * (1 - TOE_SHARE)) / (1 - TOE_COLORS);
-}
-
-/** The colours of the pictures of a film. */
-export function filmPalette(): Uint8Array {
-  const palette = new Uint8Array(768);
-  for (let index = 0; index < 256; ++index) {
-    const grey = (index - SCALE_COLORS) / (255 - SCALE_COLORS);
-    const color = index < SCALE_COLORS ? rgbOf(shareOf(index / (SCALE_COLORS - 1)), true) : [grey, grey, grey];
-    color.forEach((channel, at) => (palette[3 * index + at] = Math.round(255 * channel)));
-  }
-  return palette;
-}
-
-/** Finds the nearest colours of a palette; those that it has seen at once. */
-export class PaletteFinder {
-  readonly #palette: Uint8Array;
-  readonly #known = new Map<number, number>();
-
-  constructor(palette: Uint8Array) {
-    this.#palette = palette;
-  }
-
-  /** `rgba`: of a canvas. */
-  indices(rgba: Uint8ClampedArray): Uint8Array {
-    const indices = new Uint8Array(rgba.length / 4);
-    for (let pixel = 0; pixel < indices.length; ++pixel) {
-      const key = (rgba[4 * pixel]! << 16) | (rgba[4 * pixel + 1]! << 8) | rgba[4 * pixel + 2]!;
-      const index = this.#known.get(key) ?? this.#nearest(key >> 16, (key >> 8) & 255, key & 255);
-      this.#known.set(key, index);
-      indices[pixel] = index;
-    }
-    return indices;
-  }
-
-  #nearest(red: number, green: number, blue: number): number {
-    let best = 0;
-    let least = Infinity;
-    for (let index = 0; index < 256; ++index) {
-      const distance =
-        (this.#palette[3 * index]! - red) ** 2 +
-        (this.#palette[3 * index + 1]! - green) ** 2 +
-        (this.#palette[3 * index + 2]! - blue) ** 2;
-      if (distance < least) [best, least] = [index, distance];
-    }
-    return best;
-  }
 }

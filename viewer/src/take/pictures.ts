@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
+import { applyPalette, GIFEncoder, quantize } from "gifenc";
 import { element } from "../dom";
 import { emptyGrid, type GridFrame, readCounts, readGrid } from "../messages/grids";
 import type { Stream } from "../stream/stream";
 import type { ArrayDescription } from "../suit";
-import { drawPicture, filmPalette, highest, PaletteFinder, pictureSize, roundEnd } from "./frame_picture";
-import { encodeGif } from "./gif";
+import { drawPicture, highest, pictureSize, roundEnd } from "./frame_picture";
 
 const FRAME_MS = 100;
+const MOST_COLORS = 256;
 const PATIENCE_MS = 5000;
 
 /** A finished picture. */
@@ -84,19 +85,14 @@ export async function takeFilm(stream: Stream, array: ArrayDescription, seconds:
   const source = sourceOf(array);
   const frames = await collect(stream, source, seconds);
   const [canvas, context] = canvasFor(frames[0]!);
-  const palette = filmPalette();
-  const finder = new PaletteFinder(palette);
   const end = roundEnd(Math.max(source.leastEnd, ...frames.map(highest)));
-  const drawn = frames.map((frame) => {
+  const film = GIFEncoder();
+  for (const frame of frames) {
     drawPicture(context, { array: array.name, unit: source.unit, end, frame });
-    return finder.indices(context.getImageData(0, 0, canvas.width, canvas.height).data);
-  });
-  const file = encodeGif({
-    width: canvas.width,
-    height: canvas.height,
-    palette,
-    frames: drawn,
-    delayCs: FRAME_MS / 10,
-  });
-  return { blob: new Blob([file], { type: "image/gif" }), stampS: frames.at(-1)!.stampS };
+    const { data, width, height } = context.getImageData(0, 0, canvas.width, canvas.height);
+    const palette = quantize(data, MOST_COLORS);
+    film.writeFrame(applyPalette(data, palette), width, height, { palette, delay: FRAME_MS });
+  }
+  film.finish();
+  return { blob: new Blob([film.bytes()], { type: "image/gif" }), stampS: frames.at(-1)!.stampS };
 }

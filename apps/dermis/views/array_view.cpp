@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "views/array_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "dermis/files/array_toml.hpp"
+#include "dermis/operation/frame_output.hpp"
+#include "dermis/pipeline/direct_model.hpp"
+#include "dermis/recordings/frame_files.hpp"
+#include "dermis/report/frame_picture.hpp"
+
+namespace dermis::views {
+
+Result<std::unique_ptr<ArrayView>> ArrayView::open(const std::string& from, const std::string& model,
+                                                   sources::SourceOptions options) {
+  std::unique_ptr<ArrayView> view(new ArrayView());
+  view->from_ = from;
+  if (!model.empty()) {
+    Result<operation::ModelAtWork> work = operation::ModelAtWork::read(model);
+    if (!work) return work.error();
+    view->use(*std::move(work));
+    options.array = &view->work_->model.array;
+  }
+  Result<std::unique_ptr<FrameSource>> source = sources::open_source(from, options);
+  if (!source) return source.error();
+  view->source_ = *std::move(source);
+  if (const Status described = view->describe(); !described) return described.error();
+  return view;
+}
+
+void ArrayView::use(operation::ModelAtWork work) {
+  work_.emplace(std::move(work));
+  tracker_.emplace(work_->model.array, contacts::ContactOptions{}, work_->model.strip);
+  troubles_.emplace(work_->model.array, from_);
+}
+
+Status ArrayView::set_array(const ArrayDescription& array) {
+  name_ = array.name;
+  row_pitch_m_ = array.row_pitch_m;
+  col_pitch_m_ = array.col_pitch_m;
+  full_scale_counts_ = array.readout.full_scale_counts();
+  if (work_ || array.readout.quantity == Quantity::counts) return Done{};
+  Result<operation::ModelAtWork> work = operation::ModelAtWork::create(pipeline::direct_model(array));
+  if (!work) return work.error();
+  use(*std::move(work));
+  return Done{};
+}
+
+/// By the model, else by what the file says of itself.
+Status ArrayView::describe() {
+  if (work_) return set_array(work_->model.array);
+  const recordings::FrameNotes notes = operation::notes_of_source(*source_, from_);
+  name_ = notes.name;
+  if (name_.empty()) name_ = is_live() ? from_ : std::filesystem::path(from_).filename().string();
+  if (notes.array_toml.empty()) return Done{};
+  const Result<ArrayDescription> array = files::array_from_toml(notes.array_toml, from_);
+  if (!array) return Done{};
+  return set_array(*array);
+}
+
+Result<bool> ArrayView::next() {
+  Result<bool> more = source_->next(raw_);
+  if (!more || !*more) return more;
+  if (work_) {
+    work_->pipeline.process(raw_, force_);
+    troubles_->add(raw_, force_, work_->pipeline, source_.get());
+    tracker_->process(force_, report_);
+    values_.assign(force_.newtons.begin(), force_.newtons.end());
+  } else {
+    values_.assign(raw_.counts.begin(), raw_.counts.end());
+  }
+  return more;
+}
+
+FrameShape ArrayView::shape() const {
+  return source_->shape().value_or(FrameShape{1, values_.size()});
+}
+
+double ArrayView::scale(double largest) const {
+  if (work_) return report::force_scale(largest);
+  if (full_scale_counts_) return *full_scale_counts_;
+  double high = 255.0;
+  while (high < largest) high = 2.0 * high + 1.0;
+  return high;
+}
+
+}  // namespace dermis::views
