@@ -150,7 +150,7 @@ void print_json(const health::CircuitAdvice& advice) {
                                  {"most_drive_ohm", nullptr},
                                  {"loads", nlohmann::ordered_json::array()}};
   if (advice.ideal_drivers) json["most_drive_ohm"] = advice.most_drive_ohm;
-  for (const health::LoadChoice& choice : advice.loads) {
+  for (const health::ResistorChoice& choice : advice.loads) {
     json["loads"].push_back({{"load_ohm", choice.load_ohm}, {"precision", precision_json(choice.precision)}});
   }
   fmt::print("{}\n", json.dump(2));

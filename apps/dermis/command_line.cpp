@@ -167,7 +167,7 @@ void tell_missing_checksums(const CLI::App& command) {
   for (const auto& [name, format] : kFiles) {
     const CLI::Option* const option = command.get_option_no_throw(name);
     if (option == nullptr || option->count() == 0) continue;
-    if (const auto note = files::checksum_note(option->as<std::string>(), format)) say(*note);
+    if (const auto note = files::checksum_note(option->as<std::string>(), format)) print_notice(*note);
   }
 }
 

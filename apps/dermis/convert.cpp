@@ -72,10 +72,10 @@ Status convert(const ConvertOptions& options) {
   if (!shape) return shape.error();
   const Result<std::vector<std::string>> left_out = recordings::convert_frames(
       options.in, options.out,
-      {.input = {.shape = *shape, .rate_hz = options.rate_hz, .notice = say, .loss = note_loss},
+      {.input = {.shape = *shape, .rate_hz = options.rate_hz, .notice = print_notice, .loss = note_loss},
        .array = *array ? &**array : nullptr});
   if (!left_out) return left_out.error();
-  if (!left_out->empty()) say(fmt::format("{}: left out: {}", options.out, fmt::join(*left_out, ", ")));
+  if (!left_out->empty()) print_notice(fmt::format("{}: left out: {}", options.out, fmt::join(*left_out, ", ")));
   return Done{};
 }
 

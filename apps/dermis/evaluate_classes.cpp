@@ -9,7 +9,7 @@
 #include "confusion_table.hpp"
 #include "dermis/recognition/classes_file.hpp"
 #include "dermis/recognition/evaluation.hpp"
-#include "recognising/load_source.hpp"
+#include "recognising/force_source.hpp"
 #include "source_options.hpp"
 #include "touch_finding.hpp"
 

@@ -174,7 +174,7 @@ Status FilePlaces::check(bool is_forced) const {
       replaced.push_back(path);
     }
   }
-  for (const std::string& path : replaced) say(fmt::format("'{}' exists and will be replaced", path));
+  for (const std::string& path : replaced) print_notice(fmt::format("'{}' exists and will be replaced", path));
   return Done{};
 }
 

@@ -62,7 +62,8 @@ Json array_json(const recordings::RecordedArrayInfo& array) {
           {"frames", array.frames},
           {"lost", array.lost},
           {"array_toml", or_null(array.array_toml)},
-          {"model_hash", or_null(array.model_hash)}};
+          {"model_hash", or_null(array.model_hash)},
+          {"simulation", or_null(array.simulation)}};
 }
 
 void print_json(const Json& json) {
@@ -86,6 +87,7 @@ void print_json(const std::string& file, const FrameFileInfo& info) {
                {"name", or_null(info.notes.name)},
                {"array_toml", or_null(info.notes.array_toml)},
                {"model_hash", or_null(info.notes.model_hash)},
+               {"simulation", or_null(info.notes.simulation)},
                {"compression", or_null(info.compression)},
                {"software", or_null(info.software)},
                {"arrays", Json::array()},
@@ -113,6 +115,7 @@ std::string array_text(const recordings::RecordedArrayInfo& array) {
   text += fmt::format("  {} frames, {} lost", array.frames, array.lost);
   if (!array.array_toml.empty()) text += " (with its description)";
   if (!array.model_hash.empty()) text += ", model " + array.model_hash;
+  if (!array.simulation.empty()) text += ", simulated: " + array.simulation;
   return text;
 }
 
@@ -134,6 +137,7 @@ void print_text(const FrameFileInfo& info) {
   for (const recordings::RecordedArrayInfo& array : info.arrays) print_line("array", array_text(array));
   print_line("array", info.notes.name + (info.notes.array_toml.empty() ? "" : " (with its description)"));
   print_line("model", info.notes.model_hash);
+  print_line("simulated", info.notes.simulation);
   print_line("software", info.software);
   for (const recordings::RecordingTopic& topic : info.topics) {
     fmt::print("{:<14}{}  {}  {} messages\n", "topic", topic.name, topic.type, topic.messages);

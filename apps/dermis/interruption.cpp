@@ -26,7 +26,7 @@ void wait_for(sigset_t signals) {
   int received = 0;
   if (sigwait(&signals, &received) != 0) return;
   files::remove_unfinished_files();
-  say("dermis: interrupted; nothing is half-written");
+  print_notice("dermis: interrupted; nothing is half-written");
   ::_exit(kExitSignalled + received);
 }
 

@@ -18,7 +18,7 @@ inline Status keep_earlier_model(const std::string& path) {
   if (!std::filesystem::is_regular_file(path, error)) return Done{};
   const Result<std::string> copy = files::keep_copy(path, std::chrono::system_clock::now());
   if (!copy) return copy.error();
-  say("'" + path + "' as it was: '" + *copy + "'");
+  print_notice("'" + path + "' as it was: '" + *copy + "'");
   return Done{};
 }
 

@@ -70,7 +70,7 @@ bool has_reader_gone(const Error& error) {
 }
 
 int exit_status(const Error& error) {
-  say(fmt::format("dermis: {}{}", error.field.empty() ? "" : "--", error.message));
+  print_notice(fmt::format("dermis: {}{}", error.field.empty() ? "" : "--", error.message));
   return error.kind == ErrorKind::bad_input ? kExitBadInput : kExitFailed;
 }
 
@@ -99,10 +99,10 @@ int main(int argc, char** argv) {
     return dermis::app::run(argc, argv);
   } catch (const std::system_error& error) {  // of fmt::print()
     if (error.code() == std::errc::broken_pipe) return dermis::app::kExitReaderGone;
-    dermis::app::say(fmt::format("dermis: {}", error.what()));
+    dermis::app::print_notice(fmt::format("dermis: {}", error.what()));
     return dermis::app::kExitFailed;
   } catch (const std::exception& error) {  // out of memory and the like
-    dermis::app::say(fmt::format("dermis: {}", error.what()));
+    dermis::app::print_notice(fmt::format("dermis: {}", error.what()));
     return dermis::app::kExitFailed;
   }
 }

@@ -82,8 +82,9 @@ Status recognise(const RecogniseOptions& options) {
   Result<files::AtomicFile> out = files::AtomicFile::create(options.out);
   if (!out) return out.error();
   if (!recogniser->knows_rate()) {
-    say(input.classes + ": does not know the rate of its examples, so each pose is told from a single frame, and " +
-        "gestures must come at that rate");
+    print_notice(input.classes +
+                 ": does not know the rate of its examples, so each pose is told from a single frame, and " +
+                 "gestures must come at that rate");
   }
   if (!options.json) out->write(kHeader);
   return recognise_all(*recogniser, options.json, *out);

@@ -80,7 +80,7 @@ Status record(const RecordOptions& options) {
   source_is.simulated = [&](double share) { line.show(fmt::format("simulating the scene: {:.0f} %", 100.0 * share)); };
   Result<std::unique_ptr<FrameSource>> source = sources::open_source(options.from, source_is);
   if (!source) return source.error();
-  output.notes = operation::notes_of_source(**source, options.from);
+  output.notes = sources::notes_of_source(**source, options.from);
   recorder.source_stops = (*source)->is_live();
 
   recorder.progress = [&](const acquisition::RecorderProgress& progress) { line.show(with_queue(progress)); };
@@ -95,7 +95,7 @@ Status record(const RecordOptions& options) {
                          1e3 * std::chrono::duration<double>(last.queue.longest_wait).count(),
                          known->model ? "model or the disk" : "disk");
     }
-    say(sum);
+    print_notice(sum);
   }
   if (recorded && last.frames == 0)
     return failed("'" + options.from + "': not a single frame came: nothing is recorded");

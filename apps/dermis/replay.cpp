@@ -71,7 +71,7 @@ Status replay(const ReplayOptions& options) {
   if (!*more) return bad_input("'" + options.recording + "': has no frame to replay");
 
   const FrameOutput output{options.out, array, model ? &*model : nullptr, options.model,
-                           operation::notes_of_source(**source, options.recording)};
+                           sources::notes_of_source(**source, options.recording)};
   Result<std::unique_ptr<FrameSink>> sink = create_sink(output, *(*source)->shape());
   if (!sink) return sink.error();
   Tempo tempo(options.speed, frame.time, &stop_flag());

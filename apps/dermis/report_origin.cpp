@@ -11,7 +11,7 @@
 
 #include "dermis/core/version.hpp"
 #include "dermis/files/content_hash.hpp"
-#include "dermis/files/origin_toml.hpp"
+#include "dermis/recordings/frame_files.hpp"
 #include "dermis/sources/source_name.hpp"
 
 namespace dermis::app {
@@ -35,7 +35,9 @@ std::string describe(const std::string& path) {
 }
 
 std::string simulated_source(const sources::SourceName& frames) {
-  return frames.kind == sources::SourceKind::simulation ? frames.text : files::simulated_source(frames.file);
+  if (frames.kind == sources::SourceKind::simulation) return frames.text;
+  const Result<recordings::FrameNotes> notes = recordings::read_frame_notes(frames.file);
+  return notes ? notes->simulation : std::string();
 }
 
 /// "2026-11-25 22:13 UTC to 2026-11-25 22:15 UTC", where the clock of the frames is that of a host.

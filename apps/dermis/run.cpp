@@ -136,11 +136,12 @@ Status run(const RunOptions& options) {
   if (Status committed = tables->commit(); !committed) return committed;
   if (status) status = troubles.verdict();
   if (!status) return status;
-  say(where_frames_went(watches, options.tables));
+  print_notice(where_frames_went(watches, options.tables));
   const std::string tared = pipeline::describe((*operation)->pipeline.last_tare(), (*operation)->model.array);
-  if (!tared.empty()) say(tared);
-  if (const auto load = watches.standing.load()) say(describe_never_released(*load, (*operation)->model.array));
-  for (const std::string& line : troubles.describe()) say(line);
+  if (!tared.empty()) print_notice(tared);
+  if (const auto load = watches.standing.load())
+    print_notice(describe_never_released(*load, (*operation)->model.array));
+  for (const std::string& line : troubles.describe()) print_notice(line);
   return status;
 }
 

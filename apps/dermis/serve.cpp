@@ -110,15 +110,15 @@ Result<bool> is_of_unknown_array(const serve::SuitPlace& place) {
 /// A user describes the array on the page; its array.toml is served from then on, at the same address.
 Status set_up_array(ServeOptions& options) {
   const Result<std::unique_ptr<serve::ArraySetup>> setup =
-      serve::ArraySetup::create(options.place.from, options.session, {.stop = &stop_flag(), .notice = say});
+      serve::ArraySetup::create(options.place.from, options.session, {.stop = &stop_flag(), .notice = print_notice});
   if (!setup) return setup.error();
   options.session.server.port = (*setup)->port();
-  say(fmt::format("describe the array at {} (Ctrl-C ends it)",
-                  address(options.session.server, options.session.server.port)));
+  print_notice(fmt::format("describe the array at {} (Ctrl-C ends it)",
+                           address(options.session.server, options.session.server.port)));
   serve::DescribedArray array = (*setup)->run(stop_flag());
   options.place.from = std::move(array.from);
   options.place.model = std::move(array.model);
-  if (!options.place.model.empty()) say("wrote " + options.place.model);
+  if (!options.place.model.empty()) print_notice("wrote " + options.place.model);
   return Done{};
 }
 
@@ -132,22 +132,23 @@ Status serve_suit(ServeOptions& options) {
   const std::atomic<bool>& stop = stop_flag();
   const std::span<const stream::Asset> page = viewer::assets();
   options.session.page.assign(page.begin(), page.end());
-  options.session.server.notice = say;
+  options.session.server.notice = print_notice;
   const Result<bool> is_unknown = is_of_unknown_array(options.place);
   if (!is_unknown) return is_unknown.error();
   if (*is_unknown) {
     if (Status set_up = set_up_array(options); !set_up || stop) return set_up;
   }
-  Result<serve::ServedSuit> suit = serve::open_suit(options.place, {.stop = &stop, .notice = say});
+  Result<serve::ServedSuit> suit = serve::open_suit(options.place, {.stop = &stop, .notice = print_notice});
   if (!suit) return suit.error();
   const std::size_t arrays = suit->arrays.size();
   const std::string what = arrays == 1 ? suit->arrays.front().name : fmt::format("{} arrays", arrays);
   const Result<std::unique_ptr<serve::Session>> session = serve::Session::create(*std::move(suit), options.session);
   if (!session) return session.error();
-  say(fmt::format("serving {} at {} (Ctrl-C ends it)", what, address(options.session.server, (*session)->port())));
+  print_notice(
+      fmt::format("serving {} at {} (Ctrl-C ends it)", what, address(options.session.server, (*session)->port())));
   if (options.session.dds) {
-    say(fmt::format("topics for ROS 2 are in domain {}, for {}", options.session.dds->domain,
-                    options.session.dds->loopback_only ? "this machine" : "all of the network"));
+    print_notice(fmt::format("topics for ROS 2 are in domain {}, for {}", options.session.dds->domain,
+                             options.session.dds->loopback_only ? "this machine" : "all of the network"));
   }
   return (*session)->run(stop);
 }

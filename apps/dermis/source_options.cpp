@@ -9,7 +9,7 @@
 namespace dermis::app {
 
 sources::SourceOptions source_options(const ArrayDescription* array) {
-  return {.array = array, .stop = &stop_flag(), .notice = say, .loss = note_loss};
+  return {.array = array, .stop = &stop_flag(), .notice = print_notice, .loss = note_loss};
 }
 
 }  // namespace dermis::app

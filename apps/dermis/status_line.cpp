@@ -29,7 +29,7 @@ void end_line() {
 
 }  // namespace
 
-void say(const std::string& text) {
+void print_notice(const std::string& text) {
   const std::lock_guard lock(stderr_mutex);
   end_line();
   std::fputs((text + "\n").c_str(), stderr);
@@ -71,7 +71,8 @@ void Progress::show(const std::string& stage, double share) {
   if (step <= last_shown_) return;
   last_shown_ = step;
   const std::string left = time_left(start_, share);
-  if (!line_.is_terminal()) return say(fmt::format("{}{}: {} %{}", prefix_, stage, step * 100 / kPlainSteps, left));
+  if (!line_.is_terminal())
+    return print_notice(fmt::format("{}{}: {} %{}", prefix_, stage, step * 100 / kPlainSteps, left));
   const int filled = step * kBarWidth / kTerminalSteps;
   line_.redraw(fmt::format("{:<12} [{:#<{}}{:.<{}}] {:3} %{:<16}", prefix_ + stage, "", filled, "", kBarWidth - filled,
                            step, left));
@@ -82,7 +83,7 @@ void LiveLine::show(const std::string& text) {
   const auto now = std::chrono::steady_clock::now();
   if (now < next_plain_) return;
   next_plain_ = now + kPlainPeriod;
-  say(text);
+  print_notice(text);
 }
 
 std::string summary(std::uint64_t frames, const SourceStatistics& source) {

@@ -13,7 +13,7 @@ namespace dermis::app {
 
 /// A line on stderr, below the status line where there is one. Work goes on when nobody reads the line: unlike
 /// fmt::print(), it does not throw. Thread-safe.
-void say(const std::string& text);
+void print_notice(const std::string& text);
 
 /// The error of printing to the standard output.
 [[nodiscard]] Error cannot_print(int error_number);

@@ -104,7 +104,8 @@ Result<int> keep_watch(ThreatWatch& watch, bool is_live, const std::vector<std::
 void tell_unwatched(const threats::ThreatLimits& limits, const std::string& array) {
   for (const threats::ThreatLimit& limit : limits.limits) {
     if (limit.zone.empty() || limits.zone(limit.zone)->array == array) continue;
-    say(fmt::format("'{}' is for '{}' and is not watched on '{}'", limit.name, limits.zone(limit.zone)->array, array));
+    print_notice(
+        fmt::format("'{}' is for '{}' and is not watched on '{}'", limit.name, limits.zone(limit.zone)->array, array));
   }
 }
 

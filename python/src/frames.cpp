@@ -67,8 +67,7 @@ Recording make_recording(const py::object& counts, const py::object& time_ns, st
   Recording recording =
       recording_of(counts, description ? &*description : nullptr, {time_ns, rate_hz, temperature, supply});
   if (!description) return recording;
-  recording.name = description->name;
-  recording.array_toml = files::array_to_toml(*description);
+  recording.notes = {description->name, files::array_to_toml(*description)};
   return recording;
 }
 
@@ -96,17 +95,12 @@ Recording read_recording(const std::string& path, std::optional<double> rate_hz)
   }
   if (const std::optional<FrameShape> shape = (*source)->shape()) recording.shape = *shape;
   const Result<recordings::FrameNotes> notes = recordings::read_frame_notes(path);
-  if (notes) {
-    recording.name = notes->name;
-    recording.array_toml = notes->array_toml;
-    recording.model_hash = notes->model_hash;
-  }
+  if (notes) recording.notes = *notes;
   return recording;
 }
 
 void write_recording(const Recording& recording, const std::string& path) {
-  const recordings::FrameNotes notes = {recording.name, recording.array_toml, recording.model_hash};
-  auto sink = value_or_raise(recordings::create_frames(path, recording.shape, notes));
+  auto sink = value_or_raise(recordings::create_frames(path, recording.shape, recording.notes));
   RawFrame frame;
   for (std::size_t k = 0; k < recording.size(); ++k) {
     recording.read(k, frame);
@@ -273,9 +267,7 @@ Recording part_of_recording(const Recording& whole, const py::slice& slice) {
           picked(whole.temperature_celsius, places),
           picked(whole.supply_v, places),
           picked(whole.counts, places, whole.shape.taxel_count()),
-          whole.name,
-          whole.array_toml,
-          whole.model_hash};
+          whole.notes};
 }
 
 Forces part_of_forces(const Forces& whole, const py::slice& slice) {
@@ -325,12 +317,14 @@ void bind_many_frames(py::module_& module) {
                  "an index of a Recording is a whole number or a slice; other indices are for its arrays, as in "
                  "recording.counts[index]");
            })
-      .def_readonly("name", &Recording::name)
-      .def_readonly("model_hash", &Recording::model_hash)
+      .def_property_readonly("name", [](const Recording& recording) { return recording.notes.name; })
+      .def_property_readonly("model_hash", [](const Recording& recording) { return recording.notes.model_hash; })
+      .def_property_readonly("simulation", [](const Recording& recording) { return recording.notes.simulation; })
       .def_property_readonly("array",
                              [](const Recording& recording) -> std::optional<ArrayDescription> {
-                               if (recording.array_toml.empty()) return std::nullopt;
-                               return value_or_raise(files::array_from_toml(recording.array_toml, recording.name));
+                               const recordings::FrameNotes& notes = recording.notes;
+                               if (notes.array_toml.empty()) return std::nullopt;
+                               return value_or_raise(files::array_from_toml(notes.array_toml, notes.name));
                              })
       .def_property_readonly("time_ns", per_frame(&Recording::time_ns))
       .def_property_readonly("temperature_celsius", per_frame(&Recording::temperature_celsius))
@@ -339,8 +333,9 @@ void bind_many_frames(py::module_& module) {
       .def(py::pickle(
           [](const Recording& recording) {
             return py::make_tuple(recording.shape.rows, recording.shape.cols, recording.time_ns,
-                                  recording.temperature_celsius, recording.supply_v, recording.counts, recording.name,
-                                  recording.array_toml, recording.model_hash);
+                                  recording.temperature_celsius, recording.supply_v, recording.counts,
+                                  recording.notes.name, recording.notes.array_toml, recording.notes.model_hash,
+                                  recording.notes.simulation);
           },
           [](const py::tuple& state) {
             return Recording{{state[0].cast<std::size_t>(), state[1].cast<std::size_t>()},
@@ -348,9 +343,8 @@ void bind_many_frames(py::module_& module) {
                              state[3].cast<std::vector<double>>(),
                              state[4].cast<std::vector<double>>(),
                              state[5].cast<std::vector<float>>(),
-                             state[6].cast<std::string>(),
-                             state[7].cast<std::string>(),
-                             state[8].cast<std::string>()};
+                             {state[6].cast<std::string>(), state[7].cast<std::string>(), state[8].cast<std::string>(),
+                              state[9].cast<std::string>()}};
           }));
 
   py::class_<Forces>(module, "Forces")

@@ -10,6 +10,7 @@
 
 #include "bindings.hpp"
 #include "dermis/core/frames.hpp"
+#include "dermis/recordings/frame_notes.hpp"
 
 namespace dermis::python {
 
@@ -30,9 +31,7 @@ struct Recording {
   std::vector<double> temperature_celsius;  // [frames]
   std::vector<double> supply_v;             // [frames]
   std::vector<float> counts;                // [frames, rows, cols]
-  std::string name;
-  std::string array_toml;
-  std::string model_hash;
+  recordings::FrameNotes notes;
 
   [[nodiscard]] std::size_t size() const { return time_ns.size(); }
   void append(const RawFrame& frame);

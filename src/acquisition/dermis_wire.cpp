@@ -111,9 +111,9 @@ class DermisDecoder final : public WindowDecoder {
     const Bytes packet = Bytes(packet_).first(unstuff(stuffed, packet_));
     if (packet.size() <= kHeaderSize + kCrcSize) return false;
     const std::size_t crc_at = packet.size() - kCrcSize;
-    if (crc_of(packet.first(crc_at)) != load_little<std::uint32_t>(&packet[crc_at])) return false;
+    if (crc_of(packet.first(crc_at)) != read_little<std::uint32_t>(&packet[crc_at])) return false;
     if (packet[0] != kVersion || (packet[1] & ~kAllFlags) != 0) return false;
-    const FrameShape shape = {load_little<std::uint16_t>(&packet[14]), load_little<std::uint16_t>(&packet[16])};
+    const FrameShape shape = {read_little<std::uint16_t>(&packet[14]), read_little<std::uint16_t>(&packet[16])};
     if (shape.rows > kMaxLines || shape.cols > kMaxLines || packet_size(shape) != packet.size()) return false;
     if (shape_ && shape != *shape_) return false;
     shape_ = shape;
@@ -125,18 +125,18 @@ class DermisDecoder final : public WindowDecoder {
     if (!read_header(frame)) return false;
     frame.counts.resize(shape_->taxel_count());
     const std::uint8_t* counts = &packet_[kHeaderSize];
-    for (std::size_t i = 0; i < frame.counts.size(); ++i) frame.counts[i] = load_little<std::uint16_t>(counts + 2 * i);
+    for (std::size_t i = 0; i < frame.counts.size(); ++i) frame.counts[i] = read_little<std::uint16_t>(counts + 2 * i);
     return true;
   }
 
   bool read_header(RawFrame& frame) {
     const std::uint8_t flags = packet_[1];
     std::optional<std::uint32_t> time;
-    if ((flags & kHasTime) != 0) time = load_little<std::uint32_t>(&packet_[6]);
-    if (!numbers_.count(load_little<std::uint32_t>(&packet_[2]), time, frame.acquisition)) return false;
-    const auto temperature = static_cast<std::int16_t>(load_little<std::uint16_t>(&packet_[10]));
+    if ((flags & kHasTime) != 0) time = read_little<std::uint32_t>(&packet_[6]);
+    if (!numbers_.count(read_little<std::uint32_t>(&packet_[2]), time, frame.acquisition)) return false;
+    const auto temperature = static_cast<std::int16_t>(read_little<std::uint16_t>(&packet_[10]));
     if ((flags & kHasTemperature) != 0) frame.temperature_celsius = temperature / 100.0;
-    const auto supply = load_little<std::uint16_t>(&packet_[12]);
+    const auto supply = read_little<std::uint16_t>(&packet_[12]);
     if ((flags & kHasSupply) != 0 && supply > 0) frame.supply_v = supply / 1000.0;
     return true;
   }

@@ -27,7 +27,7 @@ class M1616Decoder final : public MarkChainDecoder {
  private:
   void read(std::span<const std::uint8_t> payload, RawFrame& frame) override {
     frame.counts.resize(kShape.taxel_count());
-    for (std::size_t i = 0; i < frame.counts.size(); ++i) frame.counts[i] = load_big_16(&payload[2 * i]);
+    for (std::size_t i = 0; i < frame.counts.size(); ++i) frame.counts[i] = read_big_16(&payload[2 * i]);
   }
 };
 

@@ -83,14 +83,14 @@ bool RowDecoder::decode_line(std::span<const std::uint8_t> line) {
   const ParsedLine parsed = syntax_.parse(line, line_);
   switch (parsed.kind) {
     case LineKind::row:
-      if (fits(parsed)) return take_row(line.size());
+      if (fits(parsed)) return add_row(line.size());
       damage(line.size());
       break;
     case LineKind::damaged: damage(line.size()); break;
     case LineKind::text: counts_.skipped_bytes += line.size(); [[fallthrough]];
     case LineKind::separator:
       rows_since_separator_ = 0;
-      take_separator();
+      add_separator();
       break;
   }
   return false;
@@ -102,7 +102,7 @@ bool RowDecoder::fits(const ParsedLine& line) const noexcept {
          (layout_->leading > 0 || line.first <= kMaxTextReading);
 }
 
-bool RowDecoder::take_row(std::size_t bytes) {
+bool RowDecoder::add_row(std::size_t bytes) {
   ++rows_since_separator_;
   if (complete_ || damaged_) {
     damage(bytes);
@@ -123,10 +123,10 @@ void RowDecoder::damage(std::size_t bytes) {
   row_ = row_bytes_ = 0;
   complete_ = false;
   damaged_ = true;
-  if (layout_->line_is_frame) take_separator();
+  if (layout_->line_is_frame) add_separator();
 }
 
-void RowDecoder::take_separator() {
+void RowDecoder::add_separator() {
   const bool cut = damaged_ || row_ > 0;
   if (cut && counts_.frames > 0) ++counts_.damaged_frames;  // before the first frame it is the end of one
   counts_.skipped_bytes += row_bytes_;
@@ -137,7 +137,7 @@ void RowDecoder::take_separator() {
 void RowDecoder::end_stream() {
   ended_ = false;
   counts_.skipped_bytes += lines_.forget_all();
-  take_separator();
+  add_separator();
   if (!layout_) learner_.forget();
 }
 

@@ -41,9 +41,9 @@ class RowDecoder : public Decoder {
   void begin_if_learnt();
 
   [[nodiscard]] bool decode_line(std::span<const std::uint8_t> line);
-  [[nodiscard]] bool take_row(std::size_t bytes);
+  [[nodiscard]] bool add_row(std::size_t bytes);
   [[nodiscard]] bool fits(const ParsedLine& line) const noexcept;
-  void take_separator();
+  void add_separator();
   void damage(std::size_t bytes);
   void end_stream();
 

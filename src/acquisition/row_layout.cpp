@@ -69,15 +69,15 @@ void RowLayoutLearner::take(std::span<const std::uint8_t> line) {
   if (!shape_ && syntax_.announced_shape != nullptr) shape_ = syntax_.announced_shape(line);
   const ParsedLine parsed = syntax_.parse(line, {});
   if (parsed.kind == LineKind::row) {
-    take_row(line, parsed);
+    add_row(line, parsed);
   } else if (parsed.kind == LineKind::damaged) {
     block_.even = false;
   } else {
-    take_separator(parsed.kind);
+    add_separator(parsed.kind);
   }
 }
 
-void RowLayoutLearner::take_row(std::span<const std::uint8_t> line, const ParsedLine& parsed) {
+void RowLayoutLearner::add_row(std::span<const std::uint8_t> line, const ParsedLine& parsed) {
   count_alike(parsed);
   keep_values(line, parsed.values);
   if (shape_) {
@@ -128,7 +128,7 @@ void RowLayoutLearner::learn_row(const ParsedLine& parsed) {
   if (alike_lines_ % enough == 0) learn_single_line(run(), is_frame ? Sign::divided : Sign::number);
 }
 
-void RowLayoutLearner::take_separator(LineKind kind) {
+void RowLayoutLearner::add_separator(LineKind kind) {
   separator_seen_ = separator_seen_ || kind == LineKind::separator;
   if (block_.rows == 0) return;
   const bool repeats = block_.even && block_.is_like(block_before_);

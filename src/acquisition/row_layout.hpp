@@ -70,11 +70,11 @@ class RowLayoutLearner {
   /// The sign that lines are frames: something between them, their mere number, or the end of the stream.
   enum class Sign { divided, number, end };
 
-  void take_row(std::span<const std::uint8_t> line, const ParsedLine& parsed);
+  void add_row(std::span<const std::uint8_t> line, const ParsedLine& parsed);
   void count_alike(const ParsedLine& parsed);
   void learn_row(const ParsedLine& parsed);
   void learn_given_line();
-  void take_separator(LineKind kind);
+  void add_separator(LineKind kind);
   void learn_block(bool at_end);
   void learn_given_block();
   void end_of_given();

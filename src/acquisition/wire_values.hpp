@@ -14,13 +14,13 @@
 namespace dermis::acquisition {
 
 template <std::unsigned_integral T>
-[[nodiscard]] constexpr T load_little(const std::uint8_t* bytes) noexcept {
+[[nodiscard]] constexpr T read_little(const std::uint8_t* bytes) noexcept {
   T value = 0;
   for (std::size_t i = 0; i < sizeof(T); ++i) value = static_cast<T>(value | static_cast<T>(bytes[i]) << (8 * i));
   return value;
 }
 
-[[nodiscard]] constexpr std::uint16_t load_big_16(const std::uint8_t* bytes) noexcept {
+[[nodiscard]] constexpr std::uint16_t read_big_16(const std::uint8_t* bytes) noexcept {
   return static_cast<std::uint16_t>(bytes[0] << 8 | bytes[1]);
 }
 

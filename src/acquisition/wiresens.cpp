@@ -37,9 +37,9 @@ class WireSensDecoder final : public Decoder {
   bool next(RawFrame& frame) override {
     while (const std::optional<Packet> packet = find_packet()) {
       const bool whole = !continues(*packet)            ? begin_anew(*packet)
-                         : packet->reads_nodes(format_) ? take_pairs(*packet, frame)
+                         : packet->reads_nodes(format_) ? read_pairs(*packet, frame)
                          : is_of_later_frame(*packet)   ? close_frame(*packet, frame)
-                                                        : take_readings(*packet, frame);
+                                                        : read_readings(*packet, frame);
       if (whole) return true;
     }
     if (ended_) end_stream();
@@ -82,8 +82,8 @@ class WireSensDecoder final : public Decoder {
   [[nodiscard]] bool chain_begins(std::size_t packets, bool& undecided) const;
   bool begin_anew(const Packet& packet);
   void note_damage(const Packet& packet);
-  bool take_readings(const Packet& packet, RawFrame& frame);
-  bool take_pairs(const Packet& packet, RawFrame& frame);
+  bool read_readings(const Packet& packet, RawFrame& frame);
+  bool read_pairs(const Packet& packet, RawFrame& frame);
   bool close_frame(const Packet& packet, RawFrame& frame);
   void consume(const Packet& packet);
   bool deliver(RawFrame& frame);
@@ -159,30 +159,30 @@ void WireSensDecoder::note_damage(const Packet& packet) {
   if (skipped_ && packet.number - last_->number > 1) open_.damaged = true;
 }
 
-bool WireSensDecoder::take_readings(const Packet& packet, RawFrame& frame) {
+bool WireSensDecoder::read_readings(const Packet& packet, RawFrame& frame) {
   if (packet.start > 0) note_damage(packet);
   const std::uint8_t* const readings = window_.bytes().data() + kReadings;
   const std::size_t first = std::min(format_.nodes, format_.taxels - packet.start);
   for (std::size_t i = 0; i < first; ++i) {
-    held_[packet.start + i] = static_cast<float>(load_little<std::uint16_t>(readings + 2 * i));
+    held_[packet.start + i] = static_cast<float>(read_little<std::uint16_t>(readings + 2 * i));
   }
   open_.received += first;
   consume(packet);
   const bool ends = packet.start + first == format_.taxels;
   const bool whole = ends && deliver(frame);
   for (std::size_t i = first; i < format_.nodes; ++i) {
-    held_[i - first] = static_cast<float>(load_little<std::uint16_t>(readings + 2 * i));
+    held_[i - first] = static_cast<float>(read_little<std::uint16_t>(readings + 2 * i));
   }
   if (ends) open_.received = format_.nodes - first;
   return whole;
 }
 
 /// Each packet is a frame.
-bool WireSensDecoder::take_pairs(const Packet& packet, RawFrame& frame) {
+bool WireSensDecoder::read_pairs(const Packet& packet, RawFrame& frame) {
   const std::uint8_t* const pairs = window_.bytes().data() + kReadings;
   const std::size_t count = format_.nodes / 2;
-  const auto index = [&](std::size_t pair) { return load_little<std::uint16_t>(pairs + 4 * pair); };
-  const auto value = [&](std::size_t pair) { return load_little<std::uint16_t>(pairs + 4 * pair + 2); };
+  const auto index = [&](std::size_t pair) { return read_little<std::uint16_t>(pairs + 4 * pair); };
+  const auto value = [&](std::size_t pair) { return read_little<std::uint16_t>(pairs + 4 * pair + 2); };
   const std::uint32_t step = packet.number - last_->number;
   bool valid = true;
   for (std::size_t pair = 0; pair < count; ++pair) valid = valid && index(pair) < format_.taxels;

@@ -48,8 +48,8 @@ struct Packet {
 
 /// The packet at `bytes`; empty where none can be.
 inline std::optional<Packet> packet_at(const std::uint8_t* bytes, const PacketFormat& format) noexcept {
-  const Packet packet = {load_little<std::uint16_t>(bytes + 1),
-                         load_little<std::uint32_t>(bytes + format.number_offset())};
+  const Packet packet = {read_little<std::uint16_t>(bytes + 1),
+                         read_little<std::uint32_t>(bytes + format.number_offset())};
   if (packet.start >= format.taxels && !packet.reads_nodes(format)) return std::nullopt;
   if (format.delimited &&
       std::memcmp(bytes + format.size() - kDelimiter.size(), kDelimiter.data(), kDelimiter.size()) != 0) {

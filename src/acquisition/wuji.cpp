@@ -57,11 +57,11 @@ class WujiDecoder final : public WindowDecoder {
     const auto marker = std::find(bytes.begin(), bytes.end(), kMarker[0]);
     if (marker != bytes.begin()) return {Verdict::Kind::noise, static_cast<std::size_t>(marker - bytes.begin())};
     if (bytes.size() < kHeaderSize) return {};
-    const auto form = static_cast<Form>(load_little<std::uint16_t>(&bytes[2]));
+    const auto form = static_cast<Form>(read_little<std::uint16_t>(&bytes[2]));
     if (bytes[1] != kMarker[1] || (form != Form::floats && form != Form::integers)) return {Verdict::Kind::noise, 1};
     if (bytes.size() < size_of(form)) return ended ? Verdict{Verdict::Kind::noise, 1} : Verdict{};
     const std::span<const std::uint8_t> whole = bytes.first(size_of(form));
-    if (crc_16(covered(whole)) != load_little<std::uint16_t>(&whole[whole.size() - kCrcSize])) {
+    if (crc_16(covered(whole)) != read_little<std::uint16_t>(&whole[whole.size() - kCrcSize])) {
       return {Verdict::Kind::damaged, kHeaderSize};  // the next frame may begin inside it
     }
     return {read(whole, form, frame) ? Verdict::Kind::frame : Verdict::Kind::noise, whole.size()};
@@ -70,15 +70,15 @@ class WujiDecoder final : public WindowDecoder {
   /// False where the frame is late or doubled.
   bool read(std::span<const std::uint8_t> bytes, Form form, RawFrame& frame) {
     const std::uint8_t* number = &bytes[bytes.size() - kCrcSize - kTimeSize - kNumberSize];
-    const auto time = load_little<std::uint32_t>(number + kNumberSize);
-    if (!numbers_.count(load_little<std::uint16_t>(number), time, frame.acquisition)) return false;
+    const auto time = read_little<std::uint32_t>(number + kNumberSize);
+    if (!numbers_.count(read_little<std::uint16_t>(number), time, frame.acquisition)) return false;
     frame.counts.resize(kTaxels);
     const std::uint8_t* readings = &bytes[readings_at(form)];
     for (std::size_t i = 0; i < kTaxels; ++i) {
       frame.counts[i] =
           form == Form::floats
-              ? std::bit_cast<float>(load_little<std::uint32_t>(&readings[4 * i]))
-              : static_cast<float>(static_cast<std::int16_t>(load_little<std::uint16_t>(&readings[2 * i])));
+              ? std::bit_cast<float>(read_little<std::uint32_t>(&readings[4 * i]))
+              : static_cast<float>(static_cast<std::int16_t>(read_little<std::uint16_t>(&readings[2 * i])));
     }
     return true;
   }

@@ -120,7 +120,7 @@ Result<Calibration> calibrate(const SampleDatabase& database, std::span<const Ra
   calibration.model.supply = database.supply;
   calibration.model.networks = training->networks;
   Result<UncertaintyReport> uncertainty = timed(report, "uncertainty", [&] {
-    return fit_uncertainty(memory ? memory->felt : database, *training, calibration.model);
+    return fit_uncertainty(memory ? memory->material : database, *training, calibration.model);
   });
   if (!uncertainty) return uncertainty.error();
   report.uncertainty = *uncertainty;

@@ -293,9 +293,9 @@ std::string checksum_of(const SafetensorsFile& file) {
 
 /// Takes the checksum out of the metadata, which it is no part of.
 Status take_checksum(SafetensorsFile& file) {
-  const auto told = file.metadata.extract(kChecksum);
-  if (told.empty()) return Done{};
-  if (told.mapped() != checksum_of(file)) {
+  const auto recorded = file.metadata.extract(kChecksum);
+  if (recorded.empty()) return Done{};
+  if (recorded.mapped() != checksum_of(file)) {
     return bad_input(std::string("is damaged: its checksum differs") + kMendDamage);
   }
   file.has_checksum = true;
@@ -337,10 +337,10 @@ Result<SafetensorsFile> safetensors_from_bytes(std::string_view bytes, const std
 }
 
 Status check_format(const SafetensorsFile& file, const FileFormat& format) {
-  const auto told = file.metadata.find("format");
-  if (told == file.metadata.end()) return bad_input(format.otherwise);
-  if (told->second == format.without_checksum) return Done{};
-  if (told->second != format.name) return bad_input(format.otherwise);
+  const auto recorded = file.metadata.find("format");
+  if (recorded == file.metadata.end()) return bad_input(format.otherwise);
+  if (recorded->second == format.without_checksum) return Done{};
+  if (recorded->second != format.name) return bad_input(format.otherwise);
   if (!file.has_checksum) return bad_input(std::string("is damaged: it has lost its checksum") + kMendDamage);
   return Done{};
 }
@@ -350,8 +350,8 @@ std::optional<std::string> checksum_note(const std::string& path, const FileForm
   if (path.ends_with(".toml") || !std::filesystem::is_regular_file(path, error)) return std::nullopt;
   const Result<SafetensorsFile> file = read_safetensors(path);
   if (!file || file->has_checksum) return std::nullopt;
-  const auto told = file->metadata.find("format");
-  if (told == file->metadata.end() || told->second != format.without_checksum) return std::nullopt;
+  const auto recorded = file->metadata.find("format");
+  if (recorded == file->metadata.end() || recorded->second != format.without_checksum) return std::nullopt;
   return path + ": is of an older dermis and has no checksum, so damage to it would not show";
 }
 

@@ -33,17 +33,17 @@ void free_sums(D d, ForceSums& sums, std::size_t first, hn::Vec<D> late, hn::Vec
 
 /// Below zero where nothing presses, so that the states do not add up its noise.
 template <class D>
-hn::Vec<D> signed_felt(D d, const MemoryStep& step, std::size_t first, hn::Vec<D> felt) {
-  if (step.sums == nullptr) return felt;
-  return hn::IfThenElse(hn::Gt(felt, hn::Zero(d)), felt, hn::LoadU(d, step.sums->newtons.data() + first));
+hn::Vec<D> signed_material(D d, const MemoryStep& step, std::size_t first, hn::Vec<D> material) {
+  if (step.sums == nullptr) return material;
+  return hn::IfThenElse(hn::Gt(material, hn::Zero(d)), material, hn::LoadU(d, step.sums->newtons.data() + first));
 }
 
 template <class D>
 void step_lanes(D d, const MemoryStep& step, std::size_t first, float* newtons, float* sigma_newtons) {
   const std::size_t taxels = step.newtons.size();
   const auto one = hn::Set(d, 1.0F);
-  const auto felt = hn::LoadU(d, newtons + first);
-  const auto is_known = hn::Eq(felt, felt);
+  const auto material = hn::LoadU(d, newtons + first);
+  const auto is_known = hn::Eq(material, material);
   auto late = hn::Zero(d);
   float of_load = 1.0F;
   for (std::size_t k = 0; k < step.late.size(); ++k) {
@@ -52,9 +52,9 @@ void step_lanes(D d, const MemoryStep& step, std::size_t first, float* newtons, 
   }
   const auto gain = hn::Set(d, 1.0F / of_load);
   const auto most = hn::Set(d, kMostNewtons);
-  const auto told = hn::Mul(hn::Sub(signed_felt(d, step, first, felt), late), gain);
+  const auto limited = hn::Mul(hn::Sub(signed_material(d, step, first, material), late), gain);
   const auto last = hn::LoadU(d, step.newtons.data() + first);
-  const auto signed_load = hn::IfThenElse(is_known, hn::Clamp(told, hn::Neg(most), most), last);
+  const auto signed_load = hn::IfThenElse(is_known, hn::Clamp(limited, hn::Neg(most), most), last);
   const auto load = hn::Max(signed_load, hn::Zero(d));
   hn::StoreU(load, d, step.newtons.data() + first);
   for (std::size_t k = 0; k < step.approach.size(); ++k) {
@@ -74,11 +74,11 @@ void step_lanes(D d, const MemoryStep& step, std::size_t first, float* newtons, 
     share = hn::MulAdd(hn::Set(d, step.half_gap[j]), stop, share);
   }
   const auto freed = hn::Mul(load, share);
-  hn::StoreU(hn::IfThenElse(is_known, freed, felt), d, newtons + first);
+  hn::StoreU(hn::IfThenElse(is_known, freed, material), d, newtons + first);
   const auto sigma = hn::LoadU(d, sigma_newtons + first);
   const auto noise = hn::LoadU(d, step.noise_newtons.data() + first);
   const auto lasting = hn::Max(hn::MulSub(sigma, sigma, hn::Mul(noise, noise)), hn::Zero(d));
-  const auto growth = hn::Max(hn::IfThenElse(hn::Gt(felt, hn::Zero(d)), hn::Div(freed, felt), one), one);
+  const auto growth = hn::Max(hn::IfThenElse(hn::Gt(material, hn::Zero(d)), hn::Div(freed, material), one), one);
   const auto by_noise = hn::Mul(share, gain);
   const auto noise_now = hn::Mul(noise, by_noise);
   const auto variance = hn::MulAdd(hn::Mul(growth, growth), lasting, hn::Mul(noise_now, noise_now));

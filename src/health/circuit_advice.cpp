@@ -141,7 +141,7 @@ std::vector<double> series(int steps, double least, double most) {
   return values;
 }
 
-bool is_better(const LoadChoice& a, const LoadChoice& b) {
+bool is_better(const ResistorChoice& a, const ResistorChoice& b) {
   if (!a.precision || !b.precision) return a.precision.has_value() && !b.precision.has_value();
   return a.precision->mean < b.precision->mean;
 }
@@ -153,8 +153,8 @@ Status try_loads(const ArrayDescription& array, const std::vector<double>& ohms,
     advice.loads.push_back({ohm, *precision});
   }
   std::sort(advice.loads.begin(), advice.loads.end(),
-            [](const LoadChoice& a, const LoadChoice& b) { return a.load_ohm < b.load_ohm; });
-  const auto same = [](const LoadChoice& a, const LoadChoice& b) { return b.load_ohm < 1.01 * a.load_ohm; };
+            [](const ResistorChoice& a, const ResistorChoice& b) { return a.load_ohm < b.load_ohm; });
+  const auto same = [](const ResistorChoice& a, const ResistorChoice& b) { return b.load_ohm < 1.01 * a.load_ohm; };
   advice.loads.erase(std::unique(advice.loads.begin(), advice.loads.end(), same), advice.loads.end());
   const auto best = std::min_element(advice.loads.begin(), advice.loads.end(), is_better);
   advice.best = static_cast<std::size_t>(best - advice.loads.begin());

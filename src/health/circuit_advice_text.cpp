@@ -44,7 +44,7 @@ std::string table_of(const CircuitAdvice& advice) {
   constexpr double kShownFactor = 25.0;
   const double best_ohm = advice.loads[advice.best].load_ohm;
   std::string text = fmt::format("{:>12}{:>12}{:>12}{:>12}{:>12}\n", "load", "mean", "median", "95 %", "worst");
-  for (const LoadChoice& choice : advice.loads) {
+  for (const ResistorChoice& choice : advice.loads) {
     if (std::abs(std::log(choice.load_ohm / best_ohm)) > std::log(kShownFactor)) continue;
     if (!choice.precision) {
       text += fmt::format("{:>12}   {}\n", ohm_text(choice.load_ohm), precision_text(choice.precision));
@@ -69,7 +69,7 @@ std::string drive_text(const CircuitAdvice& advice, const Readout& readout) {
 
 std::string describe(const CircuitAdvice& advice, const ArrayDescription& array) {
   const Readout& readout = array.readout;
-  const LoadChoice& best = advice.loads[advice.best];
+  const ResistorChoice& best = advice.loads[advice.best];
   std::string text =
       fmt::format("{} x {} taxels of {} to {}, {}, drivers of {}, noise of a reading {} of the supply.\n", array.rows,
                   array.cols, ohm_text(advice.taxels.least_ohm), ohm_text(advice.taxels.most_ohm),

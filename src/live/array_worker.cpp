@@ -41,8 +41,8 @@ Status check_sizes(const LiveArray& array) {
   return Done{};
 }
 
-bool is_silent(const ArrayStatistics& told, Nanos since) {
-  return since > kSilence && 1e-9 * static_cast<double>(since.count()) * told.source.rate_hz > kSilentIntervals;
+bool is_silent(const ArrayStatistics& last, Nanos since) {
+  return since > kSilence && 1e-9 * static_cast<double>(since.count()) * last.source.rate_hz > kSilentIntervals;
 }
 
 }  // namespace

@@ -93,6 +93,7 @@ Result<std::unique_ptr<FrameSink>> create_live_recording(const FrameOutput& outp
   if (!notes.name.empty()) options.name = notes.name;
   options.array_toml = notes.array_toml;
   options.model_hash = notes.model_hash;
+  options.simulation = notes.simulation;
   if (output.array != nullptr) options.pitch = {output.array->row_pitch_m, output.array->col_pitch_m};
   std::optional<pipeline::Pipeline> pipeline;
   if (output.model != nullptr) {
@@ -109,12 +110,6 @@ Result<std::unique_ptr<FrameSink>> create_live_recording(const FrameOutput& outp
 }
 
 }  // namespace
-
-recordings::FrameNotes notes_of_source(const FrameSource& source, const std::string& from) {
-  if (source.is_live()) return {};
-  const Result<recordings::FrameNotes> notes = recordings::read_frame_notes(from);
-  return notes ? *notes : recordings::FrameNotes{};
-}
 
 Status check_output(const FrameOutput& output) {
   const Result<recordings::FrameFormat> format = recordings::output_format(output.path);

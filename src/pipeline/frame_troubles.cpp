@@ -115,9 +115,8 @@ std::vector<std::string> FrameTroubles::describe() const {
                                 first_unsolved_));
   }
   if (faulty_ > 0) {
-    lines.push_back(
-        fmt::format("{} of {} frames with faulty lines or taxels, which are masked: 'dermis doctor' tells which",
-                    faulty_, frames_));
+    lines.push_back(fmt::format(
+        "{} of {} frames with faulty lines or taxels, which are masked: a diagnosis tells which", faulty_, frames_));
   }
   for (const Doubt* doubt : {&supply_, &kelvin_, &silent_}) {
     if (doubt->frames > 0) lines.push_back(describe(*doubt));

@@ -230,7 +230,7 @@ Result<Model> read_direct_model(const std::string& path) {
   const Result<ArrayDescription> array = files::read_array(path);
   if (!array) return array.error();
   if (array->readout.quantity != Quantity::counts) return direct_model(*array);
-  return bad_input(path + ": describes an array, and is no model; 'dermis calibrate' makes one");
+  return bad_input(path + ": describes an array, and is no model; a calibration makes one");
 }
 
 }  // namespace
@@ -257,8 +257,7 @@ Result<Model> read_model(const std::string& path) {
   const Result<SafetensorsFile> file = files::read_safetensors(path);
   if (!file) return file.error();
   if (metadata(*file, "format") == kFormatWithoutSigma) {
-    return bad_input(path + ": is of an older dermis that did not know how sure its forces are; write it again with " +
-                     "'dermis calibrate'");
+    return bad_input(path + ": is of an older dermis that did not know how sure its forces are; calibrate again");
   }
   if (const Status right = files::check_format(*file, kModelFormat); !right) {
     return bad_input(path + ": " + right.error().message);
@@ -287,7 +286,7 @@ Result<Model> read_model(const std::string& path) {
   if (file->metadata.contains("supply")) model.supply = get_supply(reader);
   if (reader.first_error()) return bad_input(path + ": " + reader.first_error()->message);
   if (!is_consistent(model)) {
-    return bad_input(path + ": holds values out of range; write it again with 'dermis calibrate'");
+    return bad_input(path + ": holds values out of range; calibrate again");
   }
   const std::string prefix = kProvenancePrefix;
   for (const auto& [key, text] : file->metadata) {

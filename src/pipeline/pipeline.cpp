@@ -2,9 +2,6 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/pipeline/pipeline.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <iterator>
 #include <utility>
 #include <vector>
 

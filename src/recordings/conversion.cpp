@@ -33,7 +33,7 @@ std::vector<std::string> left_out(const Extras& extras, bool has_forces, const F
   if (extras.has_supply && !holds_temperature) names.emplace_back("supply");
   if (extras.has_acquisition && !holds_all) names.emplace_back("numbers, device times and arrivals of the frames");
   if (!notes.array_toml.empty() && !holds_all) names.emplace_back("the description of the array");
-  if (has_forces) names.emplace_back("forces ('dermis run' gives them again)");
+  if (has_forces) names.emplace_back("forces (the model gives them again)");
   return names;
 }
 

@@ -7,6 +7,7 @@
 #include "dermis/files/frames_csv.hpp"
 #include "dermis/files/input.hpp"
 #include "dermis/files/npy.hpp"
+#include "dermis/files/origin_toml.hpp"
 #include "dermis/files/taxel_text.hpp"
 #include "dermis/importers/dsa.hpp"
 #include "dermis/importers/novel_lst.hpp"
@@ -51,7 +52,7 @@ class FrameFile final : public FrameSource {
     if (*more || std::exchange(has_ended_, true)) return more;
     if (!has_frame_) return bad_input(path_ + ": has no frame" + why_not(path_));
     if (loss_) {
-      loss_(path_ + ": was not written to its end, so that its last frames may be missing; 'dermis recover' makes it " +
+      loss_(path_ + ": was not written to its end, so that its last frames may be missing; recovery makes it " +
             "complete");
     }
     return more;
@@ -106,7 +107,7 @@ Result<std::unique_ptr<FrameSource>> open_import(const std::string& path, FrameF
 Status check_rate(const std::string& path, FrameFormat format, const std::optional<double>& rate_hz) {
   if (has_times(format) || rate_hz) return Done{};
   const std::string nor = format == FrameFormat::text_matrix ? ", nor a header time_s,r0c0,..." : "";
-  return bad_input(path + ": has no times" + nor + ": give a rate, to 'dermis convert' or as 'file:" + path +
+  return bad_input(path + ": has no times" + nor + ": give a rate, when it is converted or as 'file:" + path +
                    "?rate=HZ'");
 }
 
@@ -116,6 +117,7 @@ Result<std::unique_ptr<FrameSink>> create_recording(const std::string& path, Fra
   if (!notes.name.empty()) options.name = notes.name;
   options.array_toml = notes.array_toml;
   options.model_hash = notes.model_hash;
+  options.simulation = notes.simulation;
   options.live = false;
   return as<FrameSink>(RecordingWriter::create(path, shape, options));
 }
@@ -150,14 +152,14 @@ Result<FrameNotes> read_frame_notes(const std::string& path) {
     const RecordingPlace place = recording_place(path);
     const auto reader = RecordingReader::open(place.path, place.array);
     if (!reader) return reader.error();
-    return FrameNotes{(*reader)->name(), (*reader)->array_toml(), (*reader)->model_hash()};
+    return (*reader)->notes();
   }
   if (*format == FrameFormat::hdf5) {
     const auto reader = Hdf5FramesReader::open(path);
     if (!reader) return reader.error();
     return (*reader)->notes();
   }
-  return FrameNotes{};
+  return FrameNotes{.simulation = files::simulated_source(path)};
 }
 
 Result<std::unique_ptr<FrameSink>> create_frames(const std::string& path, FrameShape shape, const FrameNotes& notes) {

@@ -191,7 +191,8 @@ Result<std::unique_ptr<Hdf5FramesReader>> Hdf5FramesReader::open(const std::stri
   if (!counts) return counts.error();
   auto state = std::make_unique<State>(State{*std::move(file), *std::move(counts)});
   if (const Status opened = state->open_columns(); !opened) return opened.error();
-  state->notes = {state->file.text("name"), state->file.text("array"), state->file.text("model_hash")};
+  state->notes = {state->file.text("name"), state->file.text("array"), state->file.text("model_hash"),
+                  state->file.text("simulation")};
   return std::unique_ptr<Hdf5FramesReader>(new Hdf5FramesReader(std::move(state)));
 }
 
@@ -266,6 +267,7 @@ void Hdf5FramesWriter::State::add_notes(const FrameNotes& notes) const {
   if (!notes.name.empty()) file.add_text("name", notes.name);
   if (!notes.array_toml.empty()) file.add_text("array", notes.array_toml);
   if (!notes.model_hash.empty()) file.add_text("model_hash", notes.model_hash);
+  if (!notes.simulation.empty()) file.add_text("simulation", notes.simulation);
 }
 
 Hdf5Id Hdf5FramesWriter::State::create_counts(const char* name, hid_t type) const {

@@ -53,9 +53,9 @@ struct McapReader::State {
   [[nodiscard]] Status read_summary();
   [[nodiscard]] Status read_summary_records(const McapScanner::Footer& footer);
   [[nodiscard]] Status sort_chunks();
-  [[nodiscard]] Status take_summary_record(const McapRecord& record);
-  [[nodiscard]] Status take_statistics(ByteReader reader);
-  [[nodiscard]] Status take_chunk_index(ByteReader reader);
+  [[nodiscard]] Status read_summary_record(const McapRecord& record);
+  [[nodiscard]] Status read_statistics(ByteReader reader);
+  [[nodiscard]] Status read_chunk_index(ByteReader reader);
   [[nodiscard]] Status read_indexed();
   [[nodiscard]] Status keep(const McapRecord& record);
   void note(McapCompression compression);
@@ -63,7 +63,7 @@ struct McapReader::State {
   [[nodiscard]] Result<bool> next_record(McapRecord& record);
   [[nodiscard]] Result<bool> next_in_file(McapRecord& record);
   [[nodiscard]] Result<bool> handle(const McapRecord& record, McapMessage& message);
-  [[nodiscard]] Result<bool> take_message(ByteView body, McapMessage& message) const;
+  [[nodiscard]] Result<bool> read_message(ByteView body, McapMessage& message) const;
   [[nodiscard]] Result<bool> next_in_chunk(McapMessage& message);
 };
 
@@ -112,19 +112,19 @@ Status McapReader::State::read_summary_records(const McapScanner::Footer& footer
     if (*step != McapScanner::Step::record || scanner.place() > footer.place) {
       return scanner.error(scanner.place(), std::string("the summary is damaged") + kMend);
     }
-    if (const Status taken = take_summary_record(record); !taken) return error(record.place, taken.error());
+    if (const Status taken = read_summary_record(record); !taken) return error(record.place, taken.error());
   }
   const bool has_crc = footer.crc != 0 && scanner.crc();
   if (!has_crc || footer.crc == crc32(*scanner.crc(), footer.checked_bytes)) return Done{};
   return scanner.error(footer.place, std::string("the summary is damaged: its checksum differs") + kMend);
 }
 
-Status McapReader::State::take_summary_record(const McapRecord& record) {
+Status McapReader::State::read_summary_record(const McapRecord& record) {
   switch (record.opcode) {
     case Opcode::schema: return table.add_schema(record.body);
     case Opcode::channel: return table.add_channel(record.body);
-    case Opcode::statistics: return take_statistics(ByteReader(record.body));
-    case Opcode::chunk_index: return take_chunk_index(ByteReader(record.body));
+    case Opcode::statistics: return read_statistics(ByteReader(record.body));
+    case Opcode::chunk_index: return read_chunk_index(ByteReader(record.body));
     case Opcode::attachment_index:
     case Opcode::metadata_index: {
       ByteReader reader(record.body);
@@ -137,7 +137,7 @@ Status McapReader::State::take_summary_record(const McapRecord& record) {
   }
 }
 
-Status McapReader::State::take_statistics(ByteReader reader) {
+Status McapReader::State::read_statistics(ByteReader reader) {
   McapStatistics taken;
   taken.messages = reader.number<std::uint64_t>();
   static_cast<void>(reader.number<std::uint16_t>());  // schemas
@@ -157,7 +157,7 @@ Status McapReader::State::take_statistics(ByteReader reader) {
   return Done{};
 }
 
-Status McapReader::State::take_chunk_index(ByteReader reader) {
+Status McapReader::State::read_chunk_index(ByteReader reader) {
   ChunkPlace chunk{};
   chunk.first_time = reader.number<std::uint64_t>();
   chunk.last_time = reader.number<std::uint64_t>();
@@ -259,7 +259,7 @@ Result<bool> McapReader::State::handle(const McapRecord& record, McapMessage& me
     case Opcode::message:
       if (record.is_left_out) return scanner.error(record.place, "the message has more than 64 MiB");
       chunk_place = record.place;
-      return take_message(record.body, message);
+      return read_message(record.body, message);
     case Opcode::chunk: {
       if (record.is_left_out) return scanner.error(record.place, "the chunk has more than 64 MiB");
       const Result<McapChunk> chunk = parse_chunk(record.body, decompressor);
@@ -273,7 +273,7 @@ Result<bool> McapReader::State::handle(const McapRecord& record, McapMessage& me
   }
 }
 
-Result<bool> McapReader::State::take_message(ByteView body, McapMessage& message) const {
+Result<bool> McapReader::State::read_message(ByteView body, McapMessage& message) const {
   const Result<McapMessage> parsed = parse_message(body);
   if (!parsed) return error(chunk_place, parsed.error());
   if (!table.channels().contains(parsed->channel)) {
@@ -289,10 +289,10 @@ Result<bool> McapReader::State::next_in_chunk(McapMessage& message) {
   while (!chunk_records.empty()) {
     McapRecord record;
     record.place = chunk_place;
-    if (!take_record(chunk_records, record.opcode, record.body)) {
+    if (!split_record(chunk_records, record.opcode, record.body)) {
       return scanner.error(chunk_place, std::string("the records of the chunk do not fill it") + kMend);
     }
-    if (record.opcode == Opcode::message) return take_message(record.body, message);
+    if (record.opcode == Opcode::message) return read_message(record.body, message);
     if (record.opcode != Opcode::schema && record.opcode != Opcode::channel) continue;
     if (const Result<bool> taken = handle(record, message); !taken) return taken.error();
   }

@@ -147,7 +147,7 @@ Result<McapChunk> parse_chunk(ByteView body, Decompressor& decompressor) {
   return McapChunk{*compression, records};
 }
 
-bool take_record(ByteView& records, Opcode& opcode, ByteView& body) {
+bool split_record(ByteView& records, Opcode& opcode, ByteView& body) {
   ByteReader reader(records);
   opcode = static_cast<Opcode>(reader.number<std::uint8_t>());
   body = reader.consume(reader.number<std::uint64_t>());

@@ -91,7 +91,7 @@ struct McapChunk {
 [[nodiscard]] Result<McapChunk> parse_chunk(ByteView body, Decompressor& decompressor);
 
 /// Takes the first record of a chunk. Returns false where the bytes are no whole record.
-[[nodiscard]] bool take_record(ByteView& records, Opcode& opcode, ByteView& body);
+[[nodiscard]] bool split_record(ByteView& records, Opcode& opcode, ByteView& body);
 
 [[nodiscard]] Result<McapMessage> parse_message(ByteView body);
 [[nodiscard]] Result<McapAttachment> parse_attachment(ByteView body);

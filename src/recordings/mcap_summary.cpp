@@ -37,7 +37,7 @@ class Statistics {
 Statistics::Statistics(ByteView records) {
   Opcode opcode{};
   ByteView body;
-  while (!records.empty() && take_record(records, opcode, body)) ++records_of_[opcode];
+  while (!records.empty() && split_record(records, opcode, body)) ++records_of_[opcode];
 }
 
 Status Statistics::add(const SpilledBytes& chunk_indexes) {
@@ -59,7 +59,7 @@ std::size_t Statistics::add_whole_records(ByteView chunk_indexes) {
   ByteView rest = chunk_indexes;
   Opcode opcode{};
   ByteView body;
-  for (ByteView next = rest; !next.empty() && take_record(next, opcode, body); rest = next) {
+  for (ByteView next = rest; !next.empty() && split_record(next, opcode, body); rest = next) {
     ++records_of_[opcode];
     add_messages(ByteReader(body));
   }
@@ -125,7 +125,7 @@ void append_records(ByteView records, Opcode wanted, Bytes& bytes) {
   ByteView body;
   while (!records.empty()) {
     const ByteView all = records;
-    if (!take_record(records, opcode, body)) return;
+    if (!split_record(records, opcode, body)) return;
     if (opcode == wanted) append_bytes(bytes, all.first(all.size() - records.size()));
   }
 }

@@ -54,7 +54,7 @@ struct McapWriter::State {
   [[nodiscard]] std::uint64_t place() const { return file.size() + pending.size(); }
   [[nodiscard]] std::uint16_t schema_id(const McapChannel& channel);
   void seal();
-  [[nodiscard]] bool take_sealed();
+  [[nodiscard]] bool next_sealed();
   void write(const Batch& batch);
   void append_placed_indexes(const Batch& batch);
   [[nodiscard]] std::uint64_t append_chunk(const Batch& batch);
@@ -99,7 +99,7 @@ void McapWriter::State::seal() {
 }
 
 /// The next batch to be written, in the place of the last; returns false where none waits.
-bool McapWriter::State::take_sealed() {
+bool McapWriter::State::next_sealed() {
   const std::scoped_lock lock(mutex);
   if (sealed.empty()) return false;
   writing.clear();
@@ -298,7 +298,7 @@ std::size_t McapWriter::chunk_bytes() const noexcept {
 
 Status McapWriter::close_chunk() {
   seal_chunk();
-  while (state_->take_sealed()) state_->write(state_->writing);
+  while (state_->next_sealed()) state_->write(state_->writing);
   return state_->status();
 }
 
@@ -307,7 +307,7 @@ void McapWriter::seal_chunk() {
 }
 
 Status McapWriter::write_sealed() {
-  if (state_->take_sealed()) state_->write(state_->writing);
+  if (state_->next_sealed()) state_->write(state_->writing);
   return state_->status();
 }
 

@@ -29,6 +29,7 @@ RecordingDescription description_of(const Values& values) {
   description.folder = '/' + topic_part(description.name) + '/';
   description.shape = shape_of(values);
   description.model_hash = value_of(values, "model_hash");
+  description.simulation = value_of(values, "simulation");
   description.software = value_of(values, "software");
   return description;
 }

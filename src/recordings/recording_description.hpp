@@ -20,6 +20,7 @@ struct RecordingDescription {
   std::optional<FrameShape> shape;
   std::string array_toml;
   std::string model_hash;
+  std::string simulation;
   std::string software;
 };
 

@@ -36,6 +36,7 @@ RecordedArrayInfo info_of(const RecordingDescription& description) {
   info.name = description.name;
   info.array_toml = description.array_toml;
   info.model_hash = description.model_hash;
+  info.simulation = description.simulation;
   info.shape = description.shape;
   return info;
 }
@@ -106,7 +107,7 @@ void set_counts(const FrameCounts& counts, RecordedArrayInfo& array) {
 }
 
 /// Takes the counts of a file that was read whole.
-void take_counts(const McapReader& reader, const RecordingCounts& counts, RecordingInfo& info) {
+void read_counts(const McapReader& reader, const RecordingCounts& counts, RecordingInfo& info) {
   const std::vector<RecordingDescription> descriptions = descriptions_of(reader);
   info.arrays.clear();
   if (descriptions.size() < 2) {
@@ -167,7 +168,7 @@ Status count_all(McapReader& reader, const std::string& name, RecordingInfo& inf
   const bool has_summary = reader.statistics().has_value();
   const bool has_begun = !counts.messages().empty();
   if (!got_message && (has_begun || !has_summary)) return got_message.error();
-  take_counts(reader, counts, info);
+  read_counts(reader, counts, info);
   const Counts& messages = got_message ? counts.messages() : reader.statistics()->channel_messages;
   set_topics(reader, messages, info);
   info.unread = got_message ? counts.unread() : got_message.error().message.substr(name.size() + 2);

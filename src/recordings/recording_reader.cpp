@@ -98,16 +98,9 @@ bool RecordingReader::complete() const noexcept {
   return suit_->complete();
 }
 
-const std::string& RecordingReader::name() const noexcept {
-  return suit_->arrays()[array_].name;
-}
-
-const std::string& RecordingReader::array_toml() const noexcept {
-  return suit_->arrays()[array_].array_toml;
-}
-
-const std::string& RecordingReader::model_hash() const noexcept {
-  return suit_->arrays()[array_].model_hash;
+FrameNotes RecordingReader::notes() const {
+  const RecordedArray& array = suit_->arrays()[array_];
+  return {array.name, array.array_toml, array.model_hash, array.simulation};
 }
 
 }  // namespace dermis::recordings

@@ -51,11 +51,11 @@ class RecoveryRun {
   void add_totals();
   [[nodiscard]] Status read_records();
   [[nodiscard]] bool keep(const McapRecord& record);
-  [[nodiscard]] bool take_chunk(ByteView body);
-  [[nodiscard]] bool take_message(ByteView body);
-  [[nodiscard]] bool take_message_index(ByteView body);
-  [[nodiscard]] bool take_attachment(ByteView body);
-  [[nodiscard]] bool take_metadata(ByteView body);
+  [[nodiscard]] bool recover_chunk(ByteView body);
+  [[nodiscard]] bool recover_message(ByteView body);
+  [[nodiscard]] bool recover_message_index(ByteView body);
+  [[nodiscard]] bool recover_attachment(ByteView body);
+  [[nodiscard]] bool recover_metadata(ByteView body);
   [[nodiscard]] Status find_chunk();
   [[nodiscard]] Result<bool> holds_chunk(std::uint64_t place);
   [[nodiscard]] bool may_search() const;
@@ -143,19 +143,19 @@ bool RecoveryRun::keep(const McapRecord& record) {
   switch (record.opcode) {
     case Opcode::schema: return table_.add_schema(record.body).has_value();
     case Opcode::channel: return table_.add_channel(record.body).has_value();
-    case Opcode::message: return take_message(record.body);
+    case Opcode::message: return recover_message(record.body);
     case Opcode::chunk:
-      last_chunk_was_damaged_ = !take_chunk(record.body);
+      last_chunk_was_damaged_ = !recover_chunk(record.body);
       if (last_chunk_was_damaged_) ++recovery_.damaged_chunks;
       return !last_chunk_was_damaged_;
-    case Opcode::message_index: return take_message_index(record.body);
-    case Opcode::attachment: return take_attachment(record.body);
-    case Opcode::metadata: return take_metadata(record.body);
+    case Opcode::message_index: return recover_message_index(record.body);
+    case Opcode::attachment: return recover_attachment(record.body);
+    case Opcode::metadata: return recover_metadata(record.body);
     default: return true;
   }
 }
 
-bool RecoveryRun::take_chunk(ByteView body) {
+bool RecoveryRun::recover_chunk(ByteView body) {
   const Result<McapChunk> chunk = parse_chunk(body, decompressor_);
   if (!chunk) {
     if (first_loss_.empty()) first_loss_ = ": " + chunk.error().message;
@@ -166,16 +166,16 @@ bool RecoveryRun::take_chunk(ByteView body) {
   while (is_whole && !records.empty()) {
     Opcode opcode{};
     ByteView record;
-    is_whole = take_record(records, opcode, record);
+    is_whole = split_record(records, opcode, record);
     if (!is_whole) break;
     if (opcode == Opcode::schema) is_whole = table_.add_schema(record).has_value();
     if (opcode == Opcode::channel) is_whole = table_.add_channel(record).has_value();
-    if (opcode == Opcode::message) is_whole = take_message(record);
+    if (opcode == Opcode::message) is_whole = recover_message(record);
   }
   return is_whole;
 }
 
-bool RecoveryRun::take_message(ByteView body) {
+bool RecoveryRun::recover_message(ByteView body) {
   Result<McapMessage> message = parse_message(body);
   if (!message) return false;
   const auto channel = table_.channels().find(message->channel);
@@ -191,7 +191,7 @@ bool RecoveryRun::take_message(ByteView body) {
 }
 
 /// It counts the messages of a damaged chunk.
-bool RecoveryRun::take_message_index(ByteView body) {
+bool RecoveryRun::recover_message_index(ByteView body) {
   constexpr std::size_t kEntryBytes = 16;
   ByteReader reader(body);
   static_cast<void>(reader.number<std::uint16_t>());  // channel
@@ -200,13 +200,13 @@ bool RecoveryRun::take_message_index(ByteView body) {
   return reader.good() && !last_chunk_was_damaged_;
 }
 
-bool RecoveryRun::take_attachment(ByteView body) {
+bool RecoveryRun::recover_attachment(ByteView body) {
   const Result<McapAttachment> attachment = parse_attachment(body);
   if (attachment) writer_->add_attachment(*attachment);
   return attachment.has_value();
 }
 
-bool RecoveryRun::take_metadata(ByteView body) {
+bool RecoveryRun::recover_metadata(ByteView body) {
   const Result<McapMetadata> metadata = parse_metadata(body);
   if (!metadata) return false;
   if (metadata->name == kRecordingMetadata) {

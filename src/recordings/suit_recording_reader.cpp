@@ -75,8 +75,8 @@ class SuitRecordingReader::Implementation {
   [[nodiscard]] Use use_of(const McapMessage& message);
   [[nodiscard]] Use find_use(std::uint16_t id, const McapChannel& channel);
   [[nodiscard]] Result<bool> read_frame(std::size_t& array, RawFrame& frame);
-  [[nodiscard]] Status take_other(const Use& use, const McapMessage& message);
-  [[nodiscard]] Status take_image(const Use& use, const McapMessage& message, RawFrame& frame);
+  [[nodiscard]] Status read_other(const Use& use, const McapMessage& message);
+  [[nodiscard]] Status read_image(const Use& use, const McapMessage& message, RawFrame& frame);
   [[nodiscard]] Error error(const McapMessage& message, const Error& what) const;
 
   std::unique_ptr<McapReader> mcap_;
@@ -113,6 +113,7 @@ void SuitRecordingReader::Implementation::describe() {
     arrays_[i].name = description.name;
     arrays_[i].array_toml = description.array_toml;
     arrays_[i].model_hash = description.model_hash;
+    arrays_[i].simulation = description.simulation;
     if (count > 1) read_[i].shape = description.shape;
     if (count > 1) folders_.emplace(description.folder, i);
   }
@@ -152,7 +153,7 @@ Error SuitRecordingReader::Implementation::error(const McapMessage& message, con
                    mcap_->channels().at(message.channel).topic + ": " + what.message);
 }
 
-Status SuitRecordingReader::Implementation::take_other(const Use& use, const McapMessage& message) {
+Status SuitRecordingReader::Implementation::read_other(const Use& use, const McapMessage& message) {
   ReadArray& array = read_[use.array];
   if (use.kind == MessageKind::acquisition) {
     const Status taken = messages::decode_acquisition(message.data, array.acquisition);
@@ -167,7 +168,7 @@ Status SuitRecordingReader::Implementation::take_other(const Use& use, const Mca
   return Done{};
 }
 
-Status SuitRecordingReader::Implementation::take_image(const Use& use, const McapMessage& message, RawFrame& frame) {
+Status SuitRecordingReader::Implementation::read_image(const Use& use, const McapMessage& message, RawFrame& frame) {
   ReadArray& array = read_[use.array];
   const Result<FrameShape> decoded = messages::decode_image(message.data, frame);
   if (!decoded) return error(message, decoded.error());
@@ -190,12 +191,12 @@ Result<bool> SuitRecordingReader::Implementation::read_frame(std::size_t& array,
     const bool is_wanted = !only_ || *only_ == use.array;
     if (use.kind == MessageKind::none || !is_wanted || message.log_time < begin_time_) continue;
     if (use.kind == MessageKind::image) {
-      if (const Status taken = take_image(use, message, frame); !taken) return taken.error();
+      if (const Status taken = read_image(use, message, frame); !taken) return taken.error();
       arrays_[use.array].shape = *read_[use.array].shape;
       array = use.array;
       return true;
     }
-    if (const Status taken = take_other(use, message); !taken) return taken.error();
+    if (const Status taken = read_other(use, message); !taken) return taken.error();
   }
 }
 

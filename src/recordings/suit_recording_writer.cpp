@@ -168,12 +168,14 @@ SuitRecordingWriter::Implementation::~Implementation() {
 
 void SuitRecordingWriter::Implementation::describe(const WrittenArray& array) {
   const RecordedArray& description = array.description;
-  mcap_->add_metadata({kRecordingMetadata,
-                       {{"name", description.name},
-                        {"rows", std::to_string(description.shape.rows)},
-                        {"cols", std::to_string(description.shape.cols)},
-                        {"model_hash", description.model_hash},
-                        {"software", "dermis " DERMIS_VERSION}}});
+  McapMetadata metadata = {kRecordingMetadata,
+                           {{"name", description.name},
+                            {"rows", std::to_string(description.shape.rows)},
+                            {"cols", std::to_string(description.shape.cols)},
+                            {"model_hash", description.model_hash},
+                            {"software", "dermis " DERMIS_VERSION}}};
+  if (!description.simulation.empty()) metadata.values["simulation"] = description.simulation;
+  mcap_->add_metadata(metadata);
   if (description.array_toml.empty()) return;
   const bool is_only_one = arrays_.size() == 1;
   mcap_->add_attachment({is_only_one ? kArrayAttachment : array_attachment(description.name), "application/toml",

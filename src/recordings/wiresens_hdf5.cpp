@@ -49,10 +49,10 @@ struct WiresensHdf5Reader::State {
 Status WiresensHdf5Reader::State::read_frame_count() {
   Result<NumberColumn<std::uint64_t>> column = NumberColumn<std::uint64_t>::open(file, kFrameCount, 1);
   if (!column) return column.error();
-  std::uint64_t said = 0;
-  if (Status read = column->read(0, said); !read) return read;
-  has_gaps = said < pressure.frame_count();
-  frame_count = has_gaps ? said + 1 : pressure.frame_count();
+  std::uint64_t described = 0;
+  if (Status read = column->read(0, described); !read) return read;
+  has_gaps = described < pressure.frame_count();
+  frame_count = has_gaps ? described + 1 : pressure.frame_count();
   return Done{};
 }
 

@@ -178,8 +178,8 @@ void ConductiveRubber::follow_loop() {
 void ConductiveRubber::creep_towards_load(double seconds) {
   for (std::size_t k = 0; k < kCreepElements; ++k) {
     const double approach = -std::expm1(-seconds / kCreepSeconds[k]);
-    double* const felt_n = creep_n_.data() + k * taxels_.size();
-    for (std::size_t i = 0; i < taxels_.size(); ++i) felt_n[i] += (load_n_[i] - felt_n[i]) * approach;
+    double* const material_n = creep_n_.data() + k * taxels_.size();
+    for (std::size_t i = 0; i < taxels_.size(); ++i) material_n[i] += (load_n_[i] - material_n[i]) * approach;
   }
 }
 
@@ -207,12 +207,12 @@ void ConductiveRubber::read(double temperature_celsius, std::span<double> siemen
 }
 
 double ConductiveRubber::effective_force(std::size_t taxel) const {
-  if (memory_) return memory_->felt_force(taxel);
+  if (memory_) return memory_->material_force(taxel);
   double late_n = 0.0;
   for (std::size_t k = 0; k < kCreepElements; ++k) late_n += creep_n_[k * taxels_.size() + taxel];
   late_n /= static_cast<double>(kCreepElements);
-  const double felt_n = load_n_[taxel] * (1.0 - options_.creep) + options_.creep * late_n;
-  return felt_n * (1.0 - options_.hysteresis / 2.0 * loop_[taxel]);
+  const double material_n = load_n_[taxel] * (1.0 - options_.creep) + options_.creep * late_n;
+  return material_n * (1.0 - options_.hysteresis / 2.0 * loop_[taxel]);
 }
 
 double ConductiveRubber::unloaded_siemens(std::size_t taxel) const {

@@ -80,7 +80,7 @@ double RubberMemory::late_compression(std::size_t taxel) const {
   return sum_n;
 }
 
-double RubberMemory::felt_force(std::size_t taxel) const {
+double RubberMemory::material_force(std::size_t taxel) const {
   const double load_n = load_n_[taxel];
   if (load_n == 0.0) return 0.0;
   const double compression_n = load_n * instant_share_ + options_.creep_per_decade * late_compression(taxel);

@@ -31,7 +31,7 @@ ContactLoop::ContactLoop(const Readout& readout, std::size_t taxels, std::uint64
 
 Result<ContactLoop> ContactLoop::create(const ArrayDescription& array, std::uint64_t seed,
                                         std::optional<std::size_t> frames, const simulation::RubberOptions& rubber,
-                                        const TellShare& tell) {
+                                        const SceneProgress& progress) {
   ArrayDescription exact = array;
   exact.readout.adc_bits = kExactBits;
   exact.readout.adc_reference_v.reset();
@@ -50,7 +50,7 @@ Result<ContactLoop> ContactLoop::create(const ArrayDescription& array, std::uint
     if (!more) return more.error();
     if (!*more) return loop;
     loop.append(frame, (*simulator)->truth().temperature_celsius, (*simulator)->truth().supply_v);
-    if (tell) tell(static_cast<double>(loop.supply_v_.size()) / static_cast<double>(length));
+    if (progress) progress(static_cast<double>(loop.supply_v_.size()) / static_cast<double>(length));
   }
 }
 

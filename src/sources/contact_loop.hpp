@@ -16,8 +16,8 @@
 
 namespace dermis::sources {
 
-/// Told which share of a scene is simulated.
-using TellShare = std::function<void(double share)>;
+/// Hears which share of a scene is simulated.
+using SceneProgress = std::function<void(double share)>;
 
 /// The scene "contacts" to be read at any moment, over and over. It is simulated beforehand at 100 frames/s without the
 /// noise of the instruments, and interpolated in between. Each reading has fresh noise. Not thread-safe.
@@ -27,7 +27,7 @@ class ContactLoop {
   [[nodiscard]] static Result<ContactLoop> create(const ArrayDescription& array, std::uint64_t seed,
                                                   std::optional<std::size_t> frames,
                                                   const simulation::RubberOptions& rubber = {},
-                                                  const TellShare& tell = {});
+                                                  const SceneProgress& progress = {});
 
   /// Counts, temperature and supply `seconds` >= 0 after the beginning of the first loop.
   void read(double seconds, RawFrame& frame);

@@ -4,7 +4,7 @@
 
 namespace dermis::sources {
 
-void GuideVoice::say(const GuideWords& words) {
+void GuideVoice::speak(const GuideWords& words) {
   const std::lock_guard lock(mutex_);
   words_ = words;
 }

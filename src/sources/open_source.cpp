@@ -86,7 +86,7 @@ Result<std::vector<RawFrame>> read_frames(const std::string& from, const SourceO
 }
 
 Error has_no_end(const std::string& from) {
-  return bad_input("'" + from + "': is a device, which has no end; 'dermis record' it first");
+  return bad_input("'" + from + "': is a device, which has no end; record it first");
 }
 
 Result<std::vector<std::string>> several_arrays(const SourceName& from) {
@@ -97,6 +97,14 @@ Result<std::vector<std::string>> several_arrays(const SourceName& from) {
   if ((*recording)->arrays().size() == 1) return names;
   for (const recordings::RecordedArray& array : (*recording)->arrays()) names.push_back(array.name);
   return names;
+}
+
+recordings::FrameNotes notes_of_source(const FrameSource& source, const std::string& from) {
+  const Result<SourceName> name = SourceName::parse(from);
+  if (name && name->kind == SourceKind::simulation) return {.simulation = from};
+  if (source.is_live()) return {};
+  const Result<recordings::FrameNotes> notes = recordings::read_frame_notes(from);
+  return notes ? *notes : recordings::FrameNotes{};
 }
 
 }  // namespace dermis::sources

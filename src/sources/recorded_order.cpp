@@ -31,7 +31,7 @@ Status check_recorded_order(const std::string& path, std::string_view recorded_t
   const Result<ArrayDescription> recorded = files::array_from_toml(recorded_toml, path);
   if (!recorded || !recorded->order.is_plain()) return Done{};
   return bad_input(
-      fmt::format("'{}': was recorded before its array.toml said which way round; 'dermis record' turns it "
+      fmt::format("'{}': was recorded before its array.toml said which way round; a new recording turns it "
                   "where it takes its frames from 'file:{}?{}'",
                   path, path, parameters_of(array.order)));
 }

@@ -130,7 +130,7 @@ Result<MakeFrame> continuous_scene(const acquisition::SourceUri& uri, const Arra
 
 /// The first frames of a scene, over and over.
 Result<MakeFrame> scene_loop(const acquisition::SourceUri& uri, const ArrayDescription& array,
-                             const simulation::RubberOptions& rubber, const TellShare& tell) {
+                             const simulation::RubberOptions& rubber, const SceneProgress& progress) {
   const Result<std::unique_ptr<simulation::Simulator>> simulator = simulate_scene(uri, array, rubber);
   if (!simulator) return simulator.error();
   const std::size_t most = std::clamp(kMaxTaxelFrames / array.taxel_count(), kLeastFrames, kMaxFrames);
@@ -142,7 +142,7 @@ Result<MakeFrame> scene_loop(const acquisition::SourceUri& uri, const ArrayDescr
     if (!more) return more.error();
     if (!*more) break;
     frames.push_back(std::move(frame));
-    if (tell) tell(static_cast<double>(frames.size()) / static_cast<double>(length));
+    if (progress) progress(static_cast<double>(frames.size()) / static_cast<double>(length));
   }
   return MakeFrame([frames = std::move(frames)](std::uint64_t number, RawFrame& frame) {
     const RawFrame& simulated = frames[number % frames.size()];
@@ -153,8 +153,8 @@ Result<MakeFrame> scene_loop(const acquisition::SourceUri& uri, const ArrayDescr
 }
 
 Result<MakeFrame> contact_loop(const acquisition::SourceUri& uri, const ArrayDescription& array,
-                               const simulation::RubberOptions& rubber, const TellShare& tell) {
-  Result<ContactLoop> created = ContactLoop::create(array, uri.seed, uri.frames, rubber, tell);
+                               const simulation::RubberOptions& rubber, const SceneProgress& progress) {
+  Result<ContactLoop> created = ContactLoop::create(array, uri.seed, uri.frames, rubber, progress);
   if (!created) return created.error();
   return MakeFrame([loop = *std::move(created), rate_hz = *uri.rate_hz](std::uint64_t number, RawFrame& frame) mutable {
     loop.read(static_cast<double>(number) / rate_hz, frame);

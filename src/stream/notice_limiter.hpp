@@ -19,7 +19,7 @@ class NoticeLimiter {
   explicit NoticeLimiter(std::function<void(const std::string&)> notice) : notice_(std::move(notice)) {}
 
   /// `kind` must be one of a few: it is remembered.
-  void say(const std::string& kind, const std::string& line, Clock::time_point now = Clock::now()) {
+  void notify(const std::string& kind, const std::string& line, Clock::time_point now = Clock::now()) {
     if (!notice_) return;
     const auto [entry, is_new] = kinds_.try_emplace(kind);
     Kind& known = entry->second;

@@ -103,7 +103,7 @@ class Server::Implementation final : public SessionOwner {
   [[nodiscard]] asio::thread_pool& desk() override { return desk_; }
   void leave(const std::shared_ptr<Session>& session) override;
   void on_refused(const std::string& line) override;
-  void on_cut(const std::string& line) override { notices_.say("cut", line); }
+  void on_cut(const std::string& line) override { notices_.notify("cut", line); }
 
  private:
   /// Between the owner's threads and the server's.
@@ -208,7 +208,7 @@ void Server::Implementation::accept_waiting() {
     admit(std::move(socket));
   }
   if (!error || error == asio::error::would_block) return accept();
-  notices_.say("accept", "cannot take a connection: " + error.message());
+  notices_.notify("accept", "cannot take a connection: " + error.message());
   accept_at(Budget::Clock::now() + std::chrono::milliseconds(100));
 }
 
@@ -220,8 +220,8 @@ void Server::Implementation::accept_at(Budget::Clock::time_point time) {
 /// A silent or slow peer has to make room: a new connection is always taken.
 void Server::Implementation::admit(tcp::socket socket) {
   if (connected_.visitors.size() >= kMostVisitors) {
-    notices_.say("many",
-                 "more than " + std::to_string(kMostVisitors) + " connections beside the stream's: the oldest closed");
+    notices_.notify(
+        "many", "more than " + std::to_string(kMostVisitors) + " connections beside the stream's: the oldest closed");
     count({.refused = 1});
     const std::shared_ptr<Session> oldest = connected_.visitors.front();
     oldest->end();
@@ -258,7 +258,7 @@ void Server::Implementation::leave(const std::shared_ptr<Session>& session) {
 }
 
 void Server::Implementation::on_refused(const std::string& line) {
-  notices_.say("refused", line);
+  notices_.notify("refused", line);
   count({.refused = 1});
 }
 

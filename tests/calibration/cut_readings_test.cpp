@@ -30,7 +30,7 @@ TEST(CutReadings, have_the_mean_that_many_draws_show) {
 
 TEST(CutReadings, of_means_tell_nothing_near_0_and_single_ones_do) {
   CircuitFrame frame;
-  frame.said_sigma = frame.sigma_ratio = 1e-3;
+  frame.described_sigma = frame.sigma_ratio = 1e-3;
   EXPECT_EQ(trusted_above(frame), 0.0);
   frame.sigma_ratio = 1e-4;
   EXPECT_EQ(trusted_above(frame), 2e-3);

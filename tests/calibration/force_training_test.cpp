@@ -172,8 +172,8 @@ SampleDatabase creeping_holds(PressBench& bench, const std::vector<double>& weig
   for (std::size_t taxel = 0; taxel < bench.taxels; ++taxel) {
     for (const double newtons : weights_n) {
       for (int k = 0; k < 200; ++k) {
-        const double felt = newtons * (1.0 + 0.1 * std::log10(0.1 * (k + 1)));
-        database.samples.push_back(bench.sample(taxel, felt));
+        const double material = newtons * (1.0 + 0.1 * std::log10(0.1 * (k + 1)));
+        database.samples.push_back(bench.sample(taxel, material));
         database.samples.back().known_newtons[taxel] = static_cast<float>(newtons);
         database.samples.back().frame = database.samples.size() - 1;
       }

@@ -150,7 +150,7 @@ class MissingFiles(SmallArray):
         absent = self.work / "absent"
         evaluate = ["paper", *self.evaluate_arguments(), "--bank"]
         self.refuse([*evaluate, absent], [absent])
-        self.refuse([*evaluate, self.model], [self.model, "not a bank of the paper", "dermis paper calibrate"])
+        self.refuse([*evaluate, self.model], [self.model, "not a bank of the paper", "the paper's calibration"])
 
     def test_a_folder_instead_of_a_file(self):
         self.refuse(self.run_arguments(self.work / "f.csv", **{"in": self.root}), [self.root])
@@ -477,7 +477,7 @@ class EveryCommand(SmallArray):
             ("recognise", "--classes", self.classes, "--in", frames, "--out", self.work / "r.csv"),
             self.work / "r.csv",
         )
-        yield ("emulate", "--protocol", "csv", "--in", frames, "--to", "stdout:"), None
+        yield ("emulate", "--protocol", "csv", "--in", frames, "--to", "stdout:", "--rate", 1000), None
 
     def test_a_header_alone(self):
         header = (self.contacts / "frames.csv").read_text().splitlines()[0]
@@ -504,7 +504,7 @@ class EveryCommand(SmallArray):
             if arguments[0] in ("calibrate", "image"):
                 continue  # too few frames to calibrate by; the picture is of a frame that is there
             with self.subTest(arguments[0]):
-                self.end_with(arguments, out, [cut, "dermis recover"])
+                self.end_with(arguments, out, [cut, "recover"])
 
     def test_a_table_that_is_cut(self):
         cut = self.written("cut.csv", (self.contacts / "frames.csv").read_text()[:-20])

@@ -153,7 +153,7 @@ class Doctor(SmallArray):
         frames = self.recording("open_rows = [2]\n")
         result = dermis(*self.run_arguments(self.work / "forces.csv", **{"in": frames}))
         self.assertEqual(result.returncode, 0)
-        self.assertIn("'dermis doctor' tells which", result.stderr)
+        self.assertIn("a diagnosis tells which", result.stderr)
         last = (self.work / "forces.csv").read_text().splitlines()[-1].split(",")
         self.assertIn("line_fault", last[1])
         self.assertEqual([k for k, cell in enumerate(last[2:]) if cell == "nan"], list(range(10, 15)))

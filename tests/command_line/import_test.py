@@ -105,7 +105,7 @@ class Imports(support.SmallArray):
             )
             expected = expected or judged
             self.assertEqual(judged, expected)
-        self.refuse(self.calibrate_arguments(self.work / "m", frames="sim:idle?rate=100"), ["dermis record"])
+        self.refuse(self.calibrate_arguments(self.work / "m", frames="sim:idle?rate=100"), ["record it first"])
 
     def test_info_names_the_format(self):
         formats = {
@@ -177,7 +177,7 @@ class Imports(support.SmallArray):
             (("convert", self.contacts / "frames.csv", self.work / "a.asf"), ["a.asf", "only read"]),
             (
                 ("run", "--model", self.array, "--in", self.contacts / "frames.csv", "--out", out),
-                [self.array, "dermis calibrate"],
+                [self.array, "a calibration makes one"],
             ),
             (("serve", "--model", self.mat, "--from", f"file:{self.root / 'a.txt'}?rate=5"), ["make a recording"]),
         ):

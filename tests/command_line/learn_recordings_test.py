@@ -132,15 +132,26 @@ class Forces(SmallArray):
         )
         self.succeed(*self.learn(3, 4, arguments=["--report", self.work / "page"]))
         page = (self.work / "page" / "index.html").read_text()
-        shares = {name: float(share) for name, share in
-                  re.findall(r"(dermis|nearest frame|BP network)</th><td[^>]*>([\d.]+) %", page)}
+        shares = {
+            name: float(share)
+            for name, share in re.findall(r"(dermis|nearest frame|BP network)</th><td[^>]*>([\d.]+) %", page)
+        }
         self.assertEqual(set(shares), {"dermis", "nearest frame"})
         self.assertGreaterEqual(shares["dermis"], 90)
         self.assertTrue((self.work / "page" / "confusion.svg").exists())
 
     def test_the_network_of_the_paper_is_compared_with_the_recipe(self):
-        table = self.succeed("paper", "learn", "--in", self.root / "rec3.mcap", self.root / "rec4.mcap", "--model", self.model,
-                             "--labels", self.labels(3, 4))
+        table = self.succeed(
+            "paper",
+            "learn",
+            "--in",
+            self.root / "rec3.mcap",
+            self.root / "rec4.mcap",
+            "--model",
+            self.model,
+            "--labels",
+            self.labels(3, 4),
+        )
         shares = {name: float(share) for name, share in re.findall(r"(?m)^(\S.*?) +([\d.]+) %", table)}
         self.assertEqual(set(shares), {"dermis", "nearest frame", "BP network"})
         self.assertGreaterEqual(shares["BP network"], 85)
@@ -251,7 +262,7 @@ class Forces(SmallArray):
         self.refuse(
             [*self.learn(3, model=False)[:3], other, *self.learn(3, model=False)[3:]], ["other.csv", "1x2", "4x5"]
         )
-        self.refuse(["learn", "--in", "sim:idle?rate=100&rows=4&cols=5", *self.learn(3)[3:]], ["dermis record"])
+        self.refuse(["learn", "--in", "sim:idle?rate=100&rows=4&cols=5", *self.learn(3)[3:]], ["record it first"])
 
     def test_examples_that_are_named_twice_or_not_at_all(self):
         labels, out = self.labels(3), self.work / "c.safetensors"

@@ -79,7 +79,13 @@ class NothingIsOverwritten(SmallArray):
 
     def test_every_command_that_writes_is_named_here(self):
         commands = re.findall(r"^  (\w+) {2,}", dermis("--help").stdout.split("Subcommands:")[1], re.MULTILINE)
-        names = [*(set(commands) - {"circuit"}), "circuit forward", "circuit invert", "paper calibrate", "paper evaluate"]
+        names = [
+            *(set(commands) - {"circuit"}),
+            "circuit forward",
+            "circuit invert",
+            "paper calibrate",
+            "paper evaluate",
+        ]
         writing = {name for name in names if "--force" in dermis(*name.split(), "--help").stdout}
         self.assertEqual(writing, {*COMMANDS, *FOLDERS, "paper"})
 
@@ -98,8 +104,12 @@ class NothingIsOverwritten(SmallArray):
                         path.unlink()
 
     def test_a_folder_is_not_written_over_an_input(self):
-        required = {"simulate": {"--array": self.array, "--scene": "idle"}, "evaluate": {}, "paper evaluate": {"--bank": self.array},
-                    "learn": {"--labels": self.array}}
+        required = {
+            "simulate": {"--array": self.array, "--scene": "idle"},
+            "evaluate": {},
+            "paper evaluate": {"--bank": self.array},
+            "learn": {"--labels": self.array},
+        }
         folder, link = self.work / "folder", self.work / "link"
         folder.mkdir()
         for command, (inputs, option, files) in FOLDERS.items():
@@ -111,8 +121,10 @@ class NothingIsOverwritten(SmallArray):
                     with self.subTest(command=command, read=read, file=file, named=named):
                         options = {**required[command], read: named, option: folder}
                         result = dermis(*command.split(), *itertools.chain(*options.items()), "--force")
-                        self.assertEqual((result.returncode, result.stderr),
-                                         (2, f"dermis: {option}: is the file of {read}; name another\n"))
+                        self.assertEqual(
+                            (result.returncode, result.stderr),
+                            (2, f"dermis: {option}: is the file of {read}; name another\n"),
+                        )
                         self.assertEqual(path.read_text(), "valuable")
                 link.unlink()
                 path.unlink()
@@ -230,12 +242,15 @@ class NothingIsOverwritten(SmallArray):
         self.assertNotEqual(model.read_bytes(), earlier)
 
     def test_tables_and_pictures_are_replaced_and_it_says_so(self):
-        forces, contacts, picture, drawing, film = (self.work / name for name in
-                                                    ("forces.csv", "contacts.csv", "map.png", "map.svg", "map.gif"))
-        for arguments, paths in (((*self.run_arguments(forces), "--contacts", contacts), (forces, contacts)),
-                                 (("image", "--in", self.contacts / "frames.csv", "--out", picture), (picture,)),
-                                 (("image", "--in", self.contacts / "frames.csv", "--out", drawing), (drawing,)),
-                                 (("image", "--in", self.contacts / "frames.csv", "--from", 0, "--to", 1, "--out", film), (film,))):
+        forces, contacts, picture, drawing, film = (
+            self.work / name for name in ("forces.csv", "contacts.csv", "map.png", "map.svg", "map.gif")
+        )
+        for arguments, paths in (
+            ((*self.run_arguments(forces), "--contacts", contacts), (forces, contacts)),
+            (("image", "--in", self.contacts / "frames.csv", "--out", picture), (picture,)),
+            (("image", "--in", self.contacts / "frames.csv", "--out", drawing), (drawing,)),
+            (("image", "--in", self.contacts / "frames.csv", "--from", 0, "--to", 1, "--out", film), (film,)),
+        ):
             self.succeed(*arguments)
             result = dermis(*arguments)
             said = "".join(f"'{path}' exists and will be replaced\n" for path in paths)

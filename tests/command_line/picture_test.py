@@ -88,11 +88,13 @@ class Image(SmallArray):
         self.assertEqual(film.count(b"\x21\xf9\x04\x04\x04\x00"), 10, "pictures that are shown for 40 ms")
 
     def test_wrong_wishes_are_one_line(self):
-        for options, said in ((("--out", "a.gif"), "must end in .png or .svg; a film (.gif) needs --from and --to"),
-                              (("--out", "a.png", "--at", 100), "has 200 frames"),
-                              (("--out", "a.png", "--from", 0, "--to", 1), "must end in .gif, as a film does"),
-                              (("--out", "a.gif", "--from", 2, "--to", 1), "later than --from"),
-                              (("--out", "a.png", "--high", 0), "more than 0")):
+        for options, said in (
+            (("--out", "a.gif"), "must end in .png or .svg; a film (.gif) needs --from and --to"),
+            (("--out", "a.png", "--at", 100), "has 200 frames"),
+            (("--out", "a.png", "--from", 0, "--to", 1), "must end in .gif, as a film does"),
+            (("--out", "a.gif", "--from", 2, "--to", 1), "later than --from"),
+            (("--out", "a.png", "--high", 0), "more than 0"),
+        ):
             result = dermis("image", "--in", self.recording, *options, cwd=self.work)
             self.assertEqual(result.returncode, 2, result.stderr)
             self.assertEqual(len(error_lines(result)), 1, result.stderr)

@@ -237,7 +237,7 @@ class Serve(SmallArray):
         self.refuse([*serve, "--host", "0.0.0.0", "--token", "a-long-token"], ["host", "URI"])
         self.refuse([*serve, "--from", frames], ["make a recording of it first"])
         self.refuse([*serve, "--from", LIVE, "--model", self.work / "none.safetensors"], ["none.safetensors"])
-        self.refuse([*serve, "--from", frames, "--model", self.model], ["frames.csv", "dermis convert"])
+        self.refuse([*serve, "--from", frames, "--model", self.model], ["frames.csv", "convert", "to .mcap"])
         self.refuse([*serve, "--from", "sim:contacts?rows=4&cols=5", "--model", self.model], ["rate=100"])
         for wrong in ("bogus=1", "rate=abc"):
             self.refuse([*serve, "--from", f"sim:contacts?{wrong}", "--model", self.model], [wrong.partition("=")[0]])

@@ -12,11 +12,30 @@ from support import SmallArray, dermis
 
 # Each command that reads or writes a model or classes, a recording or a folder, by an option of that.
 NO_STREAMS = (
-    ("calibrate", "--frames"), ("calibrate", "--out"), ("check", "--model"), ("doctor", "--model"), ("evaluate", "--model"),
-    ("evaluate", "--classes"), ("evaluate", "--report"), ("image", "--model"), ("learn", "--model"),
-    ("learn", "--out"), ("learn", "--report"), ("paper", "--report"), ("paper calibrate", "--bank"), ("paper evaluate", "--bank"), ("recalibrate", "--model"), ("recalibrate", "--out"),
-    ("recognise", "--classes"), ("recognise", "--model"), ("record", "--model"), ("replay", "--model"), ("run", "--model"),
-    ("simulate", "--out"), ("top", "--model"), ("watch", "--model"),
+    ("calibrate", "--frames"),
+    ("calibrate", "--out"),
+    ("check", "--model"),
+    ("doctor", "--model"),
+    ("evaluate", "--model"),
+    ("evaluate", "--classes"),
+    ("evaluate", "--report"),
+    ("image", "--model"),
+    ("learn", "--model"),
+    ("learn", "--out"),
+    ("learn", "--report"),
+    ("paper", "--report"),
+    ("paper calibrate", "--bank"),
+    ("paper evaluate", "--bank"),
+    ("recalibrate", "--model"),
+    ("recalibrate", "--out"),
+    ("recognise", "--classes"),
+    ("recognise", "--model"),
+    ("record", "--model"),
+    ("replay", "--model"),
+    ("run", "--model"),
+    ("simulate", "--out"),
+    ("top", "--model"),
+    ("watch", "--model"),
 )
 
 

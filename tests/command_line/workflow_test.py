@@ -127,6 +127,15 @@ class Workflow(SmallArray):
         self.assertIn("Measured frames, as far as their file tells.", (report / "index.html").read_text())
         self.assertTrue(list(report.glob("*.svg")))
 
+    def test_a_simulated_recording_is_called_simulated(self):
+        recording, report = self.work / "sim.mcap", self.work / "report"
+        source = "sim:multitouch?frames=5&rows=3&cols=4&seed=4"
+        self.assertEqual(dermis("record", "--from", source, "--out", recording).returncode, 0)
+        self.assertIn(f"simulated     {source}", self.succeed("info", recording))
+        self.succeed("convert", self.contacts / "frames.csv", self.work / "frames.mcap")
+        self.succeed(*self.evaluate_arguments(frames=self.work / "frames.mcap"), "--report", report)
+        self.assertIn("Simulated frames (sim:multitouch?seed=2).", (report / "index.html").read_text())
+
     def test_calibration_report_as_json(self):
         report = json.loads(self.succeed(*self.calibrate_arguments(self.work / "model.safetensors"), "--json"))
         self.assertEqual(report["frames"], 5 * (20 + 14 * 20))
@@ -217,14 +226,36 @@ class Workflow(SmallArray):
 
 class PaperBank(SmallArray):
     def train(self, bank, *arguments, **keywords):
-        return self.succeed("paper", "calibrate", "--array", self.array, "--frames", self.calibration / "frames.csv", "--loads",
-                            self.calibration / "loads.csv", "--bank", bank, *arguments, **keywords)
+        return self.succeed(
+            "paper",
+            "calibrate",
+            "--array",
+            self.array,
+            "--frames",
+            self.calibration / "frames.csv",
+            "--loads",
+            self.calibration / "loads.csv",
+            "--bank",
+            bank,
+            *arguments,
+            **keywords,
+        )
 
     def test_a_bank_is_one_more_estimator(self):
         bank = self.work / "bank.safetensors"
         self.assertIn("the paper's bank: 17620 unknowns", self.train(bank))
-        arguments = ("paper", "evaluate", "--model", self.model, "--bank", bank, "--frames", self.calibration / "frames.csv",
-                     "--loads", self.calibration / "loads.csv")
+        arguments = (
+            "paper",
+            "evaluate",
+            "--model",
+            self.model,
+            "--bank",
+            bank,
+            "--frames",
+            self.calibration / "frames.csv",
+            "--loads",
+            self.calibration / "loads.csv",
+        )
         estimators = json.loads(self.succeed(*arguments, "--json"))["estimators"]
         self.assertEqual([entry["name"] for entry in estimators][-1], "paper_bank")
         self.assertLess(estimators[-1]["median_relative_error"], 0.25)

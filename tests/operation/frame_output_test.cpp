@@ -35,7 +35,7 @@ TEST(CreateRecording, of_a_model_keeps_frames_forces_and_what_is_known_of_the_ar
   const auto source = recordings::open_frames(output.path);
   ASSERT_TRUE(source);
   support::expect_same_frames(**source, frames);
-  const recordings::FrameNotes notes = notes_of_source(**source, output.path);
+  const recordings::FrameNotes notes = sources::notes_of_source(**source, output.path);
   EXPECT_EQ(notes.name, "mat");
   EXPECT_EQ(notes.array_toml, files::array_to_toml(array));
   EXPECT_EQ(notes.model_hash, files::content_hash(mat.model()).value());
@@ -47,10 +47,10 @@ TEST(CreateRecording, of_a_model_keeps_frames_forces_and_what_is_known_of_the_ar
 
 TEST(CreateRecording, takes_the_notes_of_the_source_where_no_array_is_given) {
   const MatFiles mat;
-  const FrameOutput output{mat.file("frames.h5"), nullptr, nullptr, "", {"sole", "", ""}};
+  const FrameOutput output{mat.file("frames.h5"), nullptr, nullptr, "", {"sole", "", "", "sim:multitouch"}};
   const auto sink = create_recording(output, kShape);
   ASSERT_TRUE(sink && support::write_all(**sink, pressed({1.0F}))) << error_of(sink);
-  EXPECT_EQ(recordings::read_frame_notes(output.path)->name, "sole");
+  EXPECT_EQ(*recordings::read_frame_notes(output.path), output.notes);
 }
 
 TEST(CheckOutput, tells_before_the_first_frame_what_cannot_be_written) {
@@ -76,7 +76,8 @@ TEST(CreateForces, writes_the_forces_of_the_model_alone) {
 TEST(NotesOfSource, are_empty_of_a_device) {
   const auto source = sources::open_source("sim:idle?frames=1");
   ASSERT_TRUE(source);
-  EXPECT_EQ(notes_of_source(**source, "sim:idle?frames=1").name, "");
+  EXPECT_EQ(sources::notes_of_source(**source, "sim:idle?frames=1"),
+            recordings::FrameNotes{.simulation = "sim:idle?frames=1"});
 }
 
 }  // namespace

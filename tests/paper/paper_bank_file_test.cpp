@@ -80,8 +80,8 @@ TEST(PaperBankFile, refuses_what_is_missing_or_out_of_range) {
   const auto doubles = [](SafetensorsFile& file, const char* name) -> std::vector<double>& {
     return std::get<std::vector<double>>(file.tensors.at(name).values);
   };
-  expect_refused("dermis paper calibrate", [](SafetensorsFile& file) { file.metadata["format"] = "dermis model 1"; });
-  expect_refused("dermis paper calibrate", [](SafetensorsFile& file) { file.metadata.clear(); });
+  expect_refused("calibration writes one", [](SafetensorsFile& file) { file.metadata["format"] = "dermis model 1"; });
+  expect_refused("calibration writes one", [](SafetensorsFile& file) { file.metadata.clear(); });
   for (const char* name : {"ratio", "heaviest_newtons", "parameters"}) {
     expect_refused(name, [&](SafetensorsFile& file) { file.tensors.erase(name); });
   }

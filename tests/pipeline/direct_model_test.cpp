@@ -72,7 +72,7 @@ TEST(DirectModel, is_what_an_array_toml_of_forces_is_read_as) {
   const Result<Model> none = read_model(folder.file("b.toml"));
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().message,
-            folder.file("b.toml") + ": describes an array, and is no model; 'dermis calibrate' makes one");
+            folder.file("b.toml") + ": describes an array, and is no model; a calibration makes one");
 }
 
 TEST(DirectModel, of_a_thousand_frames_without_change_has_no_fault) {

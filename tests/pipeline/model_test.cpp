@@ -339,17 +339,17 @@ TEST(Model, safetensors_of_another_kind_are_refused_with_the_mend) {
   const TemporaryFolder folder;
   for (const char* format : {"", "pt", "dermis model 4"}) {
     write_damaged(folder.file("m"), [&](auto& file) { file.metadata["format"] = format; });
-    expect_refused(folder.file("m"), "dermis calibrate");
+    expect_refused(folder.file("m"), "a calibration writes one");
   }
   write_damaged(folder.file("m"), [](auto& file) { file.metadata.erase("format"); });
-  expect_refused(folder.file("m"), "dermis calibrate");
+  expect_refused(folder.file("m"), "a calibration writes one");
 }
 
 TEST(Model, the_format_that_did_not_know_its_uncertainty_is_refused_with_the_mend) {
   const TemporaryFolder folder;
   write_damaged(folder.file("m"), [](auto& file) { file.metadata["format"] = "dermis model 1"; });
   expect_refused(folder.file("m"), "is of an older dermis that did not know how sure its forces are");
-  expect_refused(folder.file("m"), "dermis calibrate");
+  expect_refused(folder.file("m"), "calibrate again");
 }
 
 TEST(Model, every_tensor_must_be_there) {

@@ -574,7 +574,7 @@ TEST(Pipeline, ten_minutes_of_constant_load_on_a_material_that_creeps_keep_their
   const auto pipeline = make_pipeline(model);
   pipeline->drift().set_options({.track = true});
   constexpr double kLoad = 5.0;
-  const auto felt_after = [&](double seconds) {
+  const auto material_after = [&](double seconds) {
     double felt = kLoad;
     for (std::size_t k = 0; k < model.memory->creep.size(); ++k) {
       felt -= kLoad * static_cast<double>(model.memory->creep[k]) *
@@ -587,7 +587,7 @@ TEST(Pipeline, ten_minutes_of_constant_load_on_a_material_that_creeps_keep_their
     const double seconds = 0.1 * (frame - 600);  // after the load came; it goes after ten minutes
     const bool is_loaded = seconds >= 0.0 && seconds < 600.0;
     std::vector<double> felt(20, 0.0);
-    if (is_loaded) felt[6] = felt_after(seconds + 0.1);
+    if (is_loaded) felt[6] = material_after(seconds + 0.1);
     RawFrame raw = measure(model, felt, 25.0, 5.0);
     raw.time = std::chrono::milliseconds(100 * frame);
     pipeline->process(raw, force);

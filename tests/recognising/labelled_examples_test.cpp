@@ -128,8 +128,7 @@ TEST(ReadExamples, refuses_what_has_no_end_or_ends_before_it_is_tared) {
   ExampleOptions options;
   options.data.labels = labels(mat);
   options.in = {"sim:idle?frames=1"};
-  EXPECT_EQ(error_of(read_examples(options)),
-            "'sim:idle?frames=1': is a device, which has no end; 'dermis record' it first");
+  EXPECT_EQ(error_of(read_examples(options)), "'sim:idle?frames=1': is a device, which has no end; record it first");
   options.in = {mat.write("rec.csv", two_presses())};
   options.tare = true;
   EXPECT_EQ(error_of(read_examples(options)), options.in.front() + ": ends before it is tared, which takes 1 s");

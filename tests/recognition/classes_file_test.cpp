@@ -84,7 +84,7 @@ TEST(ClassesFile, names_a_file_that_holds_something_else) {
   const TemporaryFolder folder;
   EXPECT_NE(error_of(folder.file("absent")).find("absent"), std::string::npos);
   ASSERT_TRUE(files::write_safetensors(folder.file("m"), {{{"format", "dermis model 3"}}, {}}));
-  EXPECT_EQ(error_of(folder.file("m")), folder.file("m") + ": holds no classes; write them with 'dermis learn'");
+  EXPECT_EQ(error_of(folder.file("m")), folder.file("m") + ": holds no classes; learning writes them");
 }
 
 TEST(ClassesFile, names_a_description_that_is_damaged) {

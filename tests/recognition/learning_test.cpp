@@ -183,8 +183,8 @@ TEST(LearningSet, tells_by_what_two_classes_are_confused) {
     EXPECT_EQ(pair.mistakes, learned->report.confusion[1] + learned->report.confusion[2]);
     ASSERT_EQ(pair.aspects.size(), 4U);
     EXPECT_EQ(pair.aspects.back().name, "force");
-    EXPECT_GE(pair.aspects.back().told_apart, 0.75);
-    EXPECT_LE(pair.aspects.front().told_apart, 0.65);
+    EXPECT_GE(pair.aspects.back().discrimination, 0.75);
+    EXPECT_LE(pair.aspects.front().discrimination, 0.65);
   }
 }
 

@@ -86,9 +86,8 @@ TEST_F(Conversion, a_recording_that_was_cut_is_converted_as_far_as_it_goes_and_s
   Names losses;
   ASSERT_TRUE(convert_frames(cut, folder_.file("out.csv"),
                              {.input = {.loss = [&](const std::string& text) { losses.push_back(text); }}}));
-  EXPECT_EQ(losses,
-            Names{cut + ": was not written to its end, so that its last frames may be missing; 'dermis recover' "
-                        "makes it complete"});
+  EXPECT_EQ(losses, Names{cut + ": was not written to its end, so that its last frames may be missing; recovery "
+                                "makes it complete"});
   EXPECT_EQ(read_frames(folder_.file("out.csv"))->size(), 5U);
 }
 

@@ -200,7 +200,8 @@ TEST(FrameFiles, of_a_pipe_are_csv) {
 TEST(FrameFiles, of_numpy_need_a_rate) {
   const auto source = open_frames("f.npy");
   ASSERT_FALSE(source);
-  EXPECT_EQ(source.error().message, "f.npy: has no times: give a rate, to 'dermis convert' or as 'file:f.npy?rate=HZ'");
+  EXPECT_EQ(source.error().message,
+            "f.npy: has no times: give a rate, when it is converted or as 'file:f.npy?rate=HZ'");
 }
 
 TEST(FrameFiles, of_other_systems_are_told_by_what_they_hold) {

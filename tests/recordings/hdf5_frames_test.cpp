@@ -56,7 +56,7 @@ TEST(Hdf5Frames, rewrite_whole_counts_where_a_later_frame_has_others) {
 
 TEST(Hdf5Frames, keep_what_is_said_of_all_frames) {
   const support::TemporaryFolder folder;
-  const FrameNotes notes{"chest", "[array]\nname = \"chest\"\n# \xC2\xB5\n", "00ff"};
+  const FrameNotes notes{"chest", "[array]\nname = \"chest\"\n# \xC2\xB5\n", "00ff", "sim:multitouch"};
   ASSERT_TRUE(write_file(folder.file("f.h5"), {1, 2}, {}, notes));
   const auto reader = Hdf5FramesReader::open(folder.file("f.h5"));
   ASSERT_TRUE(reader);

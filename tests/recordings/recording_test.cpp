@@ -119,6 +119,7 @@ TEST(Recording, description_and_totals_are_said_at_once_and_by_reading_all) {
   options.name = "palm";
   options.array_toml = "[array]\n";
   options.model_hash = "fnv1a64:12";
+  options.simulation = "sim:multitouch";
   options.compression = McapCompression::zstd;
   std::vector<RawFrame> frames = random_frames(100, 3);
   std::uint64_t lost = 0;
@@ -129,9 +130,7 @@ TEST(Recording, description_and_totals_are_said_at_once_and_by_reading_all) {
   record(path, frames, options);
   const auto reader = RecordingReader::open(path);
   ASSERT_TRUE(reader);
-  EXPECT_EQ((*reader)->name(), "palm");
-  EXPECT_EQ((*reader)->array_toml(), "[array]\n");
-  EXPECT_EQ((*reader)->model_hash(), "fnv1a64:12");
+  EXPECT_EQ((*reader)->notes(), (FrameNotes{"palm", "[array]\n", "fnv1a64:12", "sim:multitouch"}));
   EXPECT_EQ((*reader)->shape(), kShape);
   EXPECT_TRUE((*reader)->complete());
 
@@ -537,7 +536,7 @@ TEST(Recovery, leaves_out_damaged_chunks_and_says_how_many_messages_they_had) {
     for (std::size_t i = 0; i < again.size(); ++i) expect_same(again[i], expected[i]);
     const auto reader = RecordingReader::open(folder.file("whole.mcap"));
     ASSERT_TRUE(reader);
-    EXPECT_EQ((*reader)->array_toml(), "[array]\n");
+    EXPECT_EQ((*reader)->notes().array_toml, "[array]\n");
   }
 }
 

@@ -102,9 +102,7 @@ TEST(SuitRecording, every_frame_of_every_array_reads_back_with_the_same_bits) {
     for (std::size_t i = 0; i < arrays.size(); ++i) {
       const auto reader = RecordingReader::open(folder.file("rec.mcap"), arrays[i].name);
       ASSERT_TRUE(reader) << reader.error().message;
-      EXPECT_EQ((*reader)->name(), arrays[i].name);
-      EXPECT_EQ((*reader)->array_toml(), arrays[i].array_toml);
-      EXPECT_EQ((*reader)->model_hash(), arrays[i].model_hash);
+      EXPECT_EQ((*reader)->notes(), (FrameNotes{arrays[i].name, arrays[i].array_toml, arrays[i].model_hash}));
       EXPECT_EQ((*reader)->shape(), arrays[i].shape);
       support::expect_same_frames(**reader, of_array(all, i));
     }

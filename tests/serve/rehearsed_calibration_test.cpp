@@ -140,7 +140,7 @@ class Presses {
     for (const std::uint64_t end = number_ + static_cast<std::uint64_t>(60.0 * kRateHz); number_ < end;) {
       state.hint = recogniser_->hint();
       hints.insert(state.hint);
-      voice_->say(words_of(state, kHold));
+      voice_->speak(words_of(state, kHold));
       read();
       using Event = calibration::PressRecogniser::Event;
       const Event event = recogniser_->feed(frame_, conditioned_.ratio, 1.0 / kRateHz);

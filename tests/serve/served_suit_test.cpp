@@ -155,8 +155,8 @@ TEST(ServedSuit, refuses_what_cannot_be_served) {
       std::string::npos);
   EXPECT_NE(refusal({.suit = folder.file("none.toml")}).find("none.toml"), std::string::npos);
   EXPECT_EQ(refusal({.from = "frames.csv", .model = folder.model()}),
-            "'frames.csv': only devices and recordings are served; make a recording of it first (dermis convert "
-            "frames.csv it.mcap)");
+            "'frames.csv': only devices and recordings are served; make a recording of it first: convert frames.csv to "
+            ".mcap");
   EXPECT_EQ(refusal({.from = "sim:contacts?seed=2", .model = folder.model()}),
             "'sim:contacts?seed=2': say how many frames a second it sends, such as sim:contacts?seed=2&rate=100");
   EXPECT_NE(refusal({.from = "sim:contacts?rate=100&bogus=1", .model = folder.model()}).find("bogus"),

@@ -37,7 +37,7 @@ void press(RubberMemory& rubber, double load_n, double seconds) {
 double held(const RubberMemoryOptions& options, double load_n, double seconds) {
   RubberMemory rubber = one_taxel(options);
   press(rubber, load_n, seconds);
-  return rubber.felt_force(0);
+  return rubber.material_force(0);
 }
 
 TEST(RubberMemory, a_held_load_creeps_by_its_share_per_decade_of_time) {
@@ -66,7 +66,7 @@ TEST(RubberMemory, creep_follows_a_load_that_changes_by_superposition) {
   press(both, 15.0, 15.0);
   press(both, 5.0, 2.0);
   const double expected_n = held(only_creep(), 15.0, 17.0) - held(only_creep(), 10.0, 2.0);
-  EXPECT_NEAR(both.felt_force(0), expected_n, 1e-9);
+  EXPECT_NEAR(both.material_force(0), expected_n, 1e-9);
 }
 
 TEST(RubberMemory, does_not_depend_on_the_time_step) {
@@ -85,7 +85,7 @@ TEST(RubberMemory, does_not_depend_on_the_time_step) {
       left_s -= step_s;
     }
     press(often, load_n, left_s);
-    EXPECT_NEAR(once.felt_force(0), often.felt_force(0), 1e-9);
+    EXPECT_NEAR(once.material_force(0), often.material_force(0), 1e-9);
     EXPECT_NEAR(once.unloaded_share(0), often.unloaded_share(0), 1e-9);
   }
 }
@@ -101,7 +101,7 @@ std::pair<double, double> friction_of_loop(double step_s) {
     const double load_n = step <= 100 ? 0.5 * step : 0.5 * (200 - step);
     press(rubber, load_n, step_s);
     press(frictionless, load_n, step_s);
-    if (load_n == 5.0) differences.push_back(rubber.felt_force(0) / frictionless.felt_force(0) - 1.0);
+    if (load_n == 5.0) differences.push_back(rubber.material_force(0) / frictionless.material_force(0) - 1.0);
   }
   return {differences.front(), differences.back()};
 }
@@ -118,11 +118,11 @@ TEST(RubberMemory, a_loop_turns_around_over_its_three_reaches) {
   RubberMemoryOptions options = without_scatter();
   RubberMemory rubber = one_taxel(options);
   press(rubber, 30.0, 0.0);
-  const double up_n = rubber.felt_force(0) / 30.0;
+  const double up_n = rubber.material_force(0) / 30.0;
   press(rubber, 25.0, 0.0);
   const double change = std::log(31.0 / 26.0);
   const double turned = std::min(2.0, change / 0.1) + change / 0.3 + change / 1.0;
-  EXPECT_NEAR(rubber.felt_force(0) / 25.0, up_n * (1.0 - 0.08 / 6.0 * (3.0 - turned)) / 0.96, 1e-9);
+  EXPECT_NEAR(rubber.material_force(0) / 25.0, up_n * (1.0 - 0.08 / 6.0 * (3.0 - turned)) / 0.96, 1e-9);
 }
 
 TEST(RubberMemory, a_load_that_falls_is_felt_as_falling) {
@@ -130,11 +130,11 @@ TEST(RubberMemory, a_load_that_falls_is_felt_as_falling) {
   options.creep_per_decade = 0.30;
   RubberMemory rubber = one_taxel(options);
   press(rubber, 20.0, 10.0);
-  double before_n = rubber.felt_force(0);
+  double before_n = rubber.material_force(0);
   for (int step = 1; step <= 380; ++step) {
     press(rubber, 20.0 - 0.05 * step, 0.005);
-    EXPECT_LT(rubber.felt_force(0), before_n) << "step " << step;
-    before_n = rubber.felt_force(0);
+    EXPECT_LT(rubber.material_force(0), before_n) << "step " << step;
+    before_n = rubber.material_force(0);
   }
 }
 
@@ -149,7 +149,7 @@ TEST(RubberMemory, a_release_opens_the_contact_at_once_and_lowers_the_unloaded_c
   press(rubber, 10.0, 2.0);
   EXPECT_NEAR(rubber.unloaded_share(0), 1.0, 1e-12) << "under a load the path beside it is closed";
   press(rubber, 0.0, 0.0);
-  EXPECT_EQ(rubber.felt_force(0), 0.0);
+  EXPECT_EQ(rubber.material_force(0), 0.0);
   double late_n = 0.0;
   for (const double tau : RubberMemory::kCreepSeconds) late_n += 10.0 * (1.0 - std::exp(-2.0 / tau));
   EXPECT_NEAR(rubber.unloaded_share(0), 1.0 - 0.35 * late_n / (late_n + 0.5), 1e-12);
@@ -161,7 +161,7 @@ TEST(RubberMemory, the_dip_of_a_release_recovers_over_minutes) {
   press(rubber, 0.0, 0.01);
   double before = rubber.unloaded_share(0);
   for (double seconds = 0.01; seconds < 1000.0; seconds *= 1.5) {
-    EXPECT_EQ(rubber.felt_force(0), 0.0);
+    EXPECT_EQ(rubber.material_force(0), 0.0);
     press(rubber, 0.0, 0.5 * seconds);
     EXPECT_GT(rubber.unloaded_share(0), before);
     before = rubber.unloaded_share(0);
@@ -180,14 +180,14 @@ struct Gains {
   double sd = 0.0;
 };
 
-Gains log_gains(const RubberMemory& rubber, std::size_t taxels, double felt_n) {
+Gains log_gains(const RubberMemory& rubber, std::size_t taxels, double material_n) {
   Gains gains;
   for (std::size_t i = 0; i < taxels; ++i) {
-    gains.mean += std::log(rubber.felt_force(i) / felt_n) / static_cast<double>(taxels);
+    gains.mean += std::log(rubber.material_force(i) / material_n) / static_cast<double>(taxels);
   }
   double variance = 0.0;
   for (std::size_t i = 0; i < taxels; ++i) {
-    const double away = std::log(rubber.felt_force(i) / felt_n) - gains.mean;
+    const double away = std::log(rubber.material_force(i) / material_n) - gains.mean;
     variance += away * away / static_cast<double>(taxels);
   }
   gains.sd = std::sqrt(variance);
@@ -210,26 +210,26 @@ TEST(RubberMemory, a_gain_lasts_from_onset_to_release) {
   options.touch_gain = 0.05;
   RubberMemory rubber = one_taxel(options);
   press(rubber, 10.0, 1.0);
-  const double first = rubber.felt_force(0) / 10.0;
+  const double first = rubber.material_force(0) / 10.0;
   EXPECT_NE(first, 1.0);
   press(rubber, 0.5, 0.0);
   press(rubber, 10.0, 0.0);
-  EXPECT_NEAR(rubber.felt_force(0) / 10.0, first, 1e-12);
+  EXPECT_NEAR(rubber.material_force(0) / 10.0, first, 1e-12);
   press(rubber, 0.0, 1e6);
   press(rubber, 10.0, 1.0);
-  EXPECT_GT(std::abs(rubber.felt_force(0) / 10.0 / first - 1.0), 1e-4);
+  EXPECT_GT(std::abs(rubber.material_force(0) / 10.0 / first - 1.0), 1e-4);
 }
 
 TEST(RubberMemory, gains_follow_the_seed) {
   RubberMemoryOptions options = only_creep();
   options.touch_gain = 0.05;
-  const auto felt_n = [&](std::uint64_t seed) {
+  const auto material_n = [&](std::uint64_t seed) {
     RubberMemory rubber(options, 1, seed);
     press(rubber, 10.0, 1.0);
-    return rubber.felt_force(0);
+    return rubber.material_force(0);
   };
-  EXPECT_EQ(felt_n(1), felt_n(1));
-  EXPECT_NE(felt_n(1), felt_n(2));
+  EXPECT_EQ(material_n(1), material_n(1));
+  EXPECT_NE(material_n(1), material_n(2));
 }
 
 TEST(RubberMemory, options_out_of_range_are_named) {

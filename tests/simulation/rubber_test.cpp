@@ -29,7 +29,7 @@ ConductiveRubber make_rubber(const RubberOptions& options, std::size_t rows = 1,
 }
 
 /// What a perfect calibration says of one taxel at 20 C.
-double felt_force(ConductiveRubber& rubber, std::size_t taxel = 0) {
+double material_force(ConductiveRubber& rubber, std::size_t taxel = 0) {
   std::vector<double> siemens(rubber.taxel_count());
   rubber.read(20.0, siemens);
   return rubber.force_from_conductance(taxel, siemens[taxel], 20.0);
@@ -141,9 +141,9 @@ TEST(Rubber, hysteresis_loop_is_as_wide_as_asked) {
   options.hysteresis = 0.1;
   ConductiveRubber rubber = make_rubber(options);
   for (const double force_n : {1.0, 4.0, 7.0, 10.0}) press_one(rubber, force_n, 0.1);
-  EXPECT_NEAR(felt_force(rubber), 9.5, 1e-9);
+  EXPECT_NEAR(material_force(rubber), 9.5, 1e-9);
   for (const double force_n : {25.0, 50.0, 40.0, 22.0, 10.0}) press_one(rubber, force_n, 0.1);
-  EXPECT_NEAR(felt_force(rubber), 10.5, 1e-9);
+  EXPECT_NEAR(material_force(rubber), 10.5, 1e-9);
 }
 
 TEST(Rubber, hysteresis_turns_around_over_its_reach) {
@@ -153,7 +153,7 @@ TEST(Rubber, hysteresis_turns_around_over_its_reach) {
   press_one(rubber, 30.0, 0.1);
   press_one(rubber, 25.0, 0.1);
   const double loop = 1.0 - std::log(31.0 / 26.0) / ConductiveRubber::kHysteresisReach;
-  EXPECT_NEAR(felt_force(rubber), 25.0 * (1.0 - 0.1 * loop), 1e-9);
+  EXPECT_NEAR(material_force(rubber), 25.0 * (1.0 - 0.1 * loop), 1e-9);
 }
 
 TEST(Rubber, hysteresis_depends_on_forces_not_on_time) {
@@ -165,7 +165,7 @@ TEST(Rubber, hysteresis_depends_on_forces_not_on_time) {
     press_one(slow, force_n, 100.0);
     press_one(fast, force_n, 0.001);
   }
-  EXPECT_DOUBLE_EQ(felt_force(slow), felt_force(fast));
+  EXPECT_DOUBLE_EQ(material_force(slow), material_force(fast));
 }
 
 TEST(Rubber, creep_follows_its_three_time_constants) {
@@ -176,7 +176,7 @@ TEST(Rubber, creep_follows_its_three_time_constants) {
     press_one(rubber, 20.0, seconds);
     double late = 0.0;
     for (const double tau : {0.1, 3.0, 100.0}) late += (1.0 - std::exp(-seconds / tau)) / 3.0;
-    EXPECT_NEAR(felt_force(rubber), 20.0 * (0.94 + 0.06 * late), 1e-9) << seconds << " s";
+    EXPECT_NEAR(material_force(rubber), 20.0 * (0.94 + 0.06 * late), 1e-9) << seconds << " s";
   }
 }
 
@@ -187,7 +187,7 @@ TEST(Rubber, creep_does_not_depend_on_the_time_step) {
   ConductiveRubber often = make_rubber(options);
   press_one(once, 8.0, 5.0);
   for (int step = 0; step < 50; ++step) press_one(often, 8.0, 0.1);
-  EXPECT_NEAR(felt_force(once), felt_force(often), 1e-9);
+  EXPECT_NEAR(material_force(once), material_force(often), 1e-9);
 }
 
 TEST(Rubber, creep_recovers_after_unloading) {
@@ -196,9 +196,9 @@ TEST(Rubber, creep_recovers_after_unloading) {
   ConductiveRubber rubber = make_rubber(options);
   press_one(rubber, 20.0, 1e6);
   press_one(rubber, 0.0, 0.0);
-  EXPECT_NEAR(felt_force(rubber), 20.0 * 0.06, 1e-9);
+  EXPECT_NEAR(material_force(rubber), 20.0 * 0.06, 1e-9);
   press_one(rubber, 0.0, 1e5);
-  EXPECT_NEAR(felt_force(rubber), 0.0, 1e-6);
+  EXPECT_NEAR(material_force(rubber), 0.0, 1e-6);
 }
 
 /// Relative noise of unloaded taxels, [samples][taxels].
@@ -282,7 +282,7 @@ TEST(Rubber, with_memory_a_load_is_felt_as_rubber_memory_says) {
   for (const double force_n : {5.0, 15.0, 2.0}) {
     press_one(rubber, force_n, 3.0);
     memory.press(std::vector<double>{force_n}, 3.0);
-    EXPECT_NEAR(felt_force(rubber), memory.felt_force(0), 1e-9);
+    EXPECT_NEAR(material_force(rubber), memory.material_force(0), 1e-9);
   }
 }
 
@@ -316,7 +316,7 @@ TEST(Rubber, gains_of_touches_do_not_depend_on_the_noise) {
   for (int touch = 0; touch < 5; ++touch) {
     press_one(one, 10.0, 1.0);
     press_one(other, 10.0, 1.0);
-    EXPECT_NEAR(felt_force(one) / felt_force(other), 1.0, 1e-4);
+    EXPECT_NEAR(material_force(one) / material_force(other), 1.0, 1e-4);
     press_one(one, 0.0, 1.0);
     press_one(other, 0.0, 1.0);
   }
@@ -339,12 +339,12 @@ TEST(Rubber, neighbours_share_a_load_whose_sum_is_kept_inside) {
   options.mechanical_spread = 0.08;
   ConductiveRubber rubber = make_rubber(options, 3, 3);
   rubber.press(std::vector<double>{0, 0, 0, 0, 10, 0, 0, 0, 0}, 1.0);
-  EXPECT_NEAR(felt_force(rubber, 4), 9.2, 1e-9);
+  EXPECT_NEAR(material_force(rubber, 4), 9.2, 1e-9);
   double sum = 0.0;
-  for (std::size_t i = 0; i < 9; ++i) sum += felt_force(rubber, i);
+  for (std::size_t i = 0; i < 9; ++i) sum += material_force(rubber, i);
   EXPECT_NEAR(sum, 10.0, 1e-9);
-  for (const std::size_t neighbour : {1U, 3U, 5U, 7U}) EXPECT_NEAR(felt_force(rubber, neighbour), 0.2, 1e-9);
-  EXPECT_EQ(felt_force(rubber, 0), 0.0);
+  for (const std::size_t neighbour : {1U, 3U, 5U, 7U}) EXPECT_NEAR(material_force(rubber, neighbour), 0.2, 1e-9);
+  EXPECT_EQ(material_force(rubber, 0), 0.0);
 }
 
 TEST(Rubber, shares_that_fall_off_the_edge_are_lost) {
@@ -353,7 +353,7 @@ TEST(Rubber, shares_that_fall_off_the_edge_are_lost) {
   ConductiveRubber rubber = make_rubber(options, 2, 2);
   rubber.press(std::vector<double>{10, 0, 0, 0}, 1.0);
   double sum = 0.0;
-  for (std::size_t i = 0; i < 4; ++i) sum += felt_force(rubber, i);
+  for (std::size_t i = 0; i < 4; ++i) sum += material_force(rubber, i);
   EXPECT_NEAR(sum, 9.6, 1e-9);
 }
 

@@ -130,9 +130,9 @@ TEST(Simulator, creep_is_seen_in_the_conductance_of_a_press) {
   ASSERT_TRUE(*simulator->next(frame));
   const Load press = simulator->loads().front();
   const std::size_t taxel = 4 * press.where.first_row + press.where.first_col;
-  const double felt_n = simulator->rubber().force_from_conductance(taxel, simulator->true_siemens()[taxel], 20.0);
+  const double material_n = simulator->rubber().force_from_conductance(taxel, simulator->true_siemens()[taxel], 20.0);
   const double late = (3.0 - std::exp(-10.0) - std::exp(-1.0 / 3.0) - std::exp(-0.01)) / 3.0;
-  EXPECT_NEAR(felt_n, press.value * (0.9 + 0.1 * late), 1e-9);
+  EXPECT_NEAR(material_n, press.value * (0.9 + 0.1 * late), 1e-9);
 }
 
 TEST(Simulator, the_simple_memory_gives_the_counts_that_it_always_gave) {
@@ -152,17 +152,17 @@ TEST(Simulator, touches_of_rubber_that_remembers_read_more_the_longer_they_last)
   options.rubber.memory.emplace().touch_gain = 0.0;
   options.scene = {.rate_hz = 20.0, .taxels = 1};
   const auto simulator = simulate(reference_array(4, 4), "two_weights", 6, {}, options);
-  std::vector<double> felt_n;
+  std::vector<double> material_n;
   RawFrame frame;
-  while (*simulator->next(frame) && felt_n.size() < 240) {
+  while (*simulator->next(frame) && material_n.size() < 240) {
     const auto& force_n = simulator->truth().force_n;
     const auto pressed = std::max_element(force_n.begin(), force_n.end());
     if (*pressed != 5.0) continue;
     const auto taxel = static_cast<std::size_t>(pressed - force_n.begin());
-    felt_n.push_back(simulator->rubber().force_from_conductance(taxel, simulator->true_siemens()[taxel], 22.0));
+    material_n.push_back(simulator->rubber().force_from_conductance(taxel, simulator->true_siemens()[taxel], 22.0));
   }
-  ASSERT_EQ(felt_n.size(), 240U);
-  EXPECT_NEAR(felt_n[200] / felt_n[20], 1.1, 0.01) << "10 s against 1 s";
+  ASSERT_EQ(material_n.size(), 240U);
+  EXPECT_NEAR(material_n[200] / material_n[20], 1.1, 0.01) << "10 s against 1 s";
 }
 
 TEST(Simulator, refuses_options_out_of_range) {

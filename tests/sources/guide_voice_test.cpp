@@ -19,8 +19,8 @@ TEST(GuideVoice, repeats_what_was_said_last) {
   GuideVoice voice;
   voice.listen();
   EXPECT_TRUE(voice.has_listener());
-  voice.say({.press = true, .taxel = 3, .weight_n = 2.0});
-  voice.say({.press = true, .is_wrong = true, .taxel = 7, .weight_n = 5.0, .hold_time = Nanos(9)});
+  voice.speak({.press = true, .taxel = 3, .weight_n = 2.0});
+  voice.speak({.press = true, .is_wrong = true, .taxel = 7, .weight_n = 5.0, .hold_time = Nanos(9)});
   const GuideWords words = voice.words();
   EXPECT_TRUE(words.press);
   EXPECT_TRUE(words.is_wrong);
@@ -32,7 +32,7 @@ TEST(GuideVoice, repeats_what_was_said_last) {
 TEST(GuideVoice, never_mixes_two_sayings) {
   GuideVoice voice;
   std::jthread speaker([&](const std::stop_token& end) {
-    for (std::size_t i = 0; !end.stop_requested(); ++i) voice.say({.taxel = i, .weight_n = static_cast<double>(i)});
+    for (std::size_t i = 0; !end.stop_requested(); ++i) voice.speak({.taxel = i, .weight_n = static_cast<double>(i)});
   });
   for (int i = 0; i < 10'000; ++i) {
     const GuideWords words = voice.words();

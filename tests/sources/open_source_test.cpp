@@ -437,7 +437,7 @@ TEST(ReadFrames, gives_all_frames_of_a_file_and_none_of_a_device) {
   EXPECT_EQ(frames->back().counts, some_frames(3).back().counts);
   const Result<std::vector<RawFrame>> endless = read_frames("sim:idle");
   ASSERT_FALSE(endless);
-  EXPECT_EQ(endless.error().message, "'sim:idle': is a device, which has no end; 'dermis record' it first");
+  EXPECT_EQ(endless.error().message, "'sim:idle': is a device, which has no end; record it first");
 }
 
 TEST(SeveralArrays, are_those_of_a_recording_where_none_is_named) {

@@ -29,7 +29,7 @@ TEST(RecordedOrder, of_a_recording_that_was_made_before_is_refused_with_the_mend
   const Status refused = check_recorded_order("rec.mcap", files::array_to_toml(small_array()), turned());
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().message,
-            "'rec.mcap': was recorded before its array.toml said which way round; 'dermis record' turns it where it "
+            "'rec.mcap': was recorded before its array.toml said which way round; a new recording turns it where it "
             "takes its frames from 'file:rec.mcap?skip_columns=1&flip_rows=1&row_order=0,2,1,3'");
 }
 

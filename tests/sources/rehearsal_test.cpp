@@ -30,8 +30,8 @@ class RehearsalTest : public testing::Test {
     return static_cast<std::size_t>(heaviest - frame_.counts.begin());
   }
 
-  void ask_for(std::size_t taxel) { guide_->say({.press = true, .taxel = taxel, .weight_n = 5.0, .hold_time = 1s}); }
-  void tell_to_release() { guide_->say({.hold_time = 1s}); }
+  void ask_for(std::size_t taxel) { guide_->speak({.press = true, .taxel = taxel, .weight_n = 5.0, .hold_time = 1s}); }
+  void tell_to_release() { guide_->speak({.hold_time = 1s}); }
 
   std::shared_ptr<GuideVoice> guide_ = std::make_shared<GuideVoice>();
   Rehearsal rehearsal_ = *Rehearsal::create(small_array(), 1, kRateHz, guide_);
@@ -63,7 +63,7 @@ TEST_F(RehearsalTest, presses_harder_with_a_heavier_weight) {
   const float light = frame_.counts[7];
   tell_to_release();
   ASSERT_EQ(pressed_after(1s), std::nullopt);
-  guide_->say({.press = true, .taxel = 7, .weight_n = 20.0, .hold_time = 1s});
+  guide_->speak({.press = true, .taxel = 7, .weight_n = 20.0, .hold_time = 1s});
   ASSERT_EQ(pressed_after(2s), 7U);
   EXPECT_GT(frame_.counts[7], 1.5F * light);
 }

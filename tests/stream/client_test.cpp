@@ -294,9 +294,9 @@ TEST(NoticeLimiter, keeps_repetitions_back_and_counts_them) {
   std::vector<std::string> lines;
   NoticeLimiter notices([&](const std::string& line) { lines.push_back(line); });
   const auto start = NoticeLimiter::Clock::now();
-  for (int i = 0; i < 100; ++i) notices.say("cut", "line", start);
-  notices.say("refused", "other", start);
-  notices.say("cut", "line", start + std::chrono::seconds(11));
+  for (int i = 0; i < 100; ++i) notices.notify("cut", "line", start);
+  notices.notify("refused", "other", start);
+  notices.notify("cut", "line", start + std::chrono::seconds(11));
   EXPECT_EQ(lines, (std::vector<std::string>{"line", "other", "line (and 99 more like it)"}));
 }
 

@@ -93,7 +93,7 @@ class Sheet {
   [[nodiscard]] double siemens_at(std::size_t taxel, double newtons, double celsius) const {
     if (!memory_) return support::siemens_under(model_, taxel, newtons, celsius);
     const double unloaded = support::siemens_under(model_, taxel, 0.0, celsius);
-    return support::siemens_under(model_, taxel, memory_->felt_force(taxel), celsius) -
+    return support::siemens_under(model_, taxel, memory_->material_force(taxel), celsius) -
            (1.0 - memory_->unloaded_share(taxel)) * unloaded;
   }
 

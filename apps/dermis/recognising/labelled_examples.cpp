@@ -10,20 +10,20 @@
 #include <utility>
 
 #include "dermis/core/quantile.hpp"
-#include "recognising/load_source.hpp"
+#include "recognising/force_source.hpp"
 
 namespace dermis::recognising {
 namespace {
 
+using recognition::ForceRecording;
 using recognition::LabelledFrames;
 using recognition::Layout;
-using recognition::LoadRecording;
 
 constexpr double kMostRateDifference = 0.1;  // of the first recording
 
 /// A recording, and its notes on its frames.
 struct ReadRecording {
-  LoadRecording recording;
+  ForceRecording recording;
   Layout layout;
   std::vector<std::string> extra_names{};
   std::vector<std::string> troubles{};
@@ -52,13 +52,13 @@ double rate_of(const std::vector<Nanos>& times) {
 /// `arrays`: which of several; empty: all.
 Result<ReadRecording> read_recording(const ExampleOptions& options, const std::string& from,
                                      const std::vector<std::string>& arrays, const sources::SourceOptions& how) {
-  Result<LoadSource> source = LoadSource::open({.from = from,
-                                                .model = options.model,
-                                                .tare = options.tare || options.tare_force,
-                                                .tare_force = options.tare_force,
-                                                .source = how,
-                                                .arrays = arrays,
-                                                .extra = options.data.extras});
+  Result<ForceSource> source = ForceSource::open({.from = from,
+                                                  .model = options.model,
+                                                  .tare = options.tare || options.tare_force,
+                                                  .tare_force = options.tare_force,
+                                                  .source = how,
+                                                  .arrays = arrays,
+                                                  .extra = options.data.extras});
   if (!source) return source.error();
   if (source->is_live()) return sources::has_no_end(from);
   ReadRecording read{.recording = {.name = source->from().short_name(), .frames = {}}, .layout = {}};
@@ -122,7 +122,7 @@ Status fill_missing(const std::string& path, std::vector<ReadRecording>& read) {
     if (count == 0) {
       return bad_input(
           fmt::format("{}: '{}' has no value at the times of the frames; time_s must be that of their "
-                      "recording, as 'dermis convert' writes it into frames.csv",
+                      "recording, as a conversion writes it into frames.csv",
                       path, names[column]));
     }
     const auto mean = static_cast<float>(sum / static_cast<double>(count));
@@ -150,7 +150,7 @@ Result<LabelledFrames> read_recordings(const ExampleOptions& options, const sour
     }
   }
   const Layout layout = read.front().layout;
-  std::vector<LoadRecording> recordings;
+  std::vector<ForceRecording> recordings;
   for (ReadRecording& one : read) recordings.push_back(std::move(one.recording));
   return recognition::label_recordings(layout, std::move(recordings), options.data.labels, options.data.label);
 }

@@ -38,7 +38,7 @@ Status check_classes(const Classes& classes, const RecognitionInput& input) {
 }
 
 /// The layout of the source's frames.
-Layout layout_of(const LoadSource& source, const Classes& classes, double rate_hz) {
+Layout layout_of(const ForceSource& source, const Classes& classes, double rate_hz) {
   Layout layout = classes.layout;
   const std::optional<Layout> found = source.layout();
   if (found && (found->arrays.size() > 1 || layout.has_forces())) {
@@ -58,10 +58,10 @@ Result<SourceRecogniser> SourceRecogniser::open(const RecognitionInput& input) {
   if (!classes) return classes.error();
   if (Status checked = check_classes(*classes, input); !checked) return checked.error();
   const ArrayDescription array = array_of(classes->layout);
-  LoadInput loads = input.loads;
+  ForceInput loads = input.loads;
   loads.source.array = &array;
   loads.arrays = recognition::names_of(classes->layout.arrays);
-  Result<LoadSource> source = LoadSource::open(loads);
+  Result<ForceSource> source = ForceSource::open(loads);
   if (!source) return source.error();
   const Layout layout = layout_of(*source, *classes, input.rate_hz);
   Result<StreamRecogniser> recogniser = StreamRecogniser::create(*std::move(classes), layout);
@@ -69,7 +69,7 @@ Result<SourceRecogniser> SourceRecogniser::open(const RecognitionInput& input) {
   return SourceRecogniser(*std::move(source), *std::move(recogniser), layout.rate_hz > 0.0, input.loads.source);
 }
 
-SourceRecogniser::SourceRecogniser(LoadSource source, StreamRecogniser recogniser, bool knows_rate,
+SourceRecogniser::SourceRecogniser(ForceSource source, StreamRecogniser recogniser, bool knows_rate,
                                    const sources::SourceOptions& options)
     : source_(std::move(source)),
       recogniser_(std::move(recogniser)),

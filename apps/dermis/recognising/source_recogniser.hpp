@@ -12,13 +12,13 @@
 #include "dermis/core/result.hpp"
 #include "dermis/recognition/stream_recogniser.hpp"
 #include "dermis/sources/open_source.hpp"
-#include "recognising/load_source.hpp"
+#include "recognising/force_source.hpp"
 
 namespace dermis::recognising {
 
 struct RecognitionInput {
   std::string classes;   ///< As for recognition::read_classes().
-  LoadInput loads{};     ///< Its array is that of the examples.
+  ForceInput loads{};    ///< Its array is that of the examples.
   double rate_hz = 0.0;  ///< Frames a second of the source; 0: as many as the examples had.
 };
 
@@ -44,14 +44,14 @@ class SourceRecogniser {
   [[nodiscard]] bool knows_rate() const noexcept { return knows_rate_; }
 
  private:
-  SourceRecogniser(LoadSource source, recognition::StreamRecogniser recogniser, bool knows_rate,
+  SourceRecogniser(ForceSource source, recognition::StreamRecogniser recogniser, bool knows_rate,
                    const sources::SourceOptions& options);
 
   [[nodiscard]] Result<bool> next_frame();
   void tell_troubles() const;
   [[nodiscard]] SourceRecognition of_source(recognition::Recognition recognition) const;
 
-  LoadSource source_;
+  ForceSource source_;
   recognition::StreamRecogniser recogniser_;
   bool knows_rate_;
   const std::atomic<bool>* stop_;  ///< May be null.

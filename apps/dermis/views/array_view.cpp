@@ -53,7 +53,7 @@ Status ArrayView::set_array(const ArrayDescription& array) {
 /// By the model, else by what the file says of itself.
 Status ArrayView::describe() {
   if (work_) return set_array(work_->model.array);
-  const recordings::FrameNotes notes = operation::notes_of_source(*source_, from_);
+  const recordings::FrameNotes notes = sources::notes_of_source(*source_, from_);
   name_ = notes.name;
   if (name_.empty()) name_ = is_live() ? from_ : std::filesystem::path(from_).filename().string();
   if (notes.array_toml.empty()) return Done{};

@@ -22,7 +22,7 @@ namespace dermis::calibration {
 struct TotalForce {
   std::vector<std::size_t> taxels;  ///< Row-major indices.
   double newtons = 0.0;             ///< >= 0
-  double felt_share = 1.0;          ///< Share of it that the material felt, as in Sample.
+  double material_share = 1.0;      ///< Share of it that the material felt, as in Sample.
 };
 
 /// A labelled frame with supply and crosstalk removed.
@@ -38,7 +38,7 @@ struct Sample {
   std::vector<TotalForce> totals;
   /// Share of each known force that the material felt, after all that came before [taxels]; NaN: not known. Empty: all
   /// of it.
-  std::vector<float> felt_share{};
+  std::vector<float> material_share{};
   bool unloaded = false;  ///< Nothing presses anywhere.
 };
 

@@ -28,7 +28,7 @@ struct TaxelRange {
   double most_ohm = 0.0;
 };
 
-struct LoadChoice {
+struct ResistorChoice {
   double load_ohm = 0.0;               ///< On every sensed line.
   std::optional<Precision> precision;  ///< Empty: readings leave the range of the ADC, or have no solution.
 };
@@ -37,7 +37,7 @@ struct LoadChoice {
 struct CircuitAdvice {
   TaxelRange taxels;
   double noise_ratio = 0.0;                ///< Standard deviation of a reading over the supply.
-  std::vector<LoadChoice> loads;           ///< Rising.
+  std::vector<ResistorChoice> loads;       ///< Rising.
   std::size_t best = 0;                    ///< Of `loads`: the least mean.
   std::optional<Precision> present;        ///< With the resistances that the array has now.
   std::optional<Precision> ideal_drivers;  ///< With the best load and drivers of 0 ohm.

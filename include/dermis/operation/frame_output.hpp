@@ -23,9 +23,6 @@ struct FrameOutput {
   recordings::FrameNotes notes;             ///< Notes by the source, where array and model have none.
 };
 
-/// The notes in the file of frames that `source` reads from; none for a device.
-[[nodiscard]] recordings::FrameNotes notes_of_source(const FrameSource& source, const std::string& from);
-
 /// The errors of create_recording() that depend on the path alone, to be reported before waiting for a device.
 [[nodiscard]] Status check_output(const FrameOutput& output);
 

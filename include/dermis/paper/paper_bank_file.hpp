@@ -12,7 +12,7 @@ namespace dermis::paper {
 
 /// The format of a bank file.
 inline constexpr files::FileFormat kPaperBankFormat{"dermis paper bank 2", "dermis paper bank 1",
-                                                    "is not a bank of the paper; 'dermis paper calibrate' writes one"};
+                                                    "is not a bank of the paper; the paper's calibration writes one"};
 
 /// Writes a safetensors file (docs/file-formats.md) beside `path` and renames it; 135 MB for 16 x 16 taxels.
 [[nodiscard]] Status write_paper_bank(const std::string& path, const PaperBank& bank);

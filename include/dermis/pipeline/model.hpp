@@ -36,7 +36,7 @@ inline constexpr const char* kDoubts = "doubts";
 
 /// The format of a model file.
 inline constexpr files::FileFormat kModelFormat{"dermis model 3", "dermis model 2",
-                                                "is not a dermis model; write one with 'dermis calibrate'"};
+                                                "is not a dermis model; a calibration writes one"};
 
 /// Writes a safetensors file (docs/file-formats.md) beside `path` and renames it.
 [[nodiscard]] Status write_model(const std::string& path, const Model& model);

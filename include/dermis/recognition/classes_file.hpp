@@ -13,7 +13,7 @@
 namespace dermis::recognition {
 
 inline constexpr files::FileFormat kClassesFormat{"dermis classes 2", "dermis classes 1",
-                                                  "holds no classes; write them with 'dermis learn'"};
+                                                  "holds no classes; learning writes them"};
 
 [[nodiscard]] Status write_classes(const std::string& path, const Classes& classes);
 

@@ -30,7 +30,7 @@ struct DatasetFiles {
 [[nodiscard]] Result<LabelledFrames> read_dataset(const DatasetFiles& files);
 
 /// The frames of a recording, as loads.
-struct LoadRecording {
+struct ForceRecording {
   std::string name;             ///< The name in the column `recording` of labels.csv.
   std::vector<float> frames;    ///< [frames, readings]
   std::size_t tare_frames = 0;  ///< The first so many were taken for unloaded: they are no example.
@@ -40,7 +40,7 @@ struct LoadRecording {
 /// The recordings one after the other, with their labels: `id,first,last,class,recording`, where frames count from 0 in
 /// each recording. The column `recording` may be missing where there is one. Where the labels name neither subject nor
 /// session, but several recordings, those are the groups. Validates; errors name the file of the labels.
-[[nodiscard]] Result<LabelledFrames> label_recordings(const Layout& layout, std::vector<LoadRecording> recordings,
+[[nodiscard]] Result<LabelledFrames> label_recordings(const Layout& layout, std::vector<ForceRecording> recordings,
                                                       const std::string& labels, const std::string& label);
 
 /// Labels by their place: those to learn from, and those to answer for.

@@ -19,8 +19,8 @@ namespace dermis::recognition {
 
 /// The evidence of some of the features by themselves.
 struct Aspect {
-  std::string name;         ///< In plain words: "place", "force", "area", "shape", "time", "the further readings".
-  double told_apart = 0.0;  ///< Mean over two classes of the share of examples that is right by it alone, 0 ... 1.
+  std::string name;             ///< In plain words: "place", "force", "area", "shape", "time", "the further readings".
+  double discrimination = 0.0;  ///< Mean over two classes of the share of examples that is right by it alone, 0 ... 1.
 };
 
 /// Two classes that are taken for each other.

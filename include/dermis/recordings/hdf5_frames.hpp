@@ -10,19 +10,11 @@
 #include "dermis/core/frame_source.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
+#include "dermis/recordings/frame_notes.hpp"
 
 /// Frames as HDF5 (docs/file-formats.md), readable by h5py: counts (N, rows, cols), time_s and one dataset of N values
 /// for each further member of RawFrame.
 namespace dermis::recordings {
-
-/// Notes of a file on all of its frames; empty if it has none.
-struct FrameNotes {
-  std::string name;        ///< Of the array.
-  std::string array_toml;  ///< The array's description, as array.toml.
-  std::string model_hash;  ///< content_hash() of the model that the array was used with.
-
-  bool operator==(const FrameNotes&) const = default;
-};
 
 /// Reads a file of Hdf5FramesWriter: every RawFrame has the bits that were written. Also reads files that hold only
 /// counts (N, rows, cols) of any numbers, and time_s or time_ns. The memory is that of some chunks, at most 200 MiB.

@@ -14,6 +14,7 @@
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
 #include "dermis/messages/ros_messages.hpp"
+#include "dermis/recordings/frame_notes.hpp"
 #include "dermis/recordings/mcap.hpp"
 #include "dermis/recordings/suit_recording.hpp"
 
@@ -34,6 +35,7 @@ struct RecordingOptions {
   std::string name = "array";
   std::string array_toml;  ///< Description of the array, as array.toml; empty: none.
   std::string model_hash;  ///< content_hash() of the model that gave the forces; empty: none.
+  std::string simulation;  ///< As FrameNotes::simulation.
   messages::Pitch pitch;   ///< Of the array, for the forces.
   McapCompression compression = McapCompression::lz4;
   /// If true, the file takes its place with its first frames. Frames are then in it 50 ms after write(), even if the
@@ -85,9 +87,8 @@ class RecordingReader final : public FrameSource {
 
   /// The recording was written to its end.
   [[nodiscard]] bool complete() const noexcept;
-  [[nodiscard]] const std::string& name() const noexcept;        ///< Of the array; empty if unknown.
-  [[nodiscard]] const std::string& array_toml() const noexcept;  ///< Empty where there is none.
-  [[nodiscard]] const std::string& model_hash() const noexcept;  ///< Empty where there is none.
+  /// Of the array; what is not known is empty.
+  [[nodiscard]] FrameNotes notes() const;
 
  private:
   RecordingReader(std::unique_ptr<SuitRecordingReader> suit, std::size_t array);
@@ -112,6 +113,7 @@ struct RecordedArrayInfo {
   std::uint64_t lost = 0;  ///< Frames known to be missing between them.
   std::string array_toml;  ///< Empty where there is none.
   std::string model_hash;  ///< Empty where there is none.
+  std::string simulation;  ///< As FrameNotes::simulation.
 };
 
 /// The content of a recording.

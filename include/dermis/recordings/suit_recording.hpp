@@ -27,6 +27,7 @@ struct RecordedArray {
   std::string array_toml{};  ///< Description of the array, as array.toml; empty: none.
   std::string model_hash{};  ///< content_hash() of the model that gave the forces; empty: none.
   messages::Pitch pitch{};   ///< For the forces.
+  std::string simulation{};  ///< As FrameNotes::simulation.
 };
 
 /// A message that belongs to no frame: a recognition or a threat.

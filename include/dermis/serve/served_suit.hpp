@@ -36,6 +36,7 @@ struct ServedArray {
   ArrayDescription description;  ///< As calibration takes it: parts of the circuit may still be unknown.
   std::string model_path{};      ///< Path of the model or its array.toml: a calibration saves into that folder.
   std::optional<recognition::Classes> classes{};  ///< Names for its touches; learned from newtons.
+  std::string simulation{};                       ///< As recordings::FrameNotes::simulation.
 };
 
 /// The suit to be served.

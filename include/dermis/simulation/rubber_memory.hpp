@@ -67,7 +67,7 @@ class RubberMemory {
   void press(std::span<const double> load_n, double seconds);
 
   /// f [N], >= 0.
-  [[nodiscard]] double felt_force(std::size_t taxel) const;
+  [[nodiscard]] double material_force(std::size_t taxel) const;
 
   /// Remaining share of the unloaded conductance, 1 - release_dip ... 1.
   [[nodiscard]] double unloaded_share(std::size_t taxel) const;

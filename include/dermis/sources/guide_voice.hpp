@@ -28,7 +28,7 @@ class GuideVoice {
   void listen() { has_listener_.store(true, std::memory_order_relaxed); }
   [[nodiscard]] bool has_listener() const { return has_listener_.load(std::memory_order_relaxed); }
 
-  void say(const GuideWords& words);
+  void speak(const GuideWords& words);
 
   /// The last words; at first, nothing is to be pressed.
   [[nodiscard]] GuideWords words() const;

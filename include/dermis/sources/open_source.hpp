@@ -13,6 +13,7 @@
 #include "dermis/core/array_description.hpp"
 #include "dermis/core/frame_source.hpp"
 #include "dermis/core/result.hpp"
+#include "dermis/recordings/frame_notes.hpp"
 #include "dermis/sources/guide_voice.hpp"
 #include "dermis/sources/source_name.hpp"
 
@@ -47,6 +48,10 @@ struct SourceOptions {
 /// The same of a name that is not parsed yet. Also fails where SourceName::parse() does.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_source(const std::string& from,
                                                                const SourceOptions& options = {});
+
+/// What is known of the frames of `source`, which was opened as `from`: the notes in its file, or its simulation.
+/// Nothing is known of a device.
+[[nodiscard]] recordings::FrameNotes notes_of_source(const FrameSource& source, const std::string& from);
 
 /// All frames of the file that `from` names. Fails where open_source() does, and on a device, which has no end.
 [[nodiscard]] Result<std::vector<RawFrame>> read_frames(const std::string& from, const SourceOptions& options = {});

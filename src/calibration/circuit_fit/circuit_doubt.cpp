@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
 #include <utility>
 #include <vector>
 
 #include "calibration/circuit_fit/circuit_trial.hpp"
 #include "calibration/circuit_fit/frame_selection.hpp"
+#include "calibration/mean.hpp"
 
 namespace dermis::calibration {
 namespace {
@@ -58,17 +58,11 @@ bool is_same_kind(const Readout& a, const Readout& b) {
   return a.circuit == b.circuit && a.idle_rows == b.idle_rows && a.idle_columns == b.idle_columns;
 }
 
-double sum_of(const std::vector<double>& ohms) {
-  return std::accumulate(ohms.begin(), ohms.end(), 0.0);
-}
-
 /// Mean driver over mean load: single presses determine no more of the resistances. 0 without a circuit.
 double drive_over_load(const ArrayDescription& array) {
   const Readout& readout = array.readout;
   if (readout.drive_ohm.empty()) return 0.0;
-  const double loads_per_driver =
-      static_cast<double>(readout.load_ohm.size()) / static_cast<double>(readout.drive_ohm.size());
-  return loads_per_driver * sum_of(readout.drive_ohm) / sum_of(readout.load_ohm);
+  return mean_of(readout.drive_ohm) / mean_of(readout.load_ohm);
 }
 
 /// Differences within the tolerance of parts hardly change forces.
@@ -85,14 +79,6 @@ bool has_other_resistances(const CircuitTrial& described, const CircuitTrial& fr
   const auto [of_free, of_described] = compare(free, described);
   const double scale = std::max(1.0, of_free.square / of_free.readings);
   return of_free.square + kLikely * scale < of_described.square;
-}
-
-double highest_counts(const ArrayDescription& array, const CircuitFrames& frames) {
-  double highest = 0.0;
-  for (const CircuitFrame& frame : frames.frames) {
-    highest = std::max(highest, *std::max_element(frame.ratio.begin(), frame.ratio.end()));
-  }
-  return highest * array.readout.full_scale_counts();
 }
 
 /// The same circuit with the common ADC of the fewest bits that can give all readings, where it is smaller.
@@ -112,7 +98,7 @@ CircuitFrames rescaled(CircuitFrames frames, const ArrayDescription& array, cons
   for (CircuitFrame& frame : frames.frames) {
     for (double& ratio : frame.ratio) ratio *= scale;
     frame.sigma_ratio *= scale;
-    frame.said_sigma *= scale;
+    frame.described_sigma *= scale;
   }
   return frames;
 }
@@ -156,7 +142,7 @@ std::optional<std::string> doubt_circuit(const ArrayDescription& array, const Ci
   const bool are_resistances_others = has_other_resistances(trials.front(), trials.back());
   if (!are_resistances_others && !leaves_crosstalk(trials.front())) return std::nullopt;
 
-  const double highest = highest_counts(array, frames);
+  const double highest = highest_ratio(frames) * array.readout.full_scale_counts();
   const std::optional<ArrayDescription> smaller = with_smaller_adc(array, highest);
   const CircuitFrames of_smaller = smaller ? rescaled(frames, array, *smaller) : CircuitFrames();
   if (smaller) rivals.push_back({.name = "a smaller ADC", .array = *smaller, .frames = &of_smaller});

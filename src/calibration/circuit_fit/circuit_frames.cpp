@@ -119,7 +119,7 @@ std::vector<Labelled> labelled_frames(const ArrayDescription& array, std::span<c
     Labelled next;
     next.celsius = conditioned.temperature_celsius;
     next.frame.ratio = conditioned.ratio;
-    next.frame.sigma_ratio = next.frame.said_sigma = conditioned.sigma_ratio;
+    next.frame.sigma_ratio = next.frame.described_sigma = conditioned.sigma_ratio;
     read_loads(array, loads_of[k], conditioned, next.frame);
     if (!unlabelled_between && !labelled.empty() && is_repetition(labelled.back(), next)) {
       average_into(labelled.back(), next);
@@ -146,6 +146,14 @@ void measure_noise(std::vector<Labelled>& labelled) {
 }
 
 }  // namespace
+
+double highest_ratio(const CircuitFrames& frames) {
+  double highest = 0.0;
+  for (const CircuitFrame& frame : frames.frames) {
+    highest = std::max(highest, *std::max_element(frame.ratio.begin(), frame.ratio.end()));
+  }
+  return highest;
+}
 
 Result<CircuitFrames> circuit_frames(const ArrayDescription& array, std::span<const RawFrame> frames,
                                      std::span<const Load> loads, Nanos settle_time) {

@@ -17,7 +17,7 @@ namespace dermis::calibration {
 struct CircuitFrame {
   std::vector<double> ratio;       ///< Reading / supply [taxels].
   double sigma_ratio = 0.0;        ///< Standard deviation of each, as repetitions show it.
-  double said_sigma = 0.0;         ///< Described sigma of one reading; the readings were cut at 0 with it.
+  double described_sigma = 0.0;    ///< Described sigma of one reading; the readings were cut at 0 with it.
   std::vector<float> newtons;      ///< [taxels]: 0 idle, NaN unknown or beside a pressed taxel, which may touch it too.
   std::vector<TotalForce> totals;  ///< Over taxels that share it in an unknown way, none of them at the rail.
   double temperature = 0.0;        ///< In [-1, 1] over the recording; 0 where it is not an input.
@@ -28,6 +28,9 @@ struct CircuitFrames {
   std::vector<CircuitFrame> frames;
   bool has_temperature = false;  ///< Every frame has one and they differ enough.
 };
+
+/// The largest reading, as a ratio of full scale; 0 where all are negative.
+[[nodiscard]] double highest_ratio(const CircuitFrames& frames);
 
 /// Errors: bad loads, no labelled frame that can be used.
 [[nodiscard]] Result<CircuitFrames> circuit_frames(const ArrayDescription& array, std::span<const RawFrame> frames,

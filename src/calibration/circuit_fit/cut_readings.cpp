@@ -10,7 +10,7 @@ namespace dermis::calibration {
 double trusted_above(const CircuitFrame& frame) {
   constexpr double kMostNoise = 0.7;  // of a mean, over the described one of a reading
   constexpr double kCutSigmas = 2.0;  // from here on a cut moves the mean by less than 0.01 sigma
-  return frame.sigma_ratio < kMostNoise * frame.said_sigma ? kCutSigmas * frame.said_sigma : 0.0;
+  return frame.sigma_ratio < kMostNoise * frame.described_sigma ? kCutSigmas * frame.described_sigma : 0.0;
 }
 
 double mean_above(double cut, double mean, double sigma) {

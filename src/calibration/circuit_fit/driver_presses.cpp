@@ -117,9 +117,9 @@ std::vector<PressPair> driver_presses(const LineParameters& lines, const Estimat
       return gain(covariance, a) < gain(covariance, b);
     });
     const VectorXd column = covariance.col(best->driver);
-    const double told = column[best->driver] * best->information;
-    if (told < 1.0) break;
-    covariance -= column * column.transpose() * best->information / (1.0 + told);
+    const double gained = column[best->driver] * best->information;
+    if (gained < 1.0) break;
+    covariance -= column * column.transpose() * best->information / (1.0 + gained);
     presses.push_back(best->pair);
     pairs.erase(best);
   }

@@ -140,7 +140,7 @@ class Judge {
   }
 
   [[nodiscard]] JudgedReading judge_idle(const CircuitFrame& frame, std::size_t taxel) const {
-    const double cut = rubber_.laws[taxel].is_readable ? trusted_above(frame) : kCutSigmas * frame.said_sigma;
+    const double cut = rubber_.laws[taxel].is_readable ? trusted_above(frame) : kCutSigmas * frame.described_sigma;
     const double sigma = frame.sigma_ratio * std::sqrt(scatter_.noise_variance);
     const double difference = std::max(frame.ratio[taxel], cut) - mean_above(cut, expected_[taxel], sigma);
     const double square = std::pow(difference / sigma, 2);

@@ -20,7 +20,7 @@ std::vector<bool> readable_taxels(const CircuitFrames& frames, std::size_t taxel
   for (const CircuitFrame& frame : frames.frames) {
     for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
       if (frame.newtons[taxel] != 0.0F) continue;
-      sums[taxel] += frame.ratio[taxel] / frame.said_sigma;
+      sums[taxel] += frame.ratio[taxel] / frame.described_sigma;
       counts[taxel] += 1.0;
     }
   }

@@ -102,7 +102,7 @@ std::vector<double> errors_on(const GuidedPresses& left_out, const ArrayDescript
   return errors_of(fit->model, left_out);
 }
 
-Load load_of(const ArrayDescription& array, std::size_t frame, std::size_t taxel, double newtons) {
+Load force_on(const ArrayDescription& array, std::size_t frame, std::size_t taxel, double newtons) {
   const std::size_t row = taxel / array.cols;
   const std::size_t col = taxel % array.cols;
   return {frame, LoadKind::force, {row, col, row, col}, newtons};
@@ -119,9 +119,9 @@ GuidedData labelled_frames(const ArrayDescription& array, const std::vector<RawF
   }
   for (const auto& press : presses) {
     for (const RawFrame& frame : press->frames) {
-      data.loads.push_back(load_of(array, data.frames.size(), press->taxel, press->newtons));
+      data.loads.push_back(force_on(array, data.frames.size(), press->taxel, press->newtons));
       if (press->together_with) {
-        data.loads.push_back(load_of(array, data.frames.size(), *press->together_with, press->newtons));
+        data.loads.push_back(force_on(array, data.frames.size(), *press->together_with, press->newtons));
       }
       data.frames.push_back(frame);
     }

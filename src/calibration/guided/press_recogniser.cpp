@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kReleasedShare = 0.15;  // of the excess of the press
 constexpr double kLostShare = 0.5;
-constexpr double kFeltShare = 0.5;           // of the excess of the taxel that feels most; crosstalk stays below
+constexpr double kPressedShare = 0.5;        // of the excess of the taxel that feels most; crosstalk stays below
 constexpr double kTogetherShare = 0.25;      // the same of two with the same weight
 constexpr double kWrongTouchSeconds = 0.15;  // while a weight is put on
 
@@ -52,13 +52,13 @@ PressRecogniser::Touch PressRecogniser::feel(std::span<const double> ratio) cons
   touch.strongest = sense_.strongest(ratio, [](std::size_t) { return true; });
   if (!touch.strongest) return touch;
   const double most = sense_.excess(ratio, *touch.strongest);
-  const double share = asked_.size() > 1 ? kTogetherShare : kFeltShare;
+  const double share = asked_.size() > 1 ? kTogetherShare : kPressedShare;
   for (const std::size_t taxel : asked_) {
-    const bool is_felt = sense_.excess(ratio, taxel) > std::max(share * most, sense_.threshold(taxel));
-    is_felt ? void(++touch.felt) : void(touch.missing = taxel);
+    const bool is_pressed = sense_.excess(ratio, taxel) > std::max(share * most, sense_.threshold(taxel));
+    is_pressed ? void(++touch.pressed) : void(touch.missing = taxel);
   }
   touch.foreign = sense_.strongest(ratio, [&](std::size_t taxel) { return !is_asked(taxel); });
-  if (touch.foreign && sense_.excess(ratio, *touch.foreign) <= kFeltShare * most) touch.foreign.reset();
+  if (touch.foreign && sense_.excess(ratio, *touch.foreign) <= kPressedShare * most) touch.foreign.reset();
   return touch;
 }
 
@@ -67,7 +67,7 @@ bool PressRecogniser::is_asked(std::size_t taxel) const {
 }
 
 bool PressRecogniser::is_as_asked() const {
-  return touch_.felt == asked_.size() && !touch_.foreign;
+  return touch_.pressed == asked_.size() && !touch_.foreign;
 }
 
 /// The mistake where something else is pressed than was asked for.
@@ -146,7 +146,7 @@ std::optional<std::size_t> PressRecogniser::pressed_taxel() const {
 }
 
 std::optional<std::size_t> PressRecogniser::missing_taxel() const {
-  return touch_.felt > 0 ? touch_.missing : std::nullopt;
+  return touch_.pressed > 0 ? touch_.missing : std::nullopt;
 }
 
 }  // namespace dermis::calibration

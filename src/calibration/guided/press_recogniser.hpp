@@ -49,8 +49,8 @@ class PressRecogniser {
   struct Touch {
     std::optional<std::size_t> strongest;
     std::optional<std::size_t> foreign;  // the strongest one that is not asked for, if it is no mere crosstalk
-    std::optional<std::size_t> missing;  // that is asked for and is not felt
-    std::size_t felt = 0;                // of those that are asked for
+    std::optional<std::size_t> missing;  // that is asked for and is not pressed
+    std::size_t pressed = 0;             // of those that are asked for
   };
   [[nodiscard]] Touch feel(std::span<const double> ratio) const;
   [[nodiscard]] bool is_asked(std::size_t taxel) const;

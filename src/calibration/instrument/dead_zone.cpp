@@ -44,7 +44,7 @@ std::optional<std::string> describe_dead_zone(const CircuitFrames& frames) {
     const std::size_t taxel = press.taxels.front();
     Answers& answers = by_weight[press.newtons];
     answers.presses += 1.0;
-    if (press.frame->ratio[taxel] < idle[taxel] + kRisen * press.frame->said_sigma) answers.silent += 1.0;
+    if (press.frame->ratio[taxel] < idle[taxel] + kRisen * press.frame->described_sigma) answers.silent += 1.0;
   }
   Answers lightest;
   double heaviest_silent = 0.0;

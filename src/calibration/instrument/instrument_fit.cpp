@@ -17,6 +17,7 @@
 #include "calibration/instrument/instrument_parameters.hpp"
 #include "calibration/instrument/press_law.hpp"
 #include "calibration/instrument/settling.hpp"
+#include "calibration/mean.hpp"
 #include "dermis/core/quantile.hpp"
 
 namespace dermis::calibration {
@@ -214,12 +215,6 @@ std::optional<Explanation> best_beside(Judge& judge, const ArrayDescription& arr
   return found;
 }
 
-double mean_load(const Readout& readout) {
-  double sum = 0.0;
-  for (const double ohm : readout.load_ohm) sum += ohm;
-  return sum / static_cast<double>(readout.load_ohm.size());
-}
-
 std::string describe(const Explanation& found, const ArrayDescription& array, std::size_t place) {
   const Readout& readout = array.readout;
   const Index first = found.parameters.first_of(place);
@@ -235,7 +230,7 @@ std::string describe(const Explanation& found, const ArrayDescription& array, st
       return fmt::format(
           "the supply sags under load, as behind {:.2g} ohm (\u00b1 {:.1g}), by what presses tell: undone "
           "(supply_ohm)",
-          value * mean_load(readout), error * mean_load(readout));
+          value * mean_of(readout.load_ohm), error * mean_of(readout.load_ohm));
     case InstrumentPart::curve:
       return fmt::format(
           "the ADC is bent by {:+.2f} % (\u00b1 {:.2f}) of its range in its middle, by what presses tell: undone "
@@ -243,7 +238,7 @@ std::string describe(const Explanation& found, const ArrayDescription& array, st
           100.0 * value, 100.0 * error);
     case InstrumentPart::drivers: break;
   }
-  const VectorXd ohms = found.values.segment(first, found.parameters.size_of(place)) * mean_load(readout);
+  const VectorXd ohms = found.values.segment(first, found.parameters.size_of(place)) * mean_of(readout.load_ohm);
   return fmt::format(
       "drive_ohm is not as given: presses ask for {:+.0f} to {:+.0f} ohm more, line by line, as "
       "behind a multiplexer; write drive_ohm = \"fit\"",
@@ -257,11 +252,7 @@ double effect_of(InstrumentPart part, const Explanation& found, const CircuitFra
   if (here == parts.end()) return 0.0;
   const auto place = static_cast<std::size_t>(here - parts.begin());
   const VectorXd shares = found.values.segment(found.parameters.first_of(place), found.parameters.size_of(place));
-  double highest = 0.0;
-  for (const CircuitFrame& frame : frames.frames) {
-    highest = std::max(highest, *std::max_element(frame.ratio.begin(), frame.ratio.end()));
-  }
-  return shares.cwiseAbs().mean() * highest;  // a reading over its load is about the conductance
+  return shares.cwiseAbs().mean() * highest_ratio(frames);  // a reading over its load is about the conductance
 }
 
 /// Drivers that the description gives are not changed.

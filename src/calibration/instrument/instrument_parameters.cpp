@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
+#include "calibration/mean.hpp"
 #include "dermis/preprocessing/adc_correction.hpp"
 
 namespace dermis::calibration {
@@ -49,14 +49,10 @@ std::vector<AdcPoint> bowed_curve(double height, double full_scale) {
   return curve;
 }
 
-double mean(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
 }  // namespace
 
 InstrumentParameters::InstrumentParameters(const ArrayDescription& array, std::vector<InstrumentPart> parts)
-    : array_(array), parts_(std::move(parts)), load_ohm_(mean(array.readout.load_ohm)) {
+    : array_(array), parts_(std::move(parts)), load_ohm_(mean_of(array.readout.load_ohm)) {
   for (const InstrumentPart part : parts_) count_ += parameters_of(part, array_);
 }
 
@@ -128,7 +124,7 @@ ArrayDescription InstrumentParameters::array_at(const VectorXd& values) const {
 CircuitFrame InstrumentParameters::corrected(const CircuitFrame& frame, const VectorXd& values) const {
   const Readout& readout = array_.readout;
   const double noise_counts = readout.adc_noise_counts * preprocessing::noise_gain(readout.adc_errors);
-  const double per_count = frame.said_sigma / noise_counts;
+  const double per_count = frame.described_sigma / noise_counts;
   const double full_ratio = per_count * readout.full_scale_counts();
   CircuitFrame result = frame;
   visit_parts([&](InstrumentPart part, Index first, Index) {

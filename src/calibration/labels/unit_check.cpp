@@ -18,8 +18,8 @@ namespace {
 
 constexpr double kMostPascal = 2e6;    // what rubber bears, and what is pressed on a robot's skin
 constexpr double kLeastPascal = 10.0;  // a dozen sheets of paper
-constexpr double kFeltShare = 0.1;     // of the taxel that rises most
-constexpr double kFeltSigmas = 20.0;
+constexpr double kPressedShare = 0.1;  // of the taxel that rises most
+constexpr double kMeasurableSigmas = 20.0;
 
 struct Unit {
   const char* name;
@@ -34,8 +34,8 @@ double area_of_taxel(const ArrayDescription& array) {
 }
 
 /// Taxels that rise with the load of a frame; those that it names where no reading shows it.
-std::size_t felt_taxels(const ArrayDescription& array, const RawFrame& frame, const Load& load,
-                        std::span<const double> unloaded) {
+std::size_t risen_taxels(const ArrayDescription& array, const RawFrame& frame, const Load& load,
+                         std::span<const double> unloaded) {
   preprocessing::Conditioner conditioner(array);
   ConditionedFrame conditioned;
   conditioner.process(frame, conditioned);
@@ -46,9 +46,9 @@ std::size_t felt_taxels(const ArrayDescription& array, const RawFrame& frame, co
     rises.push_back(conditioned.ratio[taxel] - unloaded[taxel]);
   }
   const double most = *std::max_element(rises.begin(), rises.end());
-  if (most < kFeltSigmas * conditioned.sigma_ratio) return named;
+  if (most < kMeasurableSigmas * conditioned.sigma_ratio) return named;
   return static_cast<std::size_t>(
-      std::count_if(rises.begin(), rises.end(), [&](double rise) { return rise > kFeltShare * most; }));
+      std::count_if(rises.begin(), rises.end(), [&](double rise) { return rise > kPressedShare * most; }));
 }
 
 bool is_plausible(double pascal) {
@@ -87,9 +87,9 @@ std::optional<std::string> remark_on_units(const ArrayDescription& array, std::s
                                            std::span<const Load> loads) {
   const std::vector<std::optional<double>> newtons = newtons_of_frames(array, frames.size(), loads);
   const std::vector<double> unloaded = unloaded_levels(array, frames, newtons);
-  const auto heaviest = [&](auto load_of) {
+  const auto heaviest = [&](auto weight_of) {
     return std::max_element(loads.begin(), loads.end(),
-                            [&](const Load& a, const Load& b) { return load_of(a) < load_of(b); });
+                            [&](const Load& a, const Load& b) { return weight_of(a) < weight_of(b); });
   };
   const auto named_pascal = [&](const Load& load) {
     return total_newtons(load, array) / static_cast<double>(load.where.taxel_count());
@@ -98,7 +98,7 @@ std::optional<std::string> remark_on_units(const ArrayDescription& array, std::s
   for (const auto load : {heaviest(named_pascal), heaviest(of_frame)}) {
     const double total = *newtons[load->frame];
     if (!(total > 0.0)) return std::nullopt;
-    const std::size_t taxels = felt_taxels(array, frames[load->frame], *load, unloaded);
+    const std::size_t taxels = risen_taxels(array, frames[load->frame], *load, unloaded);
     const double pascal = total / (area_of_taxel(array) * static_cast<double>(taxels));
     if (!is_plausible(pascal)) return question(array, *load, taxels, pascal, total);
   }

@@ -60,8 +60,8 @@ std::vector<KnownLoad> some_of(std::span<const KnownLoad> loads) {
 
 class MemoryProblem {
  public:
-  MemoryProblem(const FeltHistory& felt, std::vector<KnownLoad> loads)
-      : felt_(felt), loads_(std::move(loads)), groups_(gain_groups(loads_, felt.taxels)) {
+  MemoryProblem(const MaterialHistory& material, std::vector<KnownLoad> loads)
+      : material_(material), loads_(std::move(loads)), groups_(gain_groups(loads_, material.taxels)) {
     double log_newtons = 0.0;
     for (const KnownLoad& load : loads_) log_newtons += std::log(load.newtons) / static_cast<double>(loads_.size());
     floor_newtons_ = kFloorShare * std::exp(log_newtons);
@@ -71,7 +71,7 @@ class MemoryProblem {
 
   /// The error of each load, about relative.
   void errors(const fusion::MemoryLaw& law, std::span<double> errors) const {
-    const std::vector<FreedLoad> freed = freed_loads(felt_, loads_, law);
+    const std::vector<FreedLoad> freed = freed_loads(material_, loads_, law);
     const std::vector<double> gain = gains(freed);
     for (std::size_t k = 0; k < loads_.size(); ++k) {
       const double error = weight(k) * (gain[groups_[k]] * freed[k].newtons - loads_[k].newtons);
@@ -118,8 +118,8 @@ class MemoryProblem {
 
   /// The gain of each taxel, and of the totals.
   [[nodiscard]] std::vector<double> gains(const std::vector<FreedLoad>& freed) const {
-    std::vector<double> above(felt_.taxels + 1);
-    std::vector<double> below(felt_.taxels + 1);
+    std::vector<double> above(material_.taxels + 1);
+    std::vector<double> below(material_.taxels + 1);
     for (std::size_t k = 0; k < loads_.size(); ++k) {
       const double square = std::pow(weight(k), 2);
       above[groups_[k]] += square * freed[k].newtons * loads_[k].newtons;
@@ -129,7 +129,7 @@ class MemoryProblem {
     return above;
   }
 
-  const FeltHistory& felt_;
+  const MaterialHistory& material_;
   std::vector<KnownLoad> loads_;
   std::vector<std::size_t> groups_;  // [loads]
   double floor_newtons_ = 0.0;
@@ -137,12 +137,12 @@ class MemoryProblem {
 
 }  // namespace
 
-FeltHistory felt_history(const LoadHistory& history, const fusion::ForceNetworks& networks) {
+MaterialHistory material_history(const SiemensHistory& history, const fusion::ForceNetworks& networks) {
   const std::size_t frames = history.time.size();
-  FeltHistory felt;
-  felt.time = history.time;
-  felt.taxels = history.taxels;
-  felt.newtons.resize(frames * history.taxels);
+  MaterialHistory material;
+  material.time = history.time;
+  material.taxels = history.taxels;
+  material.newtons.resize(frames * history.taxels);
   parallel_for((frames + kFramesPerTask - 1) / kFramesPerTask, [&](std::size_t task) {
     fusion::ForceFusion fusion(networks);
     ConductanceFrame conductance;
@@ -156,13 +156,13 @@ FeltHistory felt_history(const LoadHistory& history, const fusion::ForceNetworks
       conductance.temperature_celsius = history.temperature_celsius[k];
       fusion.process(conductance, force);
       std::copy(force.newtons.begin(), force.newtons.end(),
-                felt.newtons.begin() + static_cast<std::ptrdiff_t>(k * history.taxels));
+                material.newtons.begin() + static_cast<std::ptrdiff_t>(k * history.taxels));
     }
   });
-  return felt;
+  return material;
 }
 
-std::vector<KnownLoad> known_loads(const SampleDatabase& database, const LoadHistory& history) {
+std::vector<KnownLoad> known_loads(const SampleDatabase& database, const SiemensHistory& history) {
   std::vector<KnownLoad> loads;
   for (std::size_t k = 0; k < database.samples.size(); ++k) {
     const Sample& sample = database.samples[k];
@@ -174,21 +174,21 @@ std::vector<KnownLoad> known_loads(const SampleDatabase& database, const LoadHis
       if (newtons > 0.0) loads.push_back({k, place, {taxel}, newtons, std::nullopt});
     }
     for (std::size_t total = 0; total < sample.totals.size(); ++total) {
-      const auto& [taxels, newtons, felt_share] = sample.totals[total];
+      const auto& [taxels, newtons, material_share] = sample.totals[total];
       if (newtons > 0.0) loads.push_back({k, place, taxels, newtons, total});
     }
   }
   return loads;
 }
 
-std::vector<FreedLoad> freed_loads(const FeltHistory& felt, std::span<const KnownLoad> loads,
+std::vector<FreedLoad> freed_loads(const MaterialHistory& material, std::span<const KnownLoad> loads,
                                    const fusion::MemoryLaw& law) {
   // Only the taxels that are asked for.
-  std::vector<std::size_t> column(felt.taxels, felt.taxels);
+  std::vector<std::size_t> column(material.taxels, material.taxels);
   std::vector<std::size_t> asked;
   for (const KnownLoad& load : loads) {
     for (const std::size_t taxel : load.taxels) {
-      if (column[taxel] != felt.taxels) continue;
+      if (column[taxel] != material.taxels) continue;
       column[taxel] = asked.size();
       asked.push_back(taxel);
     }
@@ -199,16 +199,16 @@ std::vector<FreedLoad> freed_loads(const FeltHistory& felt, std::span<const Know
   const std::vector<float> no_noise(asked.size());
   std::vector<FreedLoad> freed(loads.size());
   std::size_t next = 0;
-  for (std::size_t place = 0; place < felt.time.size() && next < loads.size(); ++place) {
-    const float* const row = felt.newtons.data() + place * felt.taxels;
-    frame.time = felt.time[place];
+  for (std::size_t place = 0; place < material.time.size() && next < loads.size(); ++place) {
+    const float* const row = material.newtons.data() + place * material.taxels;
+    frame.time = material.time[place];
     frame.newtons.clear();
     for (const std::size_t taxel : asked) frame.newtons.push_back(row[taxel]);
     memory.process(frame, no_noise);
     for (; next < loads.size() && loads[next].place == place; ++next) {
       for (const std::size_t taxel : loads[next].taxels) {
         if (std::isnan(row[taxel])) continue;
-        freed[next].felt_newtons += static_cast<double>(row[taxel]);
+        freed[next].material_newtons += static_cast<double>(row[taxel]);
         freed[next].newtons += static_cast<double>(frame.newtons[column[taxel]]);
       }
     }
@@ -216,13 +216,13 @@ std::vector<FreedLoad> freed_loads(const FeltHistory& felt, std::span<const Know
   return freed;
 }
 
-double memory_misfit(const FeltHistory& felt, std::span<const KnownLoad> loads, const fusion::MemoryLaw& law) {
-  return MemoryProblem(felt, some_of(loads)).misfit(law);
+double memory_misfit(const MaterialHistory& material, std::span<const KnownLoad> loads, const fusion::MemoryLaw& law) {
+  return MemoryProblem(material, some_of(loads)).misfit(law);
 }
 
-fusion::MemoryLaw fit_memory(const FeltHistory& felt, std::span<const KnownLoad> loads,
+fusion::MemoryLaw fit_memory(const MaterialHistory& material, std::span<const KnownLoad> loads,
                              const fusion::MemoryLaw& start) {
-  const MemoryProblem problem(felt, some_of(loads));
+  const MemoryProblem problem(material, some_of(loads));
   const auto function = [&](std::span<const double> free, std::span<double> residuals, std::span<double> jacobian) {
     if (jacobian.empty()) return problem.residuals(free, residuals);
     const std::size_t count = problem.residual_count();

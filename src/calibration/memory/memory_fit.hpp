@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "calibration/memory/load_history.hpp"
+#include "calibration/memory/siemens_history.hpp"
 #include "dermis/calibration/sample_database.hpp"
 #include "dermis/fusion/force_fusion.hpp"
 #include "dermis/fusion/material_memory.hpp"
@@ -15,13 +15,13 @@
 namespace dermis::calibration {
 
 /// The forces that networks give over a history: what the material feels.
-struct FeltHistory {
+struct MaterialHistory {
   std::vector<Nanos> time;     ///< [frames]
   std::vector<float> newtons;  ///< [frames, taxels]; NaN where there is none.
   std::size_t taxels = 0;
 };
 
-[[nodiscard]] FeltHistory felt_history(const LoadHistory& history, const fusion::ForceNetworks& networks);
+[[nodiscard]] MaterialHistory material_history(const SiemensHistory& history, const fusion::ForceNetworks& networks);
 
 /// A known force above zero on one taxel, or on several that share it, at a place in a history.
 struct KnownLoad {
@@ -33,25 +33,25 @@ struct KnownLoad {
 };
 
 /// Those of a database whose samples are in the history, by rising place.
-[[nodiscard]] std::vector<KnownLoad> known_loads(const SampleDatabase& database, const LoadHistory& history);
+[[nodiscard]] std::vector<KnownLoad> known_loads(const SampleDatabase& database, const SiemensHistory& history);
 
 /// Felt and freed forces of known loads, sums over their taxels [N].
 struct FreedLoad {
-  double felt_newtons = 0.0;
+  double material_newtons = 0.0;
   double newtons = 0.0;
 };
 
 /// The loads as a law frees them.
-[[nodiscard]] std::vector<FreedLoad> freed_loads(const FeltHistory& felt, std::span<const KnownLoad> loads,
+[[nodiscard]] std::vector<FreedLoad> freed_loads(const MaterialHistory& material, std::span<const KnownLoad> loads,
                                                  const fusion::MemoryLaw& law);
 
 /// Root mean square relative error of the loads by a law. Each taxel and all totals have a gain of their own: networks
 /// may be wrong by one.
-[[nodiscard]] double memory_misfit(const FeltHistory& felt, std::span<const KnownLoad> loads,
+[[nodiscard]] double memory_misfit(const MaterialHistory& material, std::span<const KnownLoad> loads,
                                    const fusion::MemoryLaw& law);
 
 /// The law whose misfit is the least, from `start`. Without stops where that has none.
-[[nodiscard]] fusion::MemoryLaw fit_memory(const FeltHistory& felt, std::span<const KnownLoad> loads,
+[[nodiscard]] fusion::MemoryLaw fit_memory(const MaterialHistory& material, std::span<const KnownLoad> loads,
                                            const fusion::MemoryLaw& start);
 
 }  // namespace dermis::calibration

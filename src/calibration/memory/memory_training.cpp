@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "calibration/even_choice.hpp"
-#include "calibration/memory/load_history.hpp"
 #include "calibration/memory/memory_fit.hpp"
+#include "calibration/memory/siemens_history.hpp"
 #include "dermis/calibration/force_training.hpp"
 #include "dermis/core/quantile.hpp"
 
@@ -42,25 +42,25 @@ constexpr fusion::MemoryLaw kStart{{0.04F, 0.04F, 0.04F, 0.04F}, {0.02F, 0.02F, 
 
 /// The same samples with the forces that the material felt under their loads. The ratio to the load is that of a law
 /// that was fitted to about these forces. Loads that the law does not cover are unknown.
-SampleDatabase felt_database(const SampleDatabase& database, const std::vector<KnownLoad>& loads,
-                             const std::vector<FreedLoad>& freed) {
-  SampleDatabase felt = database;
+SampleDatabase material_database(const SampleDatabase& database, const std::vector<KnownLoad>& loads,
+                                 const std::vector<FreedLoad>& freed) {
+  SampleDatabase material = database;
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  for (Sample& sample : felt.samples) {
-    sample.felt_share.assign(sample.known_newtons.size(), static_cast<float>(kUnknown));
-    for (TotalForce& total : sample.totals) total.felt_share = kUnknown;
+  for (Sample& sample : material.samples) {
+    sample.material_share.assign(sample.known_newtons.size(), static_cast<float>(kUnknown));
+    for (TotalForce& total : sample.totals) total.material_share = kUnknown;
   }
   for (std::size_t k = 0; k < loads.size(); ++k) {
-    if (!(std::min(freed[k].felt_newtons, freed[k].newtons) > 0.0)) continue;
-    const double share = freed[k].felt_newtons / freed[k].newtons;
-    Sample& sample = felt.samples[loads[k].sample];
+    if (!(std::min(freed[k].material_newtons, freed[k].newtons) > 0.0)) continue;
+    const double share = freed[k].material_newtons / freed[k].newtons;
+    Sample& sample = material.samples[loads[k].sample];
     if (loads[k].total) {
-      sample.totals[*loads[k].total].felt_share = share;
+      sample.totals[*loads[k].total].material_share = share;
     } else {
-      sample.felt_share[loads[k].taxels.front()] = static_cast<float>(share);
+      sample.material_share[loads[k].taxels.front()] = static_cast<float>(share);
     }
   }
-  return felt;
+  return material;
 }
 
 double mean_error(const std::vector<KnownLoad>& loads, const std::vector<FreedLoad>& freed) {
@@ -109,26 +109,27 @@ bool are_same(const fusion::MemoryLaw& a, const fusion::MemoryLaw& b) {
 /// A law, and what the material felt by it.
 struct Fitted {
   fusion::MemoryLaw law;
-  SampleDatabase felt;
+  SampleDatabase material;
 };
 
 /// From networks that know of no law, in rounds of law and networks in turn. Empty where networks cannot be trained, or
 /// where not even the loads that it is fitted to gain by a law.
-std::optional<Fitted> fit(const SampleDatabase& database, const LoadHistory& history,
+std::optional<Fitted> fit(const SampleDatabase& database, const SiemensHistory& history,
                           const fusion::ForceNetworks& plain, const fusion::MemoryLaw& start, int rounds) {
   const std::vector<KnownLoad> loads = known_loads(database, history);
   Fitted fitted{start, {}};
   fusion::ForceNetworks networks = plain;
   for (int round = 0; round < rounds; ++round) {
     if (round > 0) {
-      Result<ForceTraining> training = train_on_some(fitted.felt);
+      Result<ForceTraining> training = train_on_some(fitted.material);
       if (!training) return std::nullopt;
       networks = std::move(training->networks);
     }
-    const FeltHistory felt = felt_history(history, networks);
-    const fusion::MemoryLaw last = std::exchange(fitted.law, fit_memory(felt, loads, fitted.law));
-    if (memory_misfit(felt, loads, fitted.law) > kWorthwhile * memory_misfit(felt, loads, {})) return std::nullopt;
-    fitted.felt = felt_database(database, loads, freed_loads(felt, loads, fitted.law));
+    const MaterialHistory material = material_history(history, networks);
+    const fusion::MemoryLaw last = std::exchange(fitted.law, fit_memory(material, loads, fitted.law));
+    if (memory_misfit(material, loads, fitted.law) > kWorthwhile * memory_misfit(material, loads, {}))
+      return std::nullopt;
+    fitted.material = material_database(database, loads, freed_loads(material, loads, fitted.law));
     if (round > 0 && are_same(last, fitted.law)) break;
   }
   return fitted;
@@ -150,7 +151,7 @@ struct HeldOutErrors {
 };
 
 /// The errors of fits to the other pieces.
-std::optional<HeldOutErrors> held_out_errors(const SampleDatabase& database, const LoadHistory& history,
+std::optional<HeldOutErrors> held_out_errors(const SampleDatabase& database, const SiemensHistory& history,
                                              const fusion::MemoryLaw& start) {
   const std::vector<KnownLoad> loads = known_loads(database, history);
   HeldOutErrors errors;
@@ -163,12 +164,12 @@ std::optional<HeldOutErrors> held_out_errors(const SampleDatabase& database, con
     if (!plain) return std::nullopt;
     const std::optional<Fitted> fitted = fit(kept, history, plain->networks, start, kRoundsOfFold);
     if (!fitted) return std::nullopt;
-    const Result<ForceTraining> training = train_on_some(fitted->felt);
+    const Result<ForceTraining> training = train_on_some(fitted->material);
     if (!training) return std::nullopt;
-    const FeltHistory of_plain = felt_history(history, plain->networks);
-    const FeltHistory felt = felt_history(history, training->networks);
+    const MaterialHistory of_plain = material_history(history, plain->networks);
+    const MaterialHistory material = material_history(history, training->networks);
     errors.without += mean_error(held_out, freed_loads(of_plain, held_out, {})) / kFolds;
-    errors.with += mean_error(held_out, freed_loads(felt, held_out, fitted->law)) / kFolds;
+    errors.with += mean_error(held_out, freed_loads(material, held_out, fitted->law)) / kFolds;
   }
   return errors;
 }
@@ -193,19 +194,19 @@ std::vector<Nanos> times_of_pieces(const std::vector<Nanos>& times) {
 
 /// Recordings of single presses that were put together have pauses that nobody waited. So a pause counts as unknown
 /// past where the loads agree better without it.
-std::vector<Nanos> likelier_times(const LoadHistory& history, const std::vector<KnownLoad>& loads,
+std::vector<Nanos> likelier_times(const SiemensHistory& history, const std::vector<KnownLoad>& loads,
                                   const fusion::ForceNetworks& plain, const fusion::MemoryLaw& start) {
   const std::vector<Nanos> of_pieces = times_of_pieces(history.time);
   if (of_pieces.back() == history.time.back() - history.time.front()) return history.time;
-  FeltHistory felt = felt_history(history, plain);
-  const double misfit = memory_misfit(felt, loads, fit_memory(felt, loads, start));
-  felt.time = of_pieces;
-  const double misfit_of_pieces = memory_misfit(felt, loads, fit_memory(felt, loads, start));
+  MaterialHistory material = material_history(history, plain);
+  const double misfit = memory_misfit(material, loads, fit_memory(material, loads, start));
+  material.time = of_pieces;
+  const double misfit_of_pieces = memory_misfit(material, loads, fit_memory(material, loads, start));
   return misfit_of_pieces < misfit ? of_pieces : history.time;
 }
 
 /// The evidence of the recording on time and unloading.
-void observe_loads(const std::vector<KnownLoad>& loads, const LoadHistory& history, LearnedMemory& memory) {
+void observe_loads(const std::vector<KnownLoad>& loads, const SiemensHistory& history, LearnedMemory& memory) {
   struct Hold {
     Nanos begin{};
     Nanos last{};
@@ -237,18 +238,18 @@ bool is_pressed_in_both(const Sample& before, const Sample& sample) {
 
 std::string describe(const LearnedMemory& memory) {
   // The felt share of one newton, so long after it was put on.
-  const auto felt_after = [&](double seconds) {
-    double felt = 1.0;
+  const auto material_after = [&](double seconds) {
+    double material = 1.0;
     for (std::size_t k = 0; k < memory.law.creep.size(); ++k) {
-      felt -= static_cast<double>(memory.law.creep[k]) * std::exp(-seconds / fusion::MemoryLaw::kCreepSeconds[k]);
+      material -= static_cast<double>(memory.law.creep[k]) * std::exp(-seconds / fusion::MemoryLaw::kCreepSeconds[k]);
     }
-    return felt;
+    return material;
   };
   double gap = 0.0;
   for (const float share : memory.law.gap) gap += static_cast<double>(share);
   std::string text =
       fmt::format("the material remembers: a load that lies still reads {:.0f} % more after ten seconds than after one",
-                  100.0 * (felt_after(10.0) / felt_after(1.0) - 1.0));
+                  100.0 * (material_after(10.0) / material_after(1.0) - 1.0));
   if (gap > 0.0) text += fmt::format(", and {:.0f} % more when unloading than when loading", 100.0 * gap);
   text += fmt::format("; this is undone: loads left out are {:.1f} % off, without it {:.1f} %",
                       100.0 * memory.error_with, 100.0 * memory.error_without);
@@ -283,7 +284,7 @@ bool is_continuous(std::span<const RawFrame> frames) {
 
 std::optional<LearnedMemory> learn_memory(const SampleDatabase& database, std::span<const RawFrame> frames,
                                           const ForceTraining& plain) {
-  Result<LoadHistory> history = read_history(database, frames);
+  Result<SiemensHistory> history = read_history(database, frames);
   if (!history) return std::nullopt;
   const std::vector<KnownLoad> loads = known_loads(database, *history);
   if (loads.size() < kLeastLoads) return std::nullopt;
@@ -297,10 +298,10 @@ std::optional<LearnedMemory> learn_memory(const SampleDatabase& database, std::s
   if (!fitted) return std::nullopt;
   const std::optional<HeldOutErrors> errors = held_out_errors(database, *history, start);
   if (!errors || errors->with > kWorthwhile * errors->without) return std::nullopt;
-  Result<ForceTraining> training = train_force_networks(fitted->felt);
+  Result<ForceTraining> training = train_force_networks(fitted->material);
   if (!training) return std::nullopt;
   memory.law = fitted->law;
-  memory.felt = std::move(fitted->felt);
+  memory.material = std::move(fitted->material);
   memory.training = std::move(*training);
   memory.error_without = errors->without;
   memory.error_with = errors->with;

@@ -16,7 +16,7 @@ namespace dermis::calibration {
 /// The memory of a material as a recording shows it.
 struct LearnedMemory {
   fusion::MemoryLaw law;
-  SampleDatabase felt;                ///< The same samples, with what the material felt of their forces,
+  SampleDatabase material;            ///< The same samples, with the share of their forces that the material shows,
   ForceTraining training;             ///< and what is trained on them.
   double error_without = 0.0;         ///< Mean relative errors on loads that the fits did not see, without the law
   double error_with = 0.0;            ///< and with it.

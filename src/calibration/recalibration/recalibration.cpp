@@ -58,8 +58,8 @@ Result<Recalibration> recalibrate(const pipeline::Model& model, std::span<const 
   const std::vector<KnownPress>& presses = gathered->presses();
   if (presses.empty()) return bad_input("no load above zero has a force: a known weight is needed");
   if (presses.size() > kMostPresses) {
-    return bad_input(fmt::format("{} presses are enough for a calibration: 'dermis calibrate' learns more from them",
-                                 presses.size()));
+    return bad_input(
+        fmt::format("{} presses are enough for a calibration, which learns more from them", presses.size()));
   }
   Recalibration recalibration;
   recalibration.model = model;

@@ -65,7 +65,7 @@ std::vector<TaxelPoint> pressed_points(const SampleDatabase& database, std::size
   for (std::size_t k = 0; k < database.samples.size(); ++k) {
     const Sample& sample = database.samples[k];
     const double load_newtons = sample.known_newtons[taxel];
-    const double share = sample.felt_share.empty() ? 1.0 : static_cast<double>(sample.felt_share[taxel]);
+    const double share = sample.material_share.empty() ? 1.0 : static_cast<double>(sample.material_share[taxel]);
     if (!(load_newtons > 0.0) || std::isnan(share)) continue;
     const auto& [press, touch] = numbers.next(sample, k, load_newtons);
     double noise = evidence.unloaded.noise_siemens[taxel];

@@ -22,7 +22,7 @@ SharedLoads::SharedLoads(const SampleDatabase& database, const SampleTemperature
   for (std::size_t k = 0; k < database.samples.size(); ++k) {
     for (const TotalForce& total : database.samples[k].totals) {
       add({k, total.newtons, numbers[total.taxels].next(database.samples[k], k, total.newtons).touch}, total.taxels,
-          total.felt_share);
+          total.material_share);
     }
   }
   add_presses();
@@ -44,30 +44,30 @@ void SharedLoads::add_presses() {
     const std::size_t count = std::min(of_taxel.size(), kMostPresses);
     for (std::size_t k = 0; k < count; ++k) {
       const Press& press = of_taxel[k * of_taxel.size() / count];
-      const std::vector<float>& felt_share = database_.samples[press.sample].felt_share;
-      add(press, {taxel}, felt_share.empty() ? 1.0 : static_cast<double>(felt_share[taxel]));
+      const std::vector<float>& material_share = database_.samples[press.sample].material_share;
+      add(press, {taxel}, material_share.empty() ? 1.0 : static_cast<double>(material_share[taxel]));
     }
   }
 }
 
-void SharedLoads::add(const Press& press, const std::vector<std::size_t>& taxels, double felt_share) {
-  if (std::isnan(felt_share)) return;
+void SharedLoads::add(const Press& press, const std::vector<std::size_t>& taxels, double material_share) {
+  if (std::isnan(material_share)) return;
   const Sample& sample = database_.samples[press.sample];
   MeasuredLoad load;
   load.sample = press.sample;
-  load.newtons = felt_share * press.newtons;
+  load.newtons = material_share * press.newtons;
   load.load_newtons = press.newtons;
   load.touch = press.touch;
   load.temperature = normalised_temperature(sample, temperatures_);
-  bool is_felt = false;
+  bool is_measurable = false;
   for (const std::size_t taxel : taxels) {
     if (dead_[taxel]) continue;
     const double excess = excess_siemens(sample, taxel, unloaded_, temperatures_);
     if (excess <= 0.0) continue;
     load.excess.emplace_back(taxel, excess);
-    is_felt = is_felt || excess > kFeltSigmas * unloaded_.noise_siemens[taxel];
+    is_measurable = is_measurable || excess > kMeasurableSigmas * unloaded_.noise_siemens[taxel];
   }
-  if (is_felt) loads_.push_back(std::move(load));
+  if (is_measurable) loads_.push_back(std::move(load));
 }
 
 std::vector<MeasuredLoad> SharedLoads::loads(std::size_t most_shares) const {

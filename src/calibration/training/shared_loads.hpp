@@ -12,7 +12,7 @@
 
 namespace dermis::calibration {
 
-inline constexpr double kFeltSigmas = 3.0;  // standard deviations of the unloaded reading
+inline constexpr double kMeasurableSigmas = 3.0;  // standard deviations of the unloaded reading
 
 /// A load with the excess conductances of its taxels.
 struct MeasuredLoad {
@@ -42,7 +42,7 @@ class SharedLoads {
   };
 
   void add_presses();
-  void add(const Press& press, const std::vector<std::size_t>& taxels, double felt_share);
+  void add(const Press& press, const std::vector<std::size_t>& taxels, double material_share);
 
   const SampleDatabase& database_;
   const SampleTemperatures& temperatures_;

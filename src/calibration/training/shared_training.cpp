@@ -96,7 +96,7 @@ class SharedProblem {
       log_newtons += std::log(load.newtons) / static_cast<double>(raw.size());
       for (const auto& [taxel, siemens] : load.excess) {
         heaviest_siemens_ = std::max(heaviest_siemens_, siemens);
-        if (siemens <= kFeltSigmas * unloaded.noise_siemens[taxel]) continue;
+        if (siemens <= kMeasurableSigmas * unloaded.noise_siemens[taxel]) continue;
         active += 1.0;
         active_siemens += siemens;
       }

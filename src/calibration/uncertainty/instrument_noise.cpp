@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "calibration/mean.hpp"
 #include "dermis/calibration/uncertainty.hpp"
 #include "dermis/core/quantile.hpp"
 
@@ -22,10 +22,6 @@ constexpr double kMostShareCut = 0.8;    // at the lower end, of the readings of
 constexpr double kLeastCutNoise = 2.0;   // counts; rounding hides less
 constexpr std::size_t kLeastTemperatures = 20;
 constexpr double kMostTemperatureNoise = 1.0;
-
-double mean(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
 
 /// Leaves out what is far above the median.
 void erase_outliers(std::vector<double>& mean_squares) {
@@ -61,7 +57,7 @@ std::vector<std::size_t> free_taxels(const SampleDatabase& database, const std::
 double variance_of_cut(const std::vector<double>& counts) {
   constexpr double kCut = 0.5;
   constexpr int kSteps = 100;
-  double middle = mean(counts);
+  double middle = mean_of(counts);
   double variance = 1.0;
   for (const double count : counts) variance = std::max(variance, std::pow(count - middle, 2));
   for (int step = 0; step < kSteps; ++step) {
@@ -96,7 +92,7 @@ std::optional<double> noise_of_cut(const SampleDatabase& database, const std::ve
   }
   if (of_taxel.empty()) return std::nullopt;
   erase_outliers(of_taxel);
-  const double noise = std::sqrt(mean(of_taxel));
+  const double noise = std::sqrt(mean_of(of_taxel));
   return noise >= kLeastCutNoise ? std::optional(noise) : std::nullopt;
 }
 
@@ -129,10 +125,10 @@ std::optional<double> measure_adc_noise(const SampleDatabase& database) {
       if (of_pair[k] > most) continue;
       squares.push_back(half_square_difference(database, *unloaded[k], *unloaded[k + 1], taxel));
     }
-    of_taxel.push_back(mean(squares));
+    of_taxel.push_back(mean_of(squares));
   }
   erase_outliers(of_taxel);
-  return std::sqrt(std::max(mean(of_taxel), 1.0 / 12.0));
+  return std::sqrt(std::max(mean_of(of_taxel), 1.0 / 12.0));
 }
 
 double measure_temperature_noise(const SampleDatabase& database) {

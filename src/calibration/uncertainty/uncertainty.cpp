@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <set>
 #include <utility>
 #include <vector>
 
+#include "calibration/mean.hpp"
 #include "calibration/uncertainty/error_budget.hpp"
 #include "calibration/uncertainty/relative_sigma_fit.hpp"
 #include "dermis/fusion/force_fusion.hpp"
@@ -103,10 +103,6 @@ void add_uncertainty_of_networks(const std::vector<JudgedLoad>& loads, VarianceP
     }
     if (weight > 0.0) profile[k] = std::max(profile[k], square / weight);
   }
-}
-
-double mean_of(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 /// About their mean.

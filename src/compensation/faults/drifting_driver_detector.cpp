@@ -43,7 +43,7 @@ double DriftingDriverDetector::Fit::deviation() const {
   return std::sqrt(std::max(scatter, 1.0) / normal);
 }
 
-double DriftingDriverDetector::Fit::typical_load() const {
+double DriftingDriverDetector::Fit::typical_siemens() const {
   return std::sqrt(loads / normal);
 }
 
@@ -126,7 +126,7 @@ void DriftingDriverDetector::judge_driver(std::size_t line, FaultList& faults) n
   const auto& [fallen, risen, first_frame, first_time] = drivers_[line];
   if (std::min(fallen.pairs, risen.pairs) < kLeastPairs) return;
   const double nominal_ohm = array_.readout.drive_ohm[line];
-  const double least_sag_ohm = kLeastSag / std::max(fallen.typical_load(), risen.typical_load());
+  const double least_sag_ohm = kLeastSag / std::max(fallen.typical_siemens(), risen.typical_siemens());
   const double least_ohm = std::max(kLeastShare * nominal_ohm, least_sag_ohm);
   const auto has_risen = [&](const Fit& fit) {
     return fit.estimate() > std::max(kSigmas * fit.deviation(), least_ohm);

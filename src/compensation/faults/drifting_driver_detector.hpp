@@ -34,7 +34,7 @@ class DriftingDriverDetector {
     void add(double slope, double value, double variance, double load);
     [[nodiscard]] double estimate() const { return moment / normal; }
     [[nodiscard]] double deviation() const;
-    [[nodiscard]] double typical_load() const;
+    [[nodiscard]] double typical_siemens() const;
   };
 
   struct Driver {

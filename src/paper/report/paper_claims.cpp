@@ -163,8 +163,8 @@ Claim convergence_claim(const PaperReproduction& reproduction) {
   return claim;
 }
 
-Claim error_claim(const PaperReproduction& reproduction, std::string said, PointError error) {
-  Claim claim{"Fig. 11 to 13", std::move(said), kNothing, Verdict::open};
+Claim error_claim(const PaperReproduction& reproduction, std::string claimed, PointError error) {
+  Claim claim{"Fig. 11 to 13", std::move(claimed), kNothing, Verdict::open};
   if (reproduction.points.empty()) return claim;
   claim.found = fmt::format("{} of {} within 5\u00a0%. Largest error at {}.", count_within(reproduction.points, error),
                             counted(reproduction.points.size(), "point"), worst_by_level(reproduction, error));

@@ -22,7 +22,7 @@ enum class Verdict : std::uint8_t {
 /// A claim of the paper, and the finding.
 struct Claim {
   std::string where;  ///< "eq. (2), Fig. 5"
-  std::string said;
+  std::string claimed;
   std::string found;
   Verdict verdict = Verdict::open;
 };

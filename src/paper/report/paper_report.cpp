@@ -114,7 +114,7 @@ Table claims_table(const std::vector<Claim>& claims) {
   Table table{"claims", {}, {"where", "the paper says", "found", "verdict"}, {}};
   for (const Claim& claim : claims) {
     table.rows.push_back(
-        {std::nullopt, claim.where, {{claim.said, ""}, {claim.found, ""}, {to_words(claim.verdict), "verdict"}}});
+        {std::nullopt, claim.where, {{claim.claimed, ""}, {claim.found, ""}, {to_words(claim.verdict), "verdict"}}});
   }
   return table;
 }

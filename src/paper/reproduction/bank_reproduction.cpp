@@ -155,10 +155,11 @@ Status reproduce_bank(const ArrayDescription& array, const BankEffort& effort,
                                                                  {BankStart::nguyen_widrow, "Nguyen-Widrow"},
                                                                  {BankStart::xavier, "Xavier"}}};
   for (std::size_t k = 0; k < starts.size(); ++k) {
-    const auto tell = [&](double share) {
+    const auto on_share = [&](double share) {
       progress("convergence", (static_cast<double>(k) + share) / static_cast<double>(starts.size()));
     };
-    found.convergence.push_back(descend(*training, starts[k].first, starts[k].second, effort.convergence_steps, tell));
+    found.convergence.push_back(
+        descend(*training, starts[k].first, starts[k].second, effort.convergence_steps, on_share));
     if (!std::isfinite(found.convergence.back().value.back())) return failed("gradient descent of the bank diverged");
   }
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "recognition/load.hpp"
+#include "recognition/valid_reading.hpp"
 
 namespace dermis::recognition {
 namespace {
@@ -42,7 +42,8 @@ std::size_t onset_among(std::span<const double> forces) {
 double force_of(const Layout& layout, std::span<const float> readings) {
   double force = 0.0;
   for (const SensedArray& array : layout.arrays) {
-    for (const float reading : readings.subspan(array.first_column, array.taxel_count())) force += load_of(reading);
+    for (const float reading : readings.subspan(array.first_column, array.taxel_count()))
+      force += valid_reading(reading);
   }
   return force;
 }

@@ -46,17 +46,17 @@ T value_or_none(const Result<T>& value, std::optional<Error>& first_error) {
 }
 
 /// Which of the recordings each line of the labels is of.
-Result<std::vector<std::size_t>> recordings_of(const CsvTable& table, const std::vector<LoadRecording>& recordings) {
+Result<std::vector<std::size_t>> recordings_of(const CsvTable& table, const std::vector<ForceRecording>& recordings) {
   std::vector<std::size_t> places(table.rows(), 0);
   if (recordings.size() == 1 && !table.column("recording")) return places;
   const Result<std::size_t> column = table.needed_column("recording");
   if (!column) return column.error();
   std::string names;
-  for (const LoadRecording& recording : recordings) names += (names.empty() ? "" : ", ") + recording.name;
+  for (const ForceRecording& recording : recordings) names += (names.empty() ? "" : ", ") + recording.name;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const std::string& name = table.at(row, *column);
     const auto found = std::find_if(recordings.begin(), recordings.end(),
-                                    [&](const LoadRecording& recording) { return recording.name == name; });
+                                    [&](const ForceRecording& recording) { return recording.name == name; });
     if (found == recordings.end()) {
       return table.error(row, "there is no recording " + files::in_quotes(name) + " among those given: " + names);
     }
@@ -66,7 +66,7 @@ Result<std::vector<std::size_t>> recordings_of(const CsvTable& table, const std:
 }
 
 /// The errors in the labels of one recording, or in its frames.
-Status check_recording(const LabelledFrames& data, const LoadRecording& recording) {
+Status check_recording(const LabelledFrames& data, const ForceRecording& recording) {
   if (Status checked = data.check_labels(); !checked) return checked;
   for (const Label& label : data.labels) {
     if (label.first >= recording.tare_frames) continue;
@@ -231,7 +231,7 @@ Result<LabelledFrames> read_dataset(const DatasetFiles& files) {
   return data;
 }
 
-Result<LabelledFrames> label_recordings(const Layout& layout, std::vector<LoadRecording> recordings,
+Result<LabelledFrames> label_recordings(const Layout& layout, std::vector<ForceRecording> recordings,
                                         const std::string& labels, const std::string& label) {
   if (const Status checked = layout.validate(); !checked) return checked.error();
   const Result<CsvTable> table = CsvTable::read(labels);
@@ -244,7 +244,7 @@ Result<LabelledFrames> label_recordings(const Layout& layout, std::vector<LoadRe
   const bool names_order = table->column("order").has_value();
   LabelledFrames data{layout, {}, {}, {}};
   for (std::size_t place = 0; place < recordings.size(); ++place) {
-    LoadRecording& recording = recordings[place];
+    ForceRecording& recording = recordings[place];
     LabelledFrames part{layout, std::move(recording.frames), std::move(recording.extras), {}};
     for (std::size_t row = 0; row < read->size(); ++row) {
       if ((*places)[row] != place) continue;

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <set>
 
-#include "recognition/load.hpp"
+#include "recognition/valid_reading.hpp"
 
 namespace dermis::recognition {
 namespace {
@@ -95,13 +95,13 @@ std::vector<float> held_image(const LabelledFrames& data, const Label& label) {
   const Segment segment = data.segment(label);
   const std::size_t readings = data.layout.readings;
   std::vector<double> forces(segment.frames.size() / readings);
-  for (std::size_t i = 0; i < segment.frames.size(); ++i) forces[i / readings] += load_of(segment.frames[i]);
+  for (std::size_t i = 0; i < segment.frames.size(); ++i) forces[i / readings] += valid_reading(segment.frames[i]);
   const double held_from = kHeldShare * *std::max_element(forces.begin(), forces.end());
   const auto held = static_cast<double>(
       std::count_if(forces.begin(), forces.end(), [&](double force) { return force >= held_from; }));
   std::vector<double> sum(readings);
   for (std::size_t i = 0; i < segment.frames.size(); ++i) {
-    if (forces[i / readings] >= held_from) sum[i % readings] += load_of(segment.frames[i]) / held;
+    if (forces[i / readings] >= held_from) sum[i % readings] += valid_reading(segment.frames[i]) / held;
   }
   return {sum.begin(), sum.end()};
 }

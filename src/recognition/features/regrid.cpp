@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "recognition/load.hpp"
+#include "recognition/valid_reading.hpp"
 
 namespace dermis::recognition {
 namespace {
@@ -56,7 +56,7 @@ Regrid::Regrid(const SensedArray& source, const Lattice& lattice)
 void Regrid::apply(std::span<const float> frame, std::span<double> out) {
   const std::span<const float> readings = frame.subspan(source_.first_column, source_.taxel_count());
   if (is_same_) {
-    std::transform(readings.begin(), readings.end(), out.begin(), load_of);
+    std::transform(readings.begin(), readings.end(), out.begin(), valid_reading);
     return;
   }
   std::fill(of_rows_.begin(), of_rows_.end(), 0.0);
@@ -65,7 +65,7 @@ void Regrid::apply(std::span<const float> frame, std::span<double> out) {
       const double share = row_shares_[line * lattice_.rows + row];
       if (share == 0.0) continue;
       for (std::size_t col = 0; col < source_.cols; ++col) {
-        of_rows_[row * source_.cols + col] += share * load_of(readings[line * source_.cols + col]);
+        of_rows_[row * source_.cols + col] += share * valid_reading(readings[line * source_.cols + col]);
       }
     }
   }

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "recognition/features/pose_block.hpp"
-#include "recognition/load.hpp"
+#include "recognition/valid_reading.hpp"
 
 namespace dermis::recognition {
 namespace {
@@ -113,8 +113,8 @@ void SegmentFeatures::image_at(ArrayFeatures& array, const Segment& segment, std
   if (share == 0.0F || is_last) return array.regrid.apply(first, array.image);
   const std::span<const float> second = segment.frames.subspan((below + 1) * source_.readings, source_.readings);
   for (std::size_t i = 0; i < blend_.size(); ++i) {
-    const auto before = static_cast<float>(load_of(first[i]));
-    blend_[i] = before + share * (static_cast<float>(load_of(second[i])) - before);
+    const auto before = static_cast<float>(valid_reading(first[i]));
+    blend_[i] = before + share * (static_cast<float>(valid_reading(second[i])) - before);
   }
   array.regrid.apply(blend_, array.image);
 }

@@ -26,7 +26,7 @@ TwoClasses choose_two(const ConfusedPair& pair, const TrainingTable& table, cons
 }
 
 /// Mean over both classes of the share that is right, of examples whose other folds know both; empty without one.
-std::optional<double> share_told_apart(const Matrix& scores, const Judged& judged) {
+std::optional<double> discrimination_of(const Matrix& scores, const Judged& judged) {
   std::array<double, 2> right{};
   std::array<double, 2> count{};
   for (std::size_t i = 0; i < judged.classes.size(); ++i) {
@@ -58,10 +58,10 @@ std::optional<ConfusedPair> find_confused_pair(const LearningReport& report, con
   for (const ExpertColumns& aspect : aspects) {
     if (standardisation_of(table.features, two.table.rows, aspect.columns).columns.empty()) continue;
     const Matrix scores = choose_expert(two.table, aspect, two.folds, judged, false).scores;
-    if (const auto share = share_told_apart(scores, judged)) pair.aspects.push_back({aspect.name, *share});
+    if (const auto share = discrimination_of(scores, judged)) pair.aspects.push_back({aspect.name, *share});
   }
   std::stable_sort(pair.aspects.begin(), pair.aspects.end(),
-                   [](const auto& a, const auto& b) { return a.told_apart < b.told_apart; });
+                   [](const auto& a, const auto& b) { return a.discrimination < b.discrimination; });
   return pair;
 }
 

@@ -20,8 +20,8 @@
 #include "recognition/learning/folds.hpp"
 #include "recognition/learning/learning_judgement.hpp"
 #include "recognition/learning/unknown_learning.hpp"
-#include "recognition/load.hpp"
 #include "recognition/names.hpp"
+#include "recognition/valid_reading.hpp"
 
 namespace dermis::recognition {
 namespace {
@@ -33,10 +33,10 @@ constexpr std::array kRaisedZeros{0.03, 0.08};
 /// The loads of a segment above a level that is a share of its largest.
 void raise_zero(std::span<const float> frames, double share, std::vector<float>& raised) {
   double largest = 0.0;
-  for (const float reading : frames) largest = std::max(largest, load_of(reading));
+  for (const float reading : frames) largest = std::max(largest, valid_reading(reading));
   raised.clear();
   for (const float reading : frames) {
-    raised.push_back(static_cast<float>(std::max(load_of(reading) - share * largest, 0.0)));
+    raised.push_back(static_cast<float>(std::max(valid_reading(reading) - share * largest, 0.0)));
   }
 }
 

@@ -34,7 +34,7 @@ std::string need_of(const Learned& learned, std::size_t label) {
   return name + " needs more examples: " + std::to_string(right) + " of " + std::to_string(judged) + " were right";
 }
 
-std::string percent(double share) {
+std::string whole_percent(double share) {
   return std::to_string(static_cast<int>(std::round(100.0 * share))) + " %";
 }
 
@@ -50,7 +50,8 @@ std::string confused_pair(const Learned& learned) {
                      " examples";
   if (pair.aspects.empty()) return line;
   line += "; guessing tells 50 % apart";
-  for (const Aspect& aspect : pair.aspects) line += ", " + aspect.name + " alone " + percent(aspect.told_apart);
+  for (const Aspect& aspect : pair.aspects)
+    line += ", " + aspect.name + " alone " + whole_percent(aspect.discrimination);
   return line;
 }
 
@@ -58,16 +59,16 @@ std::string confused_pair(const Learned& learned) {
 
 std::vector<std::string> advice(const Learned& learned) {
   std::vector<std::string> lines;
-  const auto say = [&](std::string line) {
+  const auto add_line = [&](std::string line) {
     if (!line.empty()) lines.push_back(std::move(line));
   };
-  for (std::size_t label = 0; label < learned.classes.names.size(); ++label) say(need_of(learned, label));
-  say(confused_pair(learned));
+  for (std::size_t label = 0; label < learned.classes.names.size(); ++label) add_line(need_of(learned, label));
+  add_line(confused_pair(learned));
   if (learned.report.groups == 1)
-    say("all examples are of one subject or session: what another one gives is not known");
+    add_line("all examples are of one subject or session: what another one gives is not known");
   if (learned.report.calibration_error > kPoorCalibration) {
-    say("the probabilities are not to be trusted: they are off by " +
-        std::to_string(static_cast<int>(100.0 * learned.report.calibration_error)) + " % on average");
+    add_line("the probabilities are not to be trusted: they are off by " +
+             std::to_string(static_cast<int>(100.0 * learned.report.calibration_error)) + " % on average");
   }
   return lines;
 }

@@ -42,12 +42,12 @@ sources::GuideWords words_of(const calibration::GuideState& state, Nanos hold_ti
 
 CalibrationServices::CalibrationServices(ServiceArrays arrays, UseModel use_model,
                                          std::shared_ptr<sources::GuideVoice> guide_voice, MayBegin may_begin,
-                                         Tell tell)
+                                         Notify notify)
     : arrays_(std::move(arrays)),
       use_model_(std::move(use_model)),
       guide_voice_(std::move(guide_voice)),
       may_begin_(std::move(may_begin)),
-      tell_(std::move(tell)) {}
+      notify_(std::move(notify)) {}
 
 std::vector<stream::Service> CalibrationServices::services() {
   return {{"/calibration/start", [this](std::string_view request) { return start(request); }},
@@ -59,7 +59,7 @@ std::vector<stream::Service> CalibrationServices::services() {
 }
 
 void CalibrationServices::tick(std::int64_t tick) {
-  if (tell_ && tick % 3 == 0) tell_(*this);
+  if (notify_ && tick % 3 == 0) notify_(*this);
 }
 
 std::shared_ptr<GuidedCalibration> CalibrationServices::guide() const {
@@ -77,7 +77,7 @@ void CalibrationServices::feed(std::size_t array, const RawFrame& raw) {
 
 void CalibrationServices::say_what_to_do() const {
   const std::lock_guard lock(mutex_);
-  guide_voice_->say(words_of(last_.guide ? last_.guide->state() : calibration::GuideState{}, last_.hold_time));
+  guide_voice_->speak(words_of(last_.guide ? last_.guide->state() : calibration::GuideState{}, last_.hold_time));
 }
 
 Result<std::string> CalibrationServices::take(Step step) {
@@ -167,8 +167,8 @@ Result<std::unique_ptr<Part>> make_calibration(Host& host) {
   };
   const Result<Topic> topic = host.topics.add({.stream = "/calibration"}, messages::calibration_state_type());
   if (!topic) return topic.error();
-  const auto tell = [&host, topic = *topic,
-                     message = std::vector<std::uint8_t>()](const CalibrationServices& calibration) mutable {
+  const auto notify = [&host, topic = *topic,
+                       message = std::vector<std::uint8_t>()](const CalibrationServices& calibration) mutable {
     if (!topic.is_wanted()) return;
     std::optional<CalibrationProgress> progress = calibration.progress();
     if (!progress) return;
@@ -178,7 +178,7 @@ Result<std::unique_ptr<Part>> make_calibration(Host& host) {
     topic.publish(state.time, message);
   };
   return std::unique_ptr<Part>(
-      std::make_unique<CalibrationServices>(service_arrays(host.suit), use_model, host.suit.guide, may_begin, tell));
+      std::make_unique<CalibrationServices>(service_arrays(host.suit), use_model, host.suit.guide, may_begin, notify));
 }
 
 }  // namespace dermis::serve

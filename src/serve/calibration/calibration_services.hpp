@@ -37,11 +37,11 @@ class CalibrationServices final : public Part {
   /// Whether a calibration may begin now; the error says why not.
   using MayBegin = std::function<Status()>;
   /// Is called ten times a second; asks progress() where somebody wants to know.
-  using Tell = std::function<void(const CalibrationServices&)>;
+  using Notify = std::function<void(const CalibrationServices&)>;
 
   /// `guide_voice`: gets the requests of the calibration, for simulated hands.
   CalibrationServices(ServiceArrays arrays, UseModel use_model, std::shared_ptr<sources::GuideVoice> guide_voice,
-                      MayBegin may_begin = {}, Tell tell = {});
+                      MayBegin may_begin = {}, Notify notify = {});
 
   /// "/calibration/start", ... Errors: a request that is wrong or comes at the wrong time.
   [[nodiscard]] std::vector<stream::Service> services() override;
@@ -78,7 +78,7 @@ class CalibrationServices final : public Part {
   const UseModel use_model_;
   const std::shared_ptr<sources::GuideVoice> guide_voice_;
   const MayBegin may_begin_;
-  const Tell tell_;
+  const Notify notify_;
   std::future<void> ending_;  ///< A calibration whose last fit is waited for.
   std::atomic<std::size_t> active_array_{kNone};
   mutable std::mutex mutex_;  ///< Guards the members below; never held for long, because frames wait for it.

@@ -17,8 +17,8 @@ constexpr std::chrono::minutes kUndoFor{1};
 
 }  // namespace
 
-Tares::Tares(const ServedSuit& suit, live::LiveSuit& live, Tell tell)
-    : suit_(suit), live_(live), tell_(std::move(tell)), zeros_(suit.arrays.size()) {}
+Tares::Tares(const ServedSuit& suit, live::LiveSuit& live, Notify notify)
+    : suit_(suit), live_(live), notify_(std::move(notify)), zeros_(suit.arrays.size()) {}
 
 std::vector<LiveParameter> Tares::parameters() {
   const auto locked = [this](auto value) {
@@ -150,7 +150,7 @@ void Tares::log(const std::string& what) {
 
 void Tares::tick(std::int64_t /*tick*/) {
   const std::vector<std::string> news = follow();
-  if (tell_ && !news.empty()) tell_(news);
+  if (notify_ && !news.empty()) notify_(news);
 }
 
 void Tares::model_changed(std::size_t array) {
@@ -161,7 +161,7 @@ void Tares::model_changed(std::size_t array) {
 Result<std::unique_ptr<Part>> make_tares(Host& host) {
   return std::unique_ptr<Part>(
       std::make_unique<Tares>(host.suit, host.live, [&host](const std::vector<std::string>& lines) {
-        for (const std::string& line : lines) host.tell(line);
+        for (const std::string& line : lines) host.notify(line);
         host.server.parameters_changed();
       }));
 }

@@ -25,10 +25,10 @@ class Tares final : public Part {
   static constexpr std::size_t kMostLines = 20;
 
   /// Gets the lines of follow(), where there are some.
-  using Tell = std::function<void(const std::vector<std::string>& lines)>;
+  using Notify = std::function<void(const std::vector<std::string>& lines)>;
 
   /// `suit` and `live` must outlive it.
-  Tares(const ServedSuit& suit, live::LiveSuit& live, Tell tell = {});
+  Tares(const ServedSuit& suit, live::LiveSuit& live, Notify notify = {});
 
   /// "/tare", "/tare/force", ... and "/chest/tare" of each array.
   [[nodiscard]] std::vector<LiveParameter> parameters() override;
@@ -64,7 +64,7 @@ class Tares final : public Part {
 
   const ServedSuit& suit_;
   live::LiveSuit& live_;
-  const Tell tell_;
+  const Notify notify_;
   mutable std::mutex mutex_;       // of the following
   std::vector<Zero> zeros_;        // of each array
   std::deque<std::string> log_;    // the newest first

@@ -16,7 +16,7 @@ using threats::ThreatLimit;
 using threats::ThreatPhase;
 using threats::ThreatState;
 
-constexpr Nanos kTellPeriod = std::chrono::milliseconds(500);
+constexpr Nanos kRepeatPeriod = std::chrono::milliseconds(500);
 constexpr Nanos kLogPeriod = std::chrono::seconds(1);
 
 /// `last` may be later than `now` where a recording was sought.
@@ -79,12 +79,12 @@ void ThreatPublisher::hear(const live::ArrayResult& result) {
   const Nanos time = result.force.time;
   if (watched.is_reset_wanted.exchange(false)) {
     watched.monitor.reset();
-    tell(watched, time, false);
+    publish(watched, time, false);
   }
   watched.monitor.process(result.force, result.report);
-  const bool all = is_due(watched.told, time, kTellPeriod);
-  if (all) watched.told = time;
-  tell(watched, time, all);
+  const bool all = is_due(watched.repeated, time, kRepeatPeriod);
+  if (all) watched.repeated = time;
+  publish(watched, time, all);
 }
 
 void ThreatPublisher::diagnose(std::vector<messages::Diagnosis>& diagnoses) const {
@@ -105,7 +105,7 @@ void ThreatPublisher::keep_standing(Watched& watched) {
 }
 
 /// Publishes which limits began or ended, and with `all` how the other limits stand.
-void ThreatPublisher::tell(Watched& watched, Nanos time, bool all) {
+void ThreatPublisher::publish(Watched& watched, Nanos time, bool all) {
   bool is_news = all;
   for (const ThreatState& state : watched.monitor.states()) {
     if (!state.changed && !all) continue;

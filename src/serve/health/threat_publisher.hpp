@@ -47,8 +47,8 @@ class ThreatPublisher final : public Part {
     threats::ThreatMonitor monitor;
     const std::string& array;
     std::atomic<bool> is_reset_wanted = false;
-    std::optional<Nanos> told{};    ///< When all limits were.
-    std::optional<Nanos> logged{};  ///< When the last line was.
+    std::optional<Nanos> repeated{};  ///< When all limits were.
+    std::optional<Nanos> logged{};    ///< When the last line was.
     std::vector<std::uint8_t> message{};
     mutable std::mutex standing_mutex{};
     std::vector<threats::ThreatState> standing{};  ///< The threats that are there.
@@ -57,7 +57,7 @@ class ThreatPublisher final : public Part {
         : monitor(std::move(its_monitor)), array(its_array) {}
   };
 
-  void tell(Watched& watched, Nanos time, bool all);
+  void publish(Watched& watched, Nanos time, bool all);
   static void keep_standing(Watched& watched);
   void log(Watched& watched, const threats::ThreatState& state, Nanos time) const;
   void encode(Watched& watched, const threats::ThreatState& state, Nanos time) const;

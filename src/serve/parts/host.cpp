@@ -48,7 +48,7 @@ void Host::tell_error(const std::string& line) const {
   server.status(kErrorLevel, line);
 }
 
-void Host::tell(const std::string& line) const {
+void Host::notify(const std::string& line) const {
   log(line);
   server.status(kInfoLevel, line);
 }

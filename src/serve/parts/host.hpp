@@ -46,7 +46,7 @@ struct Host {
   void log(const std::string& line) const;
   /// The log and all clients.
   void tell_error(const std::string& line) const;
-  void tell(const std::string& line) const;
+  void notify(const std::string& line) const;
 };
 
 /// Makes a part; nothing where the suit has no use for it. Errors end the session.

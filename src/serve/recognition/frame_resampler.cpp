@@ -14,7 +14,7 @@ namespace {
 constexpr Nanos kLongestGap = std::chrono::milliseconds(500);
 
 /// A taxel without a value has no load, so that it spoils no frame but its own.
-float load_of(float newtons) noexcept {
+float finite_newtons(float newtons) noexcept {
   return std::isfinite(newtons) ? newtons : 0.0F;
 }
 
@@ -36,7 +36,7 @@ std::span<const float> FrameResampler::interpolated(const ForceFrame& force) noe
   const auto span = static_cast<double>((force.time - *last_).count());
   const auto weight = static_cast<float>(span > 0.0 ? static_cast<double>((due_ - *last_).count()) / span : 1.0);
   for (std::size_t k = 0; k < between_.size(); ++k) {
-    between_[k] = last_newtons_[k] + weight * (load_of(force.newtons[k]) - last_newtons_[k]);
+    between_[k] = last_newtons_[k] + weight * (finite_newtons(force.newtons[k]) - last_newtons_[k]);
   }
   return between_;
 }
@@ -44,7 +44,7 @@ std::span<const float> FrameResampler::interpolated(const ForceFrame& force) noe
 void FrameResampler::keep(const ForceFrame& force) noexcept {
   assert(force.newtons.size() == last_newtons_.size());
   last_ = force.time;
-  std::transform(force.newtons.begin(), force.newtons.end(), last_newtons_.begin(), load_of);
+  std::transform(force.newtons.begin(), force.newtons.end(), last_newtons_.begin(), finite_newtons);
 }
 
 }  // namespace dermis::serve

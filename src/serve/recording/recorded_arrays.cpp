@@ -20,6 +20,7 @@ std::vector<recordings::RecordedArray> recorded_arrays(const ServedSuit& suit, c
     one.shape = {description.rows, description.cols};
     one.array_toml = files::array_to_toml(description);
     one.pitch = {description.row_pitch_m, description.col_pitch_m};
+    one.simulation = array.simulation;
     const Result<std::string> hash = files::content_hash(array.model_path);
     if (hash && !models.is_new(k)) one.model_hash = *hash;
   }

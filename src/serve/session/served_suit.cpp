@@ -234,6 +234,7 @@ Status open_playback(const std::string& from, ServedSuit& suit) {
     }
     Status order = sources::check_recorded_order(from, found->array_toml, array.model->array);
     if (!order) return order;
+    array.simulation = found->simulation;
     array.source = (*playback)->source(static_cast<std::size_t>(found - recorded.begin()));
   }
   suit.playback = *std::move(playback);
@@ -256,6 +257,7 @@ Status open_together(const SuitDescription& described, const sources::SourceOpti
       if (all) all = source.error();
       continue;
     }
+    suit.arrays[k].simulation = sources::notes_of_source(**source, described.arrays[k].from).simulation;
     suit.arrays[k].source = *std::move(source);
   }
   return all;
@@ -274,11 +276,11 @@ Status open_sources(const SuitPlace& place, const SuitDescription& described, co
 Status check_served(const SourceName& from) {
   const auto refuse = [&](const std::string& why) { return bad_input(fmt::format("'{}': {}", from.text, why)); };
   if (from.has_times_of_its_own()) {
-    return refuse("has times of its own; make a recording of it first ('dermis record')");
+    return refuse("has times of its own; make a recording of it first");
   }
   if (from.kind == SourceKind::file) {
     return refuse(fmt::format(
-        "only devices and recordings are served; make a recording of it first (dermis convert {} it.mcap)", from.text));
+        "only devices and recordings are served; make a recording of it first: convert {} to .mcap", from.text));
   }
   if (from.needs_rate()) {
     return refuse(fmt::format("say how many frames a second it sends, such as {}{}rate=100", from.text,

@@ -69,7 +69,7 @@ std::unique_ptr<SuitRecorder> Session::Implementation::make_recorder(const std::
     server_->parameters_changed();
   };
   const auto written = [this](std::uint64_t frames) {
-    host_->tell(fmt::format("recorded {} frames: {}", frames, absolute_path(recorder_->path())));
+    host_->notify(fmt::format("recorded {} frames: {}", frames, absolute_path(recorder_->path())));
   };
   return std::make_unique<SuitRecorder>(
       wanted, [this] { return recorded_arrays(suit_, models_); }, failed, written);

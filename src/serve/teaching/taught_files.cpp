@@ -66,12 +66,12 @@ Status write_labels(const std::string& path, const LabelledFrames& data) {
   return file->commit();
 }
 
-Result<recognition::LoadRecording> read_frames(const std::string& path, const recognition::Layout& layout) {
+Result<recognition::ForceRecording> read_frames(const std::string& path, const recognition::Layout& layout) {
   const SensedArray& array = layout.arrays.front();
   auto reader = files::FramesCsvReader::open(path, FrameShape{array.rows, array.cols});
   if (!reader) return reader.error();
   const std::size_t most = std::min(kMostTaughtFrames, kMostReadings / layout.readings);
-  recognition::LoadRecording recording;
+  recognition::ForceRecording recording;
   RawFrame frame;
   for (std::size_t number = 0;; ++number) {
     const Result<bool> more = (*reader)->next(frame);
@@ -91,9 +91,9 @@ Status write_taught(const std::string& path, const ArrayDescription& array, cons
 }
 
 Result<LabelledFrames> read_taught(const std::string& path, const recognition::Layout& layout) {
-  Result<recognition::LoadRecording> recording = read_frames(path + ".frames.csv", layout);
+  Result<recognition::ForceRecording> recording = read_frames(path + ".frames.csv", layout);
   if (!recording) return recording.error();
-  std::vector<recognition::LoadRecording> recordings;
+  std::vector<recognition::ForceRecording> recordings;
   recordings.push_back(*std::move(recording));
   Result<LabelledFrames> data =
       recognition::label_recordings(layout, std::move(recordings), path + kLabelsSuffix, "class");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { timeOfDay } from "../format";
-import { TaxelStatus, type GridFrame } from "../messages/grids";
+import { type GridFrame, TaxelStatus } from "../messages/grids";
 import { colorOf } from "../render/color_map";
 
 /** A frame to be drawn, with what stands beside it. */

@@ -10,13 +10,13 @@
 #include "dermis/core/result.hpp"
 #include "dermis/recognition/segment.hpp"
 #include "dermis/sources/open_source.hpp"
-#include "recognising/array_loads.hpp"
+#include "recognising/array_forces.hpp"
 #include "recognising/further_readings.hpp"
 
 namespace dermis::recognising {
 
 /// The input that classes are learned from and recognised in; both must see the same loads in the same frames.
-struct LoadInput {
+struct ForceInput {
   std::string from;                 ///< As for sources::open_source(), or a recording of several arrays.
   std::string model{};              ///< As for pipeline::read_model(); of several arrays suit.toml, which names that
                                     ///< of each. Empty: the readings are the loads.
@@ -33,12 +33,12 @@ struct LoadInput {
 [[nodiscard]] Status check_loads(const recognition::Layout& examples, const std::string& classes,
                                  const std::string& model);
 
-/// Frames of a source as loads (ArrayLoads). Several arrays stand side by side in each frame of the first: their last
+/// Frames of a source as forces (ArrayForces). Several arrays stand side by side in each frame of the first: their last
 /// frames until its time (HeldLoads). Not thread-safe.
-class LoadSource {
+class ForceSource {
  public:
   /// Fails on further readings beside a source that is live.
-  [[nodiscard]] static Result<LoadSource> open(const LoadInput& input);
+  [[nodiscard]] static Result<ForceSource> open(const ForceInput& input);
 
   /// Takes the next frame; false at the end of the source.
   [[nodiscard]] Result<bool> next();
@@ -60,10 +60,10 @@ class LoadSource {
   [[nodiscard]] std::vector<std::string> describe_troubles() const;
 
  private:
-  explicit LoadSource(ArrayLoads first);
+  explicit ForceSource(ArrayForces first);
 
-  ArrayLoads first_;
-  std::vector<HeldLoads> others_;
+  ArrayForces first_;
+  std::vector<HeldForces> others_;
   std::optional<FurtherReadings> further_;
   sources::SourceName from_;
   std::vector<float> loads_;

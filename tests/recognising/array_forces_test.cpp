@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "recognising/array_loads.hpp"
+#include "recognising/array_forces.hpp"
 
 #include <gtest/gtest.h>
 
@@ -22,24 +22,24 @@ using support::pressed;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 /// Loads of the pressed taxel, and whether the frame was one of the tare.
-std::vector<std::pair<float, bool>> loads_of(const ArrayLoadInput& input) {
+std::vector<std::pair<float, bool>> loads_of(const ArrayForceInput& input) {
   std::vector<std::pair<float, bool>> loads;
-  Result<ArrayLoads> source = ArrayLoads::open(input);
+  Result<ArrayForces> source = ArrayForces::open(input);
   EXPECT_TRUE(source) << error_of(source);
   while (source && source->next().value()) loads.emplace_back(source->loads()[kPressed], source->is_tare());
   return loads;
 }
 
-TEST(ArrayLoads, gives_readings_without_a_model_and_0_where_there_is_no_load) {
+TEST(ArrayForces, gives_readings_without_a_model_and_0_where_there_is_no_load) {
   const MatFiles mat;
   const auto loads = loads_of({.from = mat.write("frames.csv", pressed({3.0F, -2.0F, kNan}))});
   EXPECT_EQ(loads, (std::vector<std::pair<float, bool>>{{3.0F, false}, {0.0F, false}, {0.0F, false}}));
 }
 
-TEST(ArrayLoads, gives_newtons_by_a_model_and_tells_its_array) {
+TEST(ArrayForces, gives_newtons_by_a_model_and_tells_its_array) {
   const MatFiles mat;
-  Result<ArrayLoads> source =
-      ArrayLoads::open({.from = mat.write("frames.csv", pressed({3.0F})), .model = mat.model()});
+  Result<ArrayForces> source =
+      ArrayForces::open({.from = mat.write("frames.csv", pressed({3.0F})), .model = mat.model()});
   ASSERT_TRUE(source && source->next().value());
   EXPECT_NEAR(source->loads()[kPressed], 3.0F, 1e-4F);
   EXPECT_EQ(source->time(), std::chrono::seconds(1));
@@ -47,21 +47,21 @@ TEST(ArrayLoads, gives_newtons_by_a_model_and_tells_its_array) {
   EXPECT_FALSE(source->is_live());
 }
 
-TEST(ArrayLoads, tell_at_the_end_that_most_frames_had_no_force) {
+TEST(ArrayForces, tell_at_the_end_that_most_frames_had_no_force) {
   const MatFiles mat;
   std::vector<RawFrame> frames = pressed({1.0F, 1.0F, 1.0F});
   for (const std::size_t lost : {0U, 2U}) frames[lost].counts.assign(kShape.taxel_count(), NAN);
   std::vector<std::string> losses;
-  ArrayLoadInput input{.from = mat.write("frames.csv", frames), .model = mat.model()};
+  ArrayForceInput input{.from = mat.write("frames.csv", frames), .model = mat.model()};
   input.source.loss = [&](const std::string& line) { losses.push_back(line); };
-  Result<ArrayLoads> source = ArrayLoads::open(input);
+  Result<ArrayForces> source = ArrayForces::open(input);
   ASSERT_TRUE(source) << source.error().message;
   while (source->next().value()) EXPECT_TRUE(losses.empty());
   ASSERT_EQ(losses.size(), 1U);
   EXPECT_TRUE(losses[0].starts_with(input.from + ": 2 of 3 frames have no force: ")) << losses[0];
 }
 
-TEST(ArrayLoads, takes_the_mean_of_the_first_second_for_unloaded) {
+TEST(ArrayForces, takes_the_mean_of_the_first_second_for_unloaded) {
   const MatFiles mat;
   std::vector<float> readings(100, 40.0F);
   for (std::size_t i = 0; i < readings.size(); i += 2) readings[i] = 42.0F;
@@ -74,12 +74,12 @@ TEST(ArrayLoads, takes_the_mean_of_the_first_second_for_unloaded) {
   EXPECT_EQ(loads[102], (std::pair(0.0F, false)));
 }
 
-TEST(ArrayLoads, tares_the_forces_of_a_model) {
+TEST(ArrayForces, tares_the_forces_of_a_model) {
   const MatFiles mat;
   std::vector<float> readings(110, 2.0F);
   readings.insert(readings.end(), 5, 7.0F);
-  ArrayLoadInput input = {.from = mat.write("frames.csv", pressed(readings)), .model = mat.model(), .tare = true};
-  Result<ArrayLoads> refused = ArrayLoads::open(input);
+  ArrayForceInput input = {.from = mat.write("frames.csv", pressed(readings)), .model = mat.model(), .tare = true};
+  Result<ArrayForces> refused = ArrayForces::open(input);
   ASSERT_TRUE(refused);
   Result<bool> more = true;
   while (more && *more) more = refused->next();
@@ -111,21 +111,21 @@ TEST(UnloadedReadings, takes_ten_frames_of_a_slow_source_but_no_more_than_ten_se
 }
 
 /// Frames at 1.00, 1.01 and 1.02 s.
-HeldLoads held(const MatFiles& mat, bool tare = false) {
-  Result<HeldLoads> array =
-      HeldLoads::open({.from = mat.write("frames.csv", pressed({1.0F, 2.0F, 3.0F})), .tare = tare, .source = {}});
+HeldForces held(const MatFiles& mat, bool tare = false) {
+  Result<HeldForces> array =
+      HeldForces::open({.from = mat.write("frames.csv", pressed({1.0F, 2.0F, 3.0F})), .tare = tare, .source = {}});
   EXPECT_TRUE(array) << error_of(array);
   return *std::move(array);
 }
 
-float load_at(HeldLoads& array, int milliseconds) {
+float load_at(HeldForces& array, int milliseconds) {
   EXPECT_TRUE(array.move_to(std::chrono::milliseconds(milliseconds)));
   return array.loads()[kPressed];
 }
 
-TEST(HeldLoads, are_those_of_the_last_frame_that_is_not_later) {
+TEST(HeldForces, are_those_of_the_last_frame_that_is_not_later) {
   const MatFiles mat;
-  HeldLoads array = held(mat);
+  HeldForces array = held(mat);
   EXPECT_EQ(array.array().rows, kShape.rows);
   EXPECT_EQ(load_at(array, 995), 0.0F);
   EXPECT_EQ(load_at(array, 1000), 1.0F);
@@ -135,9 +135,9 @@ TEST(HeldLoads, are_those_of_the_last_frame_that_is_not_later) {
   EXPECT_EQ(array.silent(), 0U);
 }
 
-TEST(HeldLoads, are_none_after_half_a_second_without_a_frame) {
+TEST(HeldForces, are_none_after_half_a_second_without_a_frame) {
   const MatFiles mat;
-  HeldLoads array = held(mat);
+  HeldForces array = held(mat);
   EXPECT_EQ(load_at(array, 0), 0.0F);
   EXPECT_EQ(load_at(array, 500), 0.0F);
   EXPECT_EQ(array.silent(), 0U);
@@ -148,19 +148,19 @@ TEST(HeldLoads, are_none_after_half_a_second_without_a_frame) {
   EXPECT_EQ(array.silent(), 2U);
 }
 
-TEST(HeldLoads, belong_to_the_tare_before_their_first_frame) {
+TEST(HeldForces, belong_to_the_tare_before_their_first_frame) {
   const MatFiles mat;
   EXPECT_FALSE(held(mat).is_tare());
-  HeldLoads array = held(mat, true);
+  HeldForces array = held(mat, true);
   EXPECT_TRUE(array.is_tare());
   EXPECT_EQ(load_at(array, 1020), 0.0F);
   EXPECT_TRUE(array.is_tare());
 }
 
-TEST(HeldLoads, need_a_frame) {
+TEST(HeldForces, need_a_frame) {
   const MatFiles mat;
   const std::string empty = mat.write_two("two.mcap", pressed({1.0F}), {}) + "#right";
-  EXPECT_EQ(error_of(HeldLoads::open({.from = empty, .source = {}})), empty + ": has no frame");
+  EXPECT_EQ(error_of(HeldForces::open({.from = empty, .source = {}})), empty + ": has no frame");
 }
 
 }  // namespace

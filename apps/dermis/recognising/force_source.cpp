@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "recognising/load_source.hpp"
+#include "recognising/force_source.hpp"
 
 #include <fmt/core.h>
 
@@ -16,7 +16,7 @@ namespace {
 using recognition::Layout;
 
 /// The arrays of a recording that holds several, by the models of a suit.
-Result<std::vector<ArrayLoadInput>> arrays_of_suit(const LoadInput& input, const std::string& example) {
+Result<std::vector<ArrayForceInput>> arrays_of_suit(const ForceInput& input, const std::string& example) {
   const Result<SuitDescription> suit = files::read_suit(input.model);
   if (!suit) {
     return bad_field("model", fmt::format("{} holds several arrays; name one, as '{}#{}', or give the suit.toml: {}",
@@ -26,7 +26,7 @@ Result<std::vector<ArrayLoadInput>> arrays_of_suit(const LoadInput& input, const
   if (names.empty()) {
     for (const SuitArray& array : suit->arrays) names.push_back(array.name);
   }
-  std::vector<ArrayLoadInput> arrays;
+  std::vector<ArrayForceInput> arrays;
   for (const std::string& name : names) {
     const auto found = std::find_if(suit->arrays.begin(), suit->arrays.end(),
                                     [&](const SuitArray& array) { return array.name == name; });
@@ -37,8 +37,8 @@ Result<std::vector<ArrayLoadInput>> arrays_of_suit(const LoadInput& input, const
 }
 
 /// The sources to be opened: the one that `from` names, or each array of a recording with several.
-Result<std::vector<ArrayLoadInput>> arrays_of(const LoadInput& input, const sources::SourceName& from) {
-  std::vector<ArrayLoadInput> arrays = {{.from = input.from, .model = input.model, .source = input.source}};
+Result<std::vector<ArrayForceInput>> arrays_of(const ForceInput& input, const sources::SourceName& from) {
+  std::vector<ArrayForceInput> arrays = {{.from = input.from, .model = input.model, .source = input.source}};
   arrays.front().tare = input.tare;
   arrays.front().tare_force = input.tare_force;
   if (input.arrays.size() == 1) return arrays;
@@ -51,11 +51,11 @@ Result<std::vector<ArrayLoadInput>> arrays_of(const LoadInput& input, const sour
       arrays.push_back({.from = input.from + "#" + name, .source = {}, .name = name});
     }
   } else {
-    Result<std::vector<ArrayLoadInput>> of_suit = arrays_of_suit(input, held->front());
+    Result<std::vector<ArrayForceInput>> of_suit = arrays_of_suit(input, held->front());
     if (!of_suit) return of_suit.error();
     arrays = *std::move(of_suit);
   }
-  for (ArrayLoadInput& array : arrays) {
+  for (ArrayForceInput& array : arrays) {
     array.tare = input.tare;
     array.tare_force = input.tare_force;
     array.source = input.source;
@@ -77,35 +77,35 @@ Status check_loads(const Layout& examples, const std::string& classes, const std
   return Done{};
 }
 
-LoadSource::LoadSource(ArrayLoads first) : first_(std::move(first)) {}
+ForceSource::ForceSource(ArrayForces first) : first_(std::move(first)) {}
 
-Result<LoadSource> LoadSource::open(const LoadInput& input) {
+Result<ForceSource> ForceSource::open(const ForceInput& input) {
   const Result<sources::SourceName> from = sources::SourceName::parse(input.from);
   if (!from) return from.error();
-  const Result<std::vector<ArrayLoadInput>> arrays = arrays_of(input, *from);
+  const Result<std::vector<ArrayForceInput>> arrays = arrays_of(input, *from);
   if (!arrays) return arrays.error();
-  Result<ArrayLoads> first = ArrayLoads::open(arrays->front());
+  Result<ArrayForces> first = ArrayForces::open(arrays->front());
   if (!first) return first.error();
-  LoadSource source(*std::move(first));
+  ForceSource source(*std::move(first));
   source.from_ = *from;
   for (std::size_t i = 1; i < arrays->size(); ++i) {
-    Result<HeldLoads> other = HeldLoads::open((*arrays)[i]);
+    Result<HeldForces> other = HeldForces::open((*arrays)[i]);
     if (!other) return other.error();
     source.others_.push_back(*std::move(other));
   }
   if (input.extra.empty()) return source;
-  if (source.is_live()) return bad_field("extra", "'" + input.from + "' is a device; 'dermis record' it first");
+  if (source.is_live()) return bad_field("extra", "'" + input.from + "' is a device; record it first");
   Result<FurtherReadings> further = FurtherReadings::read(input.extra, from->short_name());
   if (!further) return further.error();
   source.further_ = *std::move(further);
   return source;
 }
 
-Result<bool> LoadSource::next() {
+Result<bool> ForceSource::next() {
   Result<bool> more = first_.next();
   if (!more || !*more) return more;
   loads_ = first_.loads();
-  for (HeldLoads& other : others_) {
+  for (HeldForces& other : others_) {
     if (Status moved = other.move_to(first_.time()); !moved) return moved.error();
     loads_.insert(loads_.end(), other.loads().begin(), other.loads().end());
   }
@@ -114,24 +114,24 @@ Result<bool> LoadSource::next() {
   return true;
 }
 
-bool LoadSource::is_tare() const noexcept {
+bool ForceSource::is_tare() const noexcept {
   return first_.is_tare() ||
-         std::any_of(others_.begin(), others_.end(), [](const HeldLoads& other) { return other.is_tare(); });
+         std::any_of(others_.begin(), others_.end(), [](const HeldForces& other) { return other.is_tare(); });
 }
 
-std::span<const float> LoadSource::extras() const noexcept {
+std::span<const float> ForceSource::extras() const noexcept {
   return further_ ? std::span<const float>(further_->values()) : std::span<const float>();
 }
 
-std::vector<std::string> LoadSource::extra_names() const {
+std::vector<std::string> ForceSource::extra_names() const {
   return further_ ? further_->names() : std::vector<std::string>();
 }
 
-std::optional<Layout> LoadSource::layout() const {
+std::optional<Layout> ForceSource::layout() const {
   const std::optional<recognition::SensedArray> first = first_.array();
   if (!first) return std::nullopt;
   Layout layout{.arrays = {*first}, .readings = first->taxel_count()};
-  for (const HeldLoads& other : others_) {
+  for (const HeldForces& other : others_) {
     recognition::SensedArray array = other.array();
     array.first_column = layout.readings;
     layout.readings += array.taxel_count();
@@ -142,9 +142,9 @@ std::optional<Layout> LoadSource::layout() const {
   return layout;
 }
 
-std::vector<std::string> LoadSource::describe_troubles() const {
+std::vector<std::string> ForceSource::describe_troubles() const {
   std::vector<std::string> lines;
-  for (const HeldLoads& other : others_) {
+  for (const HeldForces& other : others_) {
     if (other.silent() == 0) continue;
     lines.push_back(fmt::format("{}: {} frames have none of '{}' in the half second before; it has no load there",
                                 from_.text, other.silent(), other.array().name));

@@ -14,7 +14,7 @@
 namespace dermis::calibration {
 
 /// The history of a sheet's material: the conductances of the frames of a recording, labelled or not.
-struct LoadHistory {
+struct SiemensHistory {
   std::size_t taxels = 0;
   std::vector<std::size_t> frame;                          ///< Numbers in the recording, rising [frames].
   std::vector<Nanos> time;                                 ///< [frames]
@@ -28,6 +28,6 @@ struct LoadHistory {
 
 /// All frames of the recording that `database` comes from; of very many those of its samples and, evenly, some of the
 /// others. Errors: those of Compensator::create().
-[[nodiscard]] Result<LoadHistory> read_history(const SampleDatabase& database, std::span<const RawFrame> frames);
+[[nodiscard]] Result<SiemensHistory> read_history(const SampleDatabase& database, std::span<const RawFrame> frames);
 
 }  // namespace dermis::calibration

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "calibration/memory/load_history.hpp"
+#include "calibration/memory/siemens_history.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -30,10 +30,10 @@ std::vector<std::size_t> chosen_frames(const SampleDatabase& database, std::size
 
 }  // namespace
 
-Result<LoadHistory> read_history(const SampleDatabase& database, std::span<const RawFrame> frames) {
+Result<SiemensHistory> read_history(const SampleDatabase& database, std::span<const RawFrame> frames) {
   const Result<compensation::Compensator> checked = compensation::Compensator::create(database.array);
   if (!checked) return checked.error();
-  LoadHistory history;
+  SiemensHistory history;
   history.taxels = database.array.taxel_count();
   history.frame = chosen_frames(database, frames.size());
   for (const std::size_t frame : history.frame) {

@@ -20,7 +20,7 @@
 namespace dermis::recognising {
 
 /// Frames of one array, and how they become loads.
-struct ArrayLoadInput {
+struct ArrayForceInput {
   std::string from;                 ///< As for sources::open_source().
   std::string model{};              ///< As for pipeline::read_model(); empty: the readings are the loads.
   bool tare = false;                ///< The first second is unloaded.
@@ -46,9 +46,9 @@ class UnloadedReadings {
 
 /// Frames of an array as loads: newtons of a model, or readings, tared if asked. Where there is no load, 0. Not
 /// thread-safe.
-class ArrayLoads {
+class ArrayForces {
  public:
-  [[nodiscard]] static Result<ArrayLoads> open(const ArrayLoadInput& input);
+  [[nodiscard]] static Result<ArrayForces> open(const ArrayForceInput& input);
 
   /// Takes the next frame; false at the end of the source, after telling its options' `loss` where most frames had no
   /// force. Fails where a load stands on the array that is to be tared.
@@ -66,7 +66,7 @@ class ArrayLoads {
   [[nodiscard]] bool is_live() const { return frames_->is_live(); }
 
  private:
-  ArrayLoads() = default;
+  ArrayForces() = default;
   void process_forces();
   void process_readings();
   void tell_loss();
@@ -86,10 +86,10 @@ class ArrayLoads {
 };
 
 /// The loads of an array at the times of another one: its last frame until then. Not thread-safe.
-class HeldLoads {
+class HeldForces {
  public:
   /// Reads its first frame; fails where there is none.
-  [[nodiscard]] static Result<HeldLoads> open(const ArrayLoadInput& input);
+  [[nodiscard]] static Result<HeldForces> open(const ArrayForceInput& input);
 
   /// Goes on to a time, which may not fall.
   [[nodiscard]] Status move_to(Nanos time);
@@ -103,9 +103,9 @@ class HeldLoads {
   [[nodiscard]] recognition::SensedArray array() const { return array_.array().value_or(recognition::SensedArray{}); }
 
  private:
-  HeldLoads(ArrayLoads array, bool is_tare);
+  HeldForces(ArrayForces array, bool is_tare);
 
-  ArrayLoads array_;      ///< One frame ahead,
+  ArrayForces array_;     ///< One frame ahead,
   bool has_next_ = true;  ///< if there is one.
   bool is_tare_;          ///< State of the held frame, as the members below.
   std::optional<Nanos> last_;

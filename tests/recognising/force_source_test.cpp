@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "recognising/load_source.hpp"
+#include "recognising/force_source.hpp"
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ constexpr std::size_t kTaxels = kShape.rows * kShape.cols;
 using std::chrono::milliseconds;
 
 /// Loads of the pressed taxels of two arrays in each frame.
-std::vector<std::pair<float, float>> pairs_of(LoadSource& source) {
+std::vector<std::pair<float, float>> pairs_of(ForceSource& source) {
   std::vector<std::pair<float, float>> pairs;
   while (source.next().value()) {
     EXPECT_EQ(source.loads().size(), 2 * kTaxels);
@@ -49,10 +49,10 @@ TEST(CheckLoads, wants_forces_for_classes_of_forces_and_readings_for_those_of_re
   EXPECT_NE(with.error().message.find("leave it out"), std::string::npos);
 }
 
-TEST(LoadSource, gives_the_frames_of_one_array) {
+TEST(ForceSource, gives_the_frames_of_one_array) {
   const MatFiles mat;
-  Result<LoadSource> source =
-      LoadSource::open({.from = mat.write("frames.csv", pressed({3.0F})), .model = mat.model()});
+  Result<ForceSource> source =
+      ForceSource::open({.from = mat.write("frames.csv", pressed({3.0F})), .model = mat.model()});
   ASSERT_TRUE(source && source->next().value());
   EXPECT_NEAR(source->loads()[kPressed], 3.0F, 1e-4F);
   EXPECT_EQ(source->time(), std::chrono::seconds(1));
@@ -65,11 +65,11 @@ TEST(LoadSource, gives_the_frames_of_one_array) {
   EXPECT_TRUE(source->describe_troubles().empty());
 }
 
-TEST(LoadSource, takes_all_arrays_of_a_recording_side_by_side_at_the_times_of_the_first) {
+TEST(ForceSource, takes_all_arrays_of_a_recording_side_by_side_at_the_times_of_the_first) {
   const MatFiles mat;
   const std::string recording =
       mat.write_two("two.mcap", pressed({1.0F, 2.0F, 3.0F}), later(pressed({5.0F, 6.0F}), milliseconds(5)));
-  Result<LoadSource> source = LoadSource::open({.from = recording});
+  Result<ForceSource> source = ForceSource::open({.from = recording});
   ASSERT_TRUE(source) << error_of(source);
   EXPECT_EQ(pairs_of(*source), (std::vector<std::pair<float, float>>{{1.0F, 0.0F}, {2.0F, 5.0F}, {3.0F, 6.0F}}));
   const auto layout = source->layout();
@@ -79,25 +79,25 @@ TEST(LoadSource, takes_all_arrays_of_a_recording_side_by_side_at_the_times_of_th
   EXPECT_FALSE(layout->has_forces());
 }
 
-TEST(LoadSource, takes_of_several_arrays_those_that_are_asked_for) {
+TEST(ForceSource, takes_of_several_arrays_those_that_are_asked_for) {
   const MatFiles mat;
   const std::string recording = mat.write_two("two.mcap", pressed({1.0F}), pressed({5.0F}));
-  Result<LoadSource> turned = LoadSource::open({.from = recording, .arrays = {"right", "left"}});
+  Result<ForceSource> turned = ForceSource::open({.from = recording, .arrays = {"right", "left"}});
   ASSERT_TRUE(turned) << error_of(turned);
   EXPECT_EQ(pairs_of(*turned), (std::vector<std::pair<float, float>>{{5.0F, 1.0F}}));
-  Result<LoadSource> one = LoadSource::open({.from = recording + "#right"});
+  Result<ForceSource> one = ForceSource::open({.from = recording + "#right"});
   ASSERT_TRUE(one && one->next().value());
   EXPECT_EQ(one->loads().size(), kTaxels);
   EXPECT_EQ(one->loads()[kPressed], 5.0F);
-  EXPECT_NE(error_of(LoadSource::open({.from = recording, .arrays = {"left", "top"}})).find("has no array 'top'"),
+  EXPECT_NE(error_of(ForceSource::open({.from = recording, .arrays = {"left", "top"}})).find("has no array 'top'"),
             std::string::npos);
-  EXPECT_NE(error_of(LoadSource::open({.from = recording, .arrays = {"skin"}})).find("name one"), std::string::npos);
+  EXPECT_NE(error_of(ForceSource::open({.from = recording, .arrays = {"skin"}})).find("name one"), std::string::npos);
 }
 
-TEST(LoadSource, gives_newtons_of_several_arrays_by_the_models_of_a_suit) {
+TEST(ForceSource, gives_newtons_of_several_arrays_by_the_models_of_a_suit) {
   const MatFiles mat;
   const std::string recording = mat.write_two("two.mcap", pressed({1.0F, 2.0F}), pressed({5.0F, 6.0F}));
-  Result<LoadSource> source = LoadSource::open({.from = recording, .model = mat.suit()});
+  Result<ForceSource> source = ForceSource::open({.from = recording, .model = mat.suit()});
   ASSERT_TRUE(source) << error_of(source);
   const auto layout = source->layout();
   ASSERT_TRUE(layout);
@@ -110,25 +110,25 @@ TEST(LoadSource, gives_newtons_of_several_arrays_by_the_models_of_a_suit) {
   EXPECT_NEAR(pairs[1].second, 2.0F, 1e-4F);
 }
 
-TEST(LoadSource, of_several_arrays_wants_a_suit_that_has_them) {
+TEST(ForceSource, of_several_arrays_wants_a_suit_that_has_them) {
   const MatFiles mat;
   const std::string recording = mat.write_two("two.mcap", pressed({1.0F}), pressed({5.0F}));
-  const std::string of_one = error_of(LoadSource::open({.from = recording, .model = mat.model()}));
+  const std::string of_one = error_of(ForceSource::open({.from = recording, .model = mat.model()}));
   EXPECT_EQ(of_one.find("model: " + recording + " holds several arrays; name one, as '" + recording +
                         "#left', or give the suit"),
             0U)
       << of_one;
-  EXPECT_EQ(error_of(LoadSource::open({.from = recording, .model = mat.suit(), .arrays = {"left", "top"}})),
+  EXPECT_EQ(error_of(ForceSource::open({.from = recording, .model = mat.suit(), .arrays = {"left", "top"}})),
             mat.suit() + ": has no array 'top'");
 }
 
-TEST(LoadSource, is_tared_where_all_arrays_are) {
+TEST(ForceSource, is_tared_where_all_arrays_are) {
   const MatFiles mat;
   std::vector<float> left(150, 40.0F);
   left.back() = 47.0F;
   const std::vector<float> right(150, 30.0F);
   const std::string recording = mat.write_two("two.mcap", pressed(left), later(pressed(right), milliseconds(200)));
-  Result<LoadSource> source = LoadSource::open({.from = recording, .tare = true});
+  Result<ForceSource> source = ForceSource::open({.from = recording, .tare = true});
   ASSERT_TRUE(source) << error_of(source);
   std::size_t tare_frames = 0;
   for (std::size_t i = 0; i < left.size(); ++i) {
@@ -141,10 +141,10 @@ TEST(LoadSource, is_tared_where_all_arrays_are) {
   EXPECT_EQ(source->loads()[kTaxels + kPressed], 0.0F);
 }
 
-TEST(LoadSource, says_where_an_array_was_silent) {
+TEST(ForceSource, says_where_an_array_was_silent) {
   const MatFiles mat;
   const std::string recording = mat.write_two("two.mcap", pressed(std::vector<float>(100, 1.0F)), pressed({5.0F}));
-  Result<LoadSource> source = LoadSource::open({.from = recording});
+  Result<ForceSource> source = ForceSource::open({.from = recording});
   ASSERT_TRUE(source) << error_of(source);
   const auto pairs = pairs_of(*source);
   ASSERT_EQ(pairs.size(), 100U);
@@ -155,11 +155,11 @@ TEST(LoadSource, says_where_an_array_was_silent) {
                 recording + ": 49 frames have none of 'right' in the half second before; it has no load there"}));
 }
 
-TEST(LoadSource, has_further_readings_beside_its_frames) {
+TEST(ForceSource, has_further_readings_beside_its_frames) {
   const MatFiles mat;
   const std::string frames = mat.write("frames.csv", pressed({1.0F, 2.0F}));
   support::write_bytes(mat.file("joints.csv"), "time_s,elbow,wrist\n0.995,7,\n1.01,8,9\n");
-  Result<LoadSource> source = LoadSource::open({.from = frames, .extra = mat.file("joints.csv")});
+  Result<ForceSource> source = ForceSource::open({.from = frames, .extra = mat.file("joints.csv")});
   ASSERT_TRUE(source) << error_of(source);
   EXPECT_EQ(source->extra_names(), (std::vector<std::string>{"elbow", "wrist"}));
   EXPECT_EQ(source->layout()->extras, 2U);
@@ -171,8 +171,8 @@ TEST(LoadSource, has_further_readings_beside_its_frames) {
   ASSERT_EQ(source->describe_troubles().size(), 1U);
   EXPECT_NE(source->describe_troubles()[0].find("joints.csv: 1 of 2 frames of frames.csv"), std::string::npos);
   const std::string device = "sim:idle?rate=10";
-  EXPECT_EQ(error_of(LoadSource::open({.from = device, .extra = mat.file("joints.csv")})),
-            "extra: '" + device + "' is a device; 'dermis record' it first");
+  EXPECT_EQ(error_of(ForceSource::open({.from = device, .extra = mat.file("joints.csv")})),
+            "extra: '" + device + "' is a device; record it first");
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 
 namespace dermis::recognition {
 
-/// A reading as a load; 0 where it is none: not above 0, not a number, or 1e30 and more.
-[[nodiscard]] inline double load_of(float reading) noexcept {
+/// The reading of a touch; 0 where it is none: not above 0, not a number, or 1e30 and more.
+[[nodiscard]] inline double valid_reading(float reading) noexcept {
   constexpr float kMostReading = 1e30F;
   return reading > 0.0F && reading < kMostReading ? static_cast<double>(reading) : 0.0;
 }

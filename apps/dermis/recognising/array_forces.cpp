@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "recognising/array_loads.hpp"
+#include "recognising/array_forces.hpp"
 
 #include <fmt/core.h>
 
@@ -42,8 +42,8 @@ void UnloadedReadings::subtract_from(std::vector<float>& readings) const {
   }
 }
 
-Result<ArrayLoads> ArrayLoads::open(const ArrayLoadInput& input) {
-  ArrayLoads source;
+Result<ArrayForces> ArrayForces::open(const ArrayForceInput& input) {
+  ArrayForces source;
   source.from_ = input.from;
   sources::SourceOptions options = input.source;
   if (!input.model.empty()) {
@@ -67,7 +67,7 @@ Result<ArrayLoads> ArrayLoads::open(const ArrayLoadInput& input) {
   return source;
 }
 
-Result<bool> ArrayLoads::next() {
+Result<bool> ArrayForces::next() {
   Result<bool> more = frames_->next(raw_);
   if (more && !*more) tell_loss();
   if (!more || !*more) return more;
@@ -77,48 +77,48 @@ Result<bool> ArrayLoads::next() {
   return true;
 }
 
-void ArrayLoads::process_forces() {
+void ArrayForces::process_forces() {
   work_->pipeline.process(raw_, force_);
   troubles_->add(raw_, force_, work_->pipeline, frames_.get());
   is_tare_ = work_->pipeline.drift().taring();
   loads_ = force_.newtons;
 }
 
-Status ArrayLoads::check_tare() const {
+Status ArrayForces::check_tare() const {
   if (!work_ || work_->pipeline.last_tare().state != pipeline::Tare::State::refused) return Done{};
   return failed(fmt::format("{}: not tared: {}, or force the tare", from_,
                             pipeline::describe(work_->pipeline.last_tare(), work_->model.array)));
 }
 
-void ArrayLoads::process_readings() {
+void ArrayForces::process_readings() {
   loads_ = raw_.counts;
   is_tare_ = unloaded_ && unloaded_->add(raw_);
   if (unloaded_ && !is_tare_) unloaded_->subtract_from(loads_);
 }
 
-void ArrayLoads::tell_loss() {
+void ArrayForces::tell_loss() {
   if (!troubles_ || !loss_) return;
   if (const Status verdict = troubles_->verdict(); !verdict) loss_(verdict.error().message);
 }
 
-std::optional<recognition::SensedArray> ArrayLoads::array() const {
+std::optional<recognition::SensedArray> ArrayForces::array() const {
   if (work_) return recognition::sensed_array(work_->model.array, name_);
   const std::optional<FrameShape> shape = frames_->shape();
   if (!shape) return std::nullopt;
   return recognition::SensedArray{.name = name_, .rows = shape->rows, .cols = shape->cols};
 }
 
-Result<HeldLoads> HeldLoads::open(const ArrayLoadInput& input) {
-  Result<ArrayLoads> array = ArrayLoads::open(input);
+Result<HeldForces> HeldForces::open(const ArrayForceInput& input) {
+  Result<ArrayForces> array = ArrayForces::open(input);
   if (!array) return array.error();
   if (const Result<bool> has_frame = array->next(); !has_frame) return has_frame.error();
-  return HeldLoads(*std::move(array), input.tare);
+  return HeldForces(*std::move(array), input.tare);
 }
 
-HeldLoads::HeldLoads(ArrayLoads array, bool is_tare)
+HeldForces::HeldForces(ArrayForces array, bool is_tare)
     : array_(std::move(array)), is_tare_(is_tare), loads_(array_.loads().size()) {}
 
-Status HeldLoads::move_to(Nanos time) {
+Status HeldForces::move_to(Nanos time) {
   if (!last_) last_ = time;
   while (has_next_ && array_.time() <= time) {
     loads_ = array_.loads();
