@@ -11,19 +11,17 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "calibration_input.hpp"
 #include "commands.hpp"
 #include "dermis/calibration/strip_training.hpp"
 #include "dermis/core/version.hpp"
-#include "dermis/files/array_toml.hpp"
 #include "dermis/files/content_hash.hpp"
 #include "dermis/files/loads_csv.hpp"
 #include "dermis/pipeline/model.hpp"
+#include "dermis/sources/source_name.hpp"
 #include "interruption.hpp"
 #include "kept_model.hpp"
-#include "seconds.hpp"
-#include "source_options.hpp"
 #include "status_line.hpp"
-#include "writable.hpp"
 
 namespace dermis::app {
 namespace {
@@ -44,20 +42,17 @@ constexpr const char* kProofPresses =
     "such as twenty of a known weight over two to four taxels of a row";
 
 struct CalibrateOptions {
-  std::string array;
-  std::string frames;
-  std::string loads;
+  CalibrationFiles files;
   std::string out;
-  double settle_s = 0.0;
   bool json = false;
 };
 
 Status add_hashes(const CalibrateOptions& options, std::map<std::string, std::string>& provenance) {
-  const Result<sources::SourceName> from = sources::SourceName::parse(options.frames);
+  const Result<sources::SourceName> from = sources::SourceName::parse(options.files.frames);
   if (!from) return from.error();
   const std::string& frames = from->file;
-  for (const auto& [key, path] : {std::pair{"array hash", &options.array}, std::pair{"frames hash", &frames},
-                                  std::pair{"loads hash", &options.loads}}) {
+  for (const auto& [key, path] : {std::pair{"array hash", &options.files.array}, std::pair{"frames hash", &frames},
+                                  std::pair{"loads hash", &options.files.loads}}) {
     if (std::filesystem::is_directory(*path)) continue;  // of pictures
     const Result<std::string> hash = files::content_hash(*path);
     if (!hash) return hash.error();
@@ -169,33 +164,27 @@ void print_json(const CalibrationReport& report, const ArrayDescription& array,
 }
 
 Status calibrate(const CalibrateOptions& options) {
-  const Result<Nanos> settle = nanos_from_seconds(options.settle_s, "--settle");
-  if (!settle) return settle.error();
-  const Result<ArrayDescription> array = files::read_array(options.array);
-  if (!array) return array.error();
-  if (Status writable = check_writable(options.out); !writable) return writable;
   auto start = Clock::now();
-  const Result<std::vector<RawFrame>> frames = sources::read_frames(options.frames, source_options(&*array));
-  if (!frames) return frames.error();
-  const Result<std::vector<Load>> loads = files::read_loads(options.loads, *array, frames->size());
-  if (!loads) return loads.error();
-  const auto positions = files::read_touch_positions(options.loads, *array, frames->size());
+  const Result<CalibrationInput> input = CalibrationInput::read(options.files, options.out);
+  if (!input) return input.error();
+  const auto& [array, settle, frames, loads] = *input;
+  const auto positions = files::read_touch_positions(options.files.loads, array, frames.size());
   if (!positions) return positions.error();
   const double read_s = seconds_since(start);
 
-  Progress progress(array->name);
+  Progress progress(array.name);
   progress.show("circuit", 0.0);
   start = Clock::now();
-  const auto database = calibration::build_sample_database(*array, *frames, *loads, *settle,
+  const auto database = calibration::build_sample_database(array, frames, loads, settle,
                                                            [&](double share) { progress.show("circuit", share); });
   if (!database) return database.error();
   const double circuit_s = seconds_since(start);
   progress.show("circuit", 1.0);
   Result<Calibration> calibration = calibration::calibrate(
-      *database, *frames, [&](const std::string& stage, double share) { progress.show(stage, share); });
+      *database, frames, [&](const std::string& stage, double share) { progress.show(stage, share); });
   if (!calibration) return calibration.error();
   if (!positions->empty()) {
-    Result<contacts::StripTable> strip = calibration::train_strip(calibration->model, *frames, *positions);
+    Result<contacts::StripTable> strip = calibration::train_strip(calibration->model, frames, *positions);
     if (!strip) return strip.error();
     calibration->model.strip = *std::move(strip);
   }
@@ -204,8 +193,7 @@ Status calibrate(const CalibrateOptions& options) {
   if (Status hashed = add_hashes(options, calibration->model.provenance); !hashed) return hashed;
   if (Status kept = keep_earlier_model(options.out); !kept) return kept;
   if (Status written = pipeline::write_model(options.out, calibration->model); !written) return written;
-  options.json ? print_json(calibration->report, *array, database->circuit_fit)
-               : print_text(calibration->report, *array);
+  options.json ? print_json(calibration->report, array, database->circuit_fit) : print_text(calibration->report, array);
   if (!options.json && calibration->model.strip) {
     fmt::print("positions along the strip: learned from {} touches, \u00b1 {:.2f} mm\n", positions->size(),
                1e3 * calibration->model.strip->sigma_m);
@@ -217,12 +205,8 @@ Status calibrate(const CalibrateOptions& options) {
 
 void add_calibrate(Command& command) {
   auto options = std::make_shared<CalibrateOptions>();
-  command.input_file("--array", options->array, "array.toml: size, pitch and readout circuit").required();
-  command.input_file("--frames", options->frames, "Raw counts: frames.csv, a recording or another file of frames")
-      .required();
-  command.input_file("--loads", options->loads, "loads.csv: which load pressed where in which frame").required();
+  options->files.add(command);
   command.output_model("--out", options->out, "Model file to write (safetensors)").required();
-  command.option("--settle", options->settle_s, "Skip the first seconds, while the array warms up [s]").shows_default();
   command.flag("--json", options->json, "Print the report as JSON");
   command.action([options] {
     end_when_interrupted();

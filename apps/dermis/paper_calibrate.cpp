@@ -5,17 +5,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "dermis/files/array_toml.hpp"
-#include "dermis/files/loads_csv.hpp"
+#include "calibration_input.hpp"
 #include "dermis/paper/bank_training.hpp"
 #include "dermis/paper/paper_bank_file.hpp"
 #include "interruption.hpp"
 #include "kept_model.hpp"
 #include "paper_commands.hpp"
-#include "seconds.hpp"
-#include "source_options.hpp"
 #include "status_line.hpp"
-#include "writable.hpp"
 
 namespace dermis::app {
 namespace {
@@ -25,11 +21,8 @@ using paper::BankTrainingReport;
 constexpr std::uint64_t kSeed = 1;
 
 struct PaperCalibrateOptions {
-  std::string array;
-  std::string frames;
-  std::string loads;
+  CalibrationFiles files;
   std::string bank;
-  double settle_s = 0.0;
   bool json = false;
 };
 
@@ -59,17 +52,11 @@ void print_json(const BankTrainingReport& report, const ArrayDescription& array)
 }
 
 Status calibrate(const PaperCalibrateOptions& options) {
-  const Result<Nanos> settle = nanos_from_seconds(options.settle_s, "--settle");
-  if (!settle) return settle.error();
-  const Result<ArrayDescription> array = files::read_array(options.array);
-  if (!array) return array.error();
-  if (Status writable = check_writable(options.bank); !writable) return writable;
-  const Result<std::vector<RawFrame>> frames = sources::read_frames(options.frames, source_options(&*array));
-  if (!frames) return frames.error();
-  const Result<std::vector<Load>> loads = files::read_loads(options.loads, *array, frames->size());
-  if (!loads) return loads.error();
-  Progress progress(array->name);
-  const auto database = calibration::build_sample_database(*array, *frames, *loads, *settle,
+  const Result<CalibrationInput> input = CalibrationInput::read(options.files, options.bank);
+  if (!input) return input.error();
+  const auto& [array, settle, frames, loads] = *input;
+  Progress progress(array.name);
+  const auto database = calibration::build_sample_database(array, frames, loads, settle,
                                                            [&](double share) { progress.show("circuit", share); });
   if (!database) return database.error();
   const Result<paper::TrainedBank> trained =
@@ -77,7 +64,7 @@ Status calibrate(const PaperCalibrateOptions& options) {
   if (!trained) return trained.error();
   if (Status kept = keep_earlier_model(options.bank); !kept) return kept;
   if (Status written = paper::write_paper_bank(options.bank, trained->bank); !written) return written;
-  options.json ? print_json(trained->report, *array) : print_text(trained->report, *array);
+  options.json ? print_json(trained->report, array) : print_text(trained->report, array);
   return Done{};
 }
 
@@ -85,12 +72,8 @@ Status calibrate(const PaperCalibrateOptions& options) {
 
 void add_paper_calibrate(Command& command) {
   auto options = std::make_shared<PaperCalibrateOptions>();
-  command.input_file("--array", options->array, "array.toml: size, pitch and readout circuit").required();
-  command.input_file("--frames", options->frames, "Raw counts: frames.csv, a recording or another file of frames")
-      .required();
-  command.input_file("--loads", options->loads, "loads.csv: which load pressed where in which frame").required();
+  options->files.add(command);
   command.output_model("--bank", options->bank, "Bank to write (safetensors; 16x16: minutes, 135 MB)").required();
-  command.option("--settle", options->settle_s, "Skip the first seconds, while the array warms up [s]").shows_default();
   command.flag("--json", options->json, "Print the report as JSON");
   command.action([options] {
     end_when_interrupted();
