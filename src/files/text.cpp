@@ -77,6 +77,12 @@ std::string_view trimmed(std::string_view text) noexcept {
   return text;
 }
 
+std::string in_lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return lower;
+}
+
 bool parse_number(std::string_view text, float& value) {
   return parse_short_integer(text, value) || parse_all(text, value);
 }

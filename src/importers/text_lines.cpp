@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -39,9 +38,7 @@ std::string plain(std::string_view unit) {
   }
   std::replace(text.begin(), text.end(), '\xB2', '2');  // Latin-1
   std::erase_if(text, [](char c) { return files::is_blank(c) || c == '^' || c == '-'; });
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
-  return text;
+  return files::in_lower_case(text);
 }
 
 }  // namespace

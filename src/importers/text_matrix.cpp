@@ -2,8 +2,10 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/importers/text_matrix.hpp"
 
+#include <cmath>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -54,6 +56,7 @@ class TextMatrix final : public FrameSource {
     if (block_.rows == 0) return lines_.error("there is no line of numbers");
     if (is_cut_ && options_.shape) return Done{};
     shape_ = block_.shape();
+    if (is_only_one_ && !options_.shape) question_lines();
     return check_shape(lines_.name(), *shape_, options_.shape);
   }
 
@@ -95,6 +98,7 @@ class TextMatrix final : public FrameSource {
         if (Status read = read_row(line); !read) return read;
       } else if (block_.rows > 0 || !*more) {
         is_cut_ = is_cut_ || (!*more && shape() && block_.rows > 0);
+        is_only_one_ = !*more;
         break;
       }
       if (is_cut_) break;
@@ -107,6 +111,7 @@ class TextMatrix final : public FrameSource {
       return lines_.error("more than 1024 rows without a blank line between: say how many rows and cols a frame has");
     }
     if (block_.rows == 0) block_.cols = count_values(line);
+    if (block_.rows == 0 && options_.shape && block_.cols == options_.shape->taxel_count()) return read_frame(line);
     if (block_.cols > kMaxLines) return lines_.error("has more than 1024 values");
     block_.values.resize((block_.rows + 1) * block_.cols);
     const Status read =
@@ -118,11 +123,34 @@ class TextMatrix final : public FrameSource {
     return Done{};
   }
 
+  /// A line that holds a whole frame.
+  Status read_frame(std::string_view line) {
+    block_.values.resize(options_.shape->taxel_count());
+    const Status read = parse_row(line, Cells::Separator::any, block_.values);
+    if (!read && !(lines_.was_cut() && frames_ > 0)) return lines_.error(read.error().message);
+    is_cut_ = !read;
+    block_.rows = options_.shape->rows;
+    block_.cols = options_.shape->cols;
+    return Done{};
+  }
+
+  /// A file without a blank line may hold one frame, or a frame a line.
+  void question_lines() const {
+    const bool may_be_frames = block_.rows > 1 && block_.cols > 1 && block_.rows != block_.cols;
+    if (!may_be_frames || !options_.notice) return;
+    std::size_t cols = block_.cols;
+    for (cols = static_cast<std::size_t>(std::sqrt(static_cast<double>(cols))); block_.cols % cols != 0;) --cols;
+    options_.notice(lines_.name() + ": " + std::to_string(block_.rows) + " lines of " + std::to_string(block_.cols) +
+                    " numbers are read as one frame; if each line is a frame, give rows and cols, as rows=" +
+                    std::to_string(block_.cols / cols) + " and cols=" + std::to_string(cols));
+  }
+
   TextLines lines_;
   ImportOptions options_;
   std::optional<FrameShape> shape_;
   Block block_;
-  bool is_cut_ = false;  ///< The text ends within the block.
+  bool is_cut_ = false;       ///< The text ends within the block.
+  bool is_only_one_ = false;  ///< The text ends behind the block.
   std::size_t frames_ = 0;
 };
 

@@ -136,8 +136,9 @@ bool has_times(FrameFormat format) {
 }
 
 Result<FrameFormat> frame_format(const std::string& path) {
+  const std::string name = files::in_lower_case(path);
   const auto* const found =
-      std::find_if(kEndings.begin(), kEndings.end(), [&](const Ending& known) { return path.ends_with(known.ending); });
+      std::find_if(kEndings.begin(), kEndings.end(), [&](const Ending& known) { return name.ends_with(known.ending); });
   if (found != kEndings.end()) return found->format;
   if (is_stream(path)) return FrameFormat::csv;
   std::error_code ignored;

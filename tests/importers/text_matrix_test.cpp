@@ -44,6 +44,23 @@ TEST(TextMatrix, with_a_shape_needs_no_lines_between) {
   EXPECT_EQ(strip.counts("1,2\n3,4\n5,6\n"), (Frames{{1, 2}, {3, 4}, {5, 6}}));
 }
 
+TEST(TextMatrix, with_a_shape_a_line_of_all_its_values_is_a_frame) {
+  Importer importer(open_text_matrix, {.shape = FrameShape{2, 3}, .rate_hz = 1.0});
+  EXPECT_EQ(importer.counts("1,2,3,4,5,6\n7,8,9,10,11,12.5\n"), kTwo);
+}
+
+TEST(TextMatrix, asks_whether_lines_are_frames_where_nothing_tells) {
+  Importer importer(open_text_matrix, {.rate_hz = 1.0});
+  EXPECT_EQ(importer.counts("1 2 3 4\n5 6 7 8\n").size(), 1U);
+  EXPECT_EQ(importer.notices(), std::vector<std::string>{
+                                    "f: 2 lines of 4 numbers are read as one frame; if each line is a frame, give rows "
+                                    "and cols, as rows=2 and cols=2"});
+  EXPECT_EQ(importer.counts("1 2\n3 4\n\n5 6\n7 8\n").size(), 2U);
+  EXPECT_TRUE(importer.notices().empty());
+  EXPECT_EQ(importer.counts("1 2\n3 4\n").size(), 1U);
+  EXPECT_TRUE(importer.notices().empty());
+}
+
 TEST(TextMatrix, takes_what_is_empty_for_a_missing_reading) {
   Importer importer(open_text_matrix, {.rate_hz = 1.0});
   const Frames frames = importer.counts(",2,3\n4,nan,\n");

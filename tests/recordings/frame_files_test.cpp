@@ -186,6 +186,11 @@ TEST(FrameFiles, list_the_known_endings_where_the_name_has_another) {
   }
 }
 
+TEST(FrameFiles, have_endings_in_any_case) {
+  EXPECT_EQ(*frame_format("SENSORLOG.CSV"), FrameFormat::csv);
+  EXPECT_EQ(*frame_format("run.WiReSens.H5"), FrameFormat::wiresens);
+}
+
 TEST(FrameFiles, of_a_pipe_are_csv) {
   const support::TemporaryFolder folder;
   const std::string path = folder.file("pipe");

@@ -24,6 +24,9 @@ inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 /// The text without the blanks at both ends.
 [[nodiscard]] std::string_view trimmed(std::string_view text) noexcept;
 
+/// ASCII letters become small ones.
+[[nodiscard]] std::string in_lower_case(std::string_view text);
+
 /// Parses the whole text; nan and inf are numbers.
 [[nodiscard]] bool parse_number(std::string_view text, float& value);
 [[nodiscard]] bool parse_number(std::string_view text, double& value);
