@@ -3,7 +3,8 @@
 
 // Bytes of devices to frames, one thread: what a decoder takes a second, in pieces as a serial port gives them at most.
 // Readings are random in 0 ... 199, which all protocols carry; half of the bytes of 16-bit readings are then zeros,
-// which is the hardest for the stuffing of the protocol dermis. Beside it what copying the same bytes takes.
+// which is the hardest for the stuffing of the protocol dermis. Beside it what copying the same bytes takes, and what a
+// layout takes that says the same.
 #include <benchmark/benchmark.h>
 #include <fmt/core.h>
 
@@ -11,6 +12,9 @@
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
+#include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -18,6 +22,7 @@
 #include "dermis/acquisition/protocol.hpp"
 #include "dermis/core/quantile.hpp"
 #include "dermis/core/random.hpp"
+#include "dermis/layouts/layout.hpp"
 #include "rows.hpp"
 
 namespace dermis {
@@ -26,6 +31,13 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kBytes = std::size_t{1} << 22U;
+
+/// What says the same as the protocols of these names.
+const std::map<std::string, std::string> kLayouts = {
+    {"3dvitac", "line = \"{values}\"\nframe_end = \"\"\n"},
+    {"csv", "line = \"{values}\"\nframe_end = \"\"\n"},
+    {"m1616", "packet = [\"AA AB AC\", \"values u16be\", \"skip 4\"]\n"},
+};
 
 struct Stream {
   FrameShape shape;
@@ -57,26 +69,40 @@ Stream make_stream(const std::string& protocol) {
   return stream;
 }
 
+using MakeDecoder = std::function<std::unique_ptr<layouts::Decoder>(const FrameShape&)>;
+
+MakeDecoder of_protocol(const std::string& name) {
+  return [name](const FrameShape& shape) { return acquisition::make_decoder({.name = name, .shape = shape}).value(); };
+}
+
+MakeDecoder of_layout(const std::string& keys) {
+  return [keys](const FrameShape& shape) {
+    const std::string size = fmt::format("[layout]\nrows = {}\ncols = {}\n", shape.rows, shape.cols);
+    layouts::Layout layout = layouts::layout_from_toml(size + keys, "layout").value();
+    return layouts::make_decoder(std::make_shared<const layouts::Layout>(std::move(layout)), 0, false);
+  };
+}
+
 /// Calls `take` with each frame.
 template <typename Take>
-void decode(const std::string& protocol, const Stream& stream, Take take) {
-  const auto decoder = acquisition::make_decoder({.name = protocol, .shape = stream.shape});
+void decode(const MakeDecoder& make_decoder, const Stream& stream, Take take) {
+  const auto decoder = make_decoder(stream.shape);
   RawFrame frame;
   std::span<const std::uint8_t> bytes = stream.bytes;
   while (!bytes.empty()) {
     const std::size_t size = std::min<std::size_t>(bytes.size(), 4096);
-    (*decoder)->push(bytes.first(size));
+    decoder->push(bytes.first(size));
     bytes = bytes.subspan(size);
-    while ((*decoder)->next(frame)) take(frame);
+    while (decoder->next(frame)) take(frame);
   }
-  (*decoder)->finish();
-  while ((*decoder)->next(frame)) take(frame);
+  decoder->finish();
+  while (decoder->next(frame)) take(frame);
 }
 
-bool decodes_all(const std::string& protocol, const Stream& stream) {
+bool decodes_all(const MakeDecoder& make_decoder, const Stream& stream) {
   std::size_t k = 0;
   bool all_equal = true;
-  decode(protocol, stream, [&](const RawFrame& frame) {
+  decode(make_decoder, stream, [&](const RawFrame& frame) {
     all_equal = all_equal && k < stream.frames.size() && frame.counts == stream.frames[k].counts;
     ++k;
   });
@@ -98,15 +124,19 @@ void measure(benchmark::State& state, const Stream& stream, bool checked, Work w
   state.counters["checked"] = checked ? 1 : 0;
 }
 
-void register_protocol(const std::string& protocol) {
-  const auto decoding = [protocol](benchmark::State& state) {
+void register_decoder(const std::string& protocol, const std::string& engine, const MakeDecoder& make_decoder) {
+  const auto decoding = [protocol, make_decoder](benchmark::State& state) {
     const Stream stream = make_stream(protocol);
     float last = 0.0F;
-    measure(state, stream, decodes_all(protocol, stream), [&] {
-      decode(protocol, stream, [&](const RawFrame& frame) { last = frame.counts.back(); });
+    measure(state, stream, decodes_all(make_decoder, stream), [&] {
+      decode(make_decoder, stream, [&](const RawFrame& frame) { last = frame.counts.back(); });
       benchmark::DoNotOptimize(last);
     });
   };
+  benchmark::RegisterBenchmark(("decode_" + protocol + "|" + engine).c_str(), decoding)->UseManualTime();
+}
+
+void register_protocol(const std::string& protocol) {
   const auto copying = [protocol](benchmark::State& state) {
     const Stream stream = make_stream(protocol);
     std::vector<std::uint8_t> copy(stream.bytes.size());
@@ -115,7 +145,10 @@ void register_protocol(const std::string& protocol) {
       benchmark::DoNotOptimize(copy.data());
     });
   };
-  benchmark::RegisterBenchmark(("decode_" + protocol + "|dermis").c_str(), decoding)->UseManualTime();
+  register_decoder(protocol, "dermis", of_protocol(protocol));
+  if (const auto same = kLayouts.find(protocol); same != kLayouts.end()) {
+    register_decoder(protocol, "layout", of_layout(same->second));
+  }
   benchmark::RegisterBenchmark(("decode_" + protocol + "|memcpy").c_str(), copying)->UseManualTime();
 }
 

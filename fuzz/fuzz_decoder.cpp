@@ -5,26 +5,18 @@
 // and stag and datagrams, and whether the stream is interrupted at its half. Second byte: how the bytes are cut. The
 // rest: the bytes.
 // Where the environment has DERMIS_FUZZ_PROTOCOL, the protocol is that one.
-#include <algorithm>
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <cstdlib>
-#include <vector>
 
+#include "decoding.hpp"
 #include "dermis/acquisition/protocol.hpp"
 
 namespace dermis::acquisition {
 namespace {
 
-using Bytes = std::span<const std::uint8_t>;
-
 constexpr std::array kProtocols = {"dermis",   "flexitac", "m1616",        "pressure-mat", "wuji", "3dvitac",
                                    "wiresens", "stag",     "tactileglove", "csv",          "auto", "json"};
-
-void require(bool is_so) {
-  if (!is_so) std::abort();
-}
 
 ProtocolOptions options_of(std::uint8_t choice) {
   ProtocolOptions options;
@@ -38,59 +30,12 @@ ProtocolOptions options_of(std::uint8_t choice) {
   return options;
 }
 
-/// All that a decoder says, readings bit by bit.
-struct Record {
-  std::vector<std::uint64_t> said;
-  DecoderCounts counts;
-
-  bool operator==(const Record&) const = default;
-};
-
-void take_frames(Decoder& decoder, std::uint64_t pushed, Record& record) {
-  RawFrame frame;
-  while (decoder.next(frame)) {
-    const std::optional<FrameShape> shape = decoder.shape();
-    require(shape && shape->taxel_count() == frame.counts.size() && !frame.counts.empty());
-    require(shape->rows <= 1024 && shape->cols <= 1024);
-    require(decoder.frame_end() <= pushed && (!frame.supply_v || *frame.supply_v > 0.0));
-    record.said.push_back(decoder.frame_end());
-    record.said.push_back(frame.acquisition.sequence.value_or(0));
-    record.said.push_back(static_cast<std::uint64_t>(frame.acquisition.device_time.value_or(Nanos{}).count()));
-    record.said.push_back(frame.acquisition.lost_before);
-    record.said.push_back(frame.acquisition.held_taxels);
-    record.said.push_back(std::bit_cast<std::uint64_t>(frame.temperature_celsius.value_or(0.0)));
-    record.said.push_back(std::bit_cast<std::uint64_t>(frame.supply_v.value_or(0.0)));
-    for (const float count : frame.counts) record.said.push_back(std::bit_cast<std::uint32_t>(count));
-  }
-  record.counts = decoder.counts();
-}
-
-Record decode(Decoder& decoder, Bytes bytes, std::size_t interrupted_at, std::size_t piece) {
-  Record record;
-  std::size_t at = 0;
-  while (at < bytes.size()) {
-    const std::size_t limit = at < interrupted_at ? interrupted_at : bytes.size();
-    const std::size_t size = std::min({piece, limit - at, Decoder::kMaxPush});
-    decoder.push(bytes.subspan(at, size));
-    at += size;
-    take_frames(decoder, at, record);
-    if (at != interrupted_at) continue;
-    decoder.idle();
-    take_frames(decoder, at, record);
-    decoder.finish();
-    take_frames(decoder, at, record);
-  }
-  decoder.finish();
-  take_frames(decoder, at, record);
-  require(record.counts.skipped_bytes <= bytes.size());
-  return record;
-}
-
 }  // namespace
 }  // namespace dermis::acquisition
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace dermis::acquisition;
+  using namespace dermis::fuzz;
   if (size < 2) return 0;
   const ProtocolOptions options = options_of(data[0]);
   const auto whole = make_decoder(options);

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "dermis/acquisition/device_source.hpp"
 #include "dermis/files/array_toml.hpp"
 #include "dermis/recordings/conversion.hpp"
 #include "dermis/recordings/recording.hpp"
@@ -27,9 +29,17 @@ struct ConvertOptions {
   std::string in;
   std::string out;
   std::string array;
+  std::string layout;
   std::optional<double> rate_hz;
   ShapeOptions shape;
 };
+
+Status check_rate(const ConvertOptions& options) {
+  if (options.rate_hz && !(*options.rate_hz > 0.0 && *options.rate_hz <= 1e9)) {
+    return bad_input("--rate: must be more than 0 and at most 1e9 frames a second");
+  }
+  return Done{};
+}
 
 Status check(const ConvertOptions& options) {
   const Result<FrameFormat> in = recordings::recognise_frames(options.in);
@@ -39,10 +49,21 @@ Status check(const ConvertOptions& options) {
   if (options.rate_hz && recordings::has_times(*in)) {
     return bad_input(fmt::format("--rate: '{}' has times of its own; leave --rate out", options.in));
   }
-  if (options.rate_hz && !(*options.rate_hz > 0.0 && *options.rate_hz <= 1e9)) {
-    return bad_input("--rate: must be more than 0 and at most 1e9 frames a second");
-  }
-  return Done{};
+  return check_rate(options);
+}
+
+/// A file of bytes as its layout describes them: "feet.bin", or "feet.bin#left" for one of its arrays.
+acquisition::SourceUri described_file(const ConvertOptions& options, const std::optional<FrameShape>& shape) {
+  acquisition::SourceUri uri;
+  uri.text = options.in;
+  const std::size_t mark = std::filesystem::exists(options.in) ? std::string::npos : options.in.rfind('#');
+  uri.path = options.in.substr(0, mark);
+  if (mark != std::string::npos) uri.protocol.array = options.in.substr(mark + 1);
+  uri.rate_hz = options.rate_hz;
+  uri.protocol.shape = shape;
+  uri.protocol.layout = options.layout;
+  uri.protocol.waits_for_late_frames = true;
+  return uri;
 }
 
 /// The shape that the frames must have, where one is given.
@@ -64,16 +85,32 @@ Result<std::optional<ArrayDescription>> read_array(const ConvertOptions& options
   return std::optional(std::move(*array));
 }
 
+Result<std::vector<std::string>> convert_described(const ConvertOptions& options,
+                                                   const recordings::ConversionOptions& how) {
+  const Result<std::unique_ptr<FrameSource>> source =
+      acquisition::open_device(described_file(options, how.input.shape), {.notice = print_notice});
+  if (!source) return source.error();
+  Result<std::vector<std::string>> left_out =
+      recordings::convert_frames(**source, !(*source)->is_live(), options.out, how);
+  const SourceStatistics statistics = (*source)->statistics();
+  if (left_out && statistics.damaged_frames > 0) {
+    print_notice(fmt::format("{}: {} damaged frames are left out", options.in, statistics.damaged_frames));
+  }
+  return left_out;
+}
+
 Status convert(const ConvertOptions& options) {
-  if (Status checked = check(options); !checked) return checked;
+  const bool is_described = !options.layout.empty();
+  if (Status checked = is_described ? check_rate(options) : check(options); !checked) return checked;
   const Result<std::optional<ArrayDescription>> array = read_array(options);
   if (!array) return array.error();
   const Result<std::optional<FrameShape>> shape = wanted_shape(options, *array);
   if (!shape) return shape.error();
-  const Result<std::vector<std::string>> left_out = recordings::convert_frames(
-      options.in, options.out,
-      {.input = {.shape = *shape, .rate_hz = options.rate_hz, .notice = print_notice, .loss = note_loss},
-       .array = *array ? &**array : nullptr});
+  const recordings::ConversionOptions how = {
+      .input = {.shape = *shape, .rate_hz = options.rate_hz, .notice = print_notice, .loss = note_loss},
+      .array = *array ? &**array : nullptr};
+  const Result<std::vector<std::string>> left_out =
+      is_described ? convert_described(options, how) : recordings::convert_frames(options.in, options.out, how);
   if (!left_out) return left_out.error();
   if (!left_out->empty()) print_notice(fmt::format("{}: left out: {}", options.out, fmt::join(*left_out, ", ")));
   return Done{};
@@ -87,6 +124,7 @@ void add_convert(Command& command) {
       .required();
   command.output("out", options->out, ".csv, .mcap, .h5, .hdf5, .npy or .wiresens.hdf5").required();
   command.input("--array", options->array, "array.toml, to keep with the frames (.mcap, .h5)");
+  command.input_file("--layout", options->layout, "layout.toml, which describes the bytes of a file (docs/layouts.md)");
   command.option("--rate", options->rate_hz,
                  "Frames a second of a file without times (.npy, .npz, .txt, .png, .packed10) [Hz]");
   options->shape.add(command);

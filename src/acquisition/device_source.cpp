@@ -14,6 +14,7 @@
 #include "dermis/acquisition/protocol.hpp"
 #include "dermis/acquisition/source_uri.hpp"
 #include "dermis/core/turned_source.hpp"
+#include "dermis/layouts/layout.hpp"
 
 namespace dermis::acquisition {
 namespace {
@@ -29,8 +30,9 @@ constexpr Nanos kRepeatRequest = 1s;
 class DeviceSource final : public FrameSource {
  public:
   DeviceSource(SourceUri uri, const DeviceOptions& options, std::unique_ptr<ByteStream> stream,
-               std::unique_ptr<Decoder> decoder)
+               std::unique_ptr<Decoder> decoder, bool has_times)
       : uri_(std::move(uri)),
+        has_times_(has_times),
         options_(options),
         connection_(uri_, std::move(stream), [this](const std::string& text) { notify(text); }),
         decoder_(std::move(decoder)),
@@ -64,7 +66,7 @@ class DeviceSource final : public FrameSource {
   }
 
   /// A file with times of its own is read at any pace.
-  [[nodiscard]] bool is_live() const override { return !uri_.rate_hz; }
+  [[nodiscard]] bool is_live() const override { return !uri_.rate_hz && !has_times_; }
 
   [[nodiscard]] SourceStatistics statistics() const override {
     const DecoderCounts& counts = decoder_->counts();
@@ -124,6 +126,7 @@ class DeviceSource final : public FrameSource {
     }
     clock_.stamp(decoder_->frame_end(), frame);
     if (uri_.rate_hz) frame.time = time_in_file();
+    if (has_times_ && frame.acquisition.device_time) frame.time = *frame.acquisition.device_time;
     if (frames_++ == 0) tell_detected_protocol();
     undecoded_.clear();
     if (!decoder_->request().empty()) request();
@@ -182,6 +185,7 @@ class DeviceSource final : public FrameSource {
   }
 
   SourceUri uri_;
+  bool has_times_;  ///< The file holds the times of its frames.
   DeviceOptions options_;
   DeviceConnection connection_;
   std::unique_ptr<Decoder> decoder_;
@@ -197,6 +201,16 @@ class DeviceSource final : public FrameSource {
   bool silence_noticed_ = false;
 };
 
+/// Whether a file has times of its own, as its layout says; otherwise the rate of the layout is used.
+Result<bool> read_times(SourceUri& uri) {
+  if (uri.protocol.layout.empty() || uri.transport != Transport::file) return false;
+  const Result<layouts::Layout> layout = layouts::read_layout(uri.protocol.layout);
+  if (!layout) return layout.error();
+  if (layout->has_times() && uri.rate_hz) return bad_input("rate: the layout has times; leave rate out");
+  if (!uri.rate_hz) uri.rate_hz = layout->rate_hz;
+  return layout->has_times();
+}
+
 }  // namespace
 
 Result<std::unique_ptr<FrameSource>> open_device(SourceUri uri, const DeviceOptions& options) {
@@ -208,13 +222,16 @@ Result<std::unique_ptr<FrameSource>> open_device(SourceUri uri, const DeviceOpti
                      shape_text(*sent.shape));
   }
   if (!protocol.shape) protocol.shape = sent.shape;
+  const Result<bool> has_times = read_times(uri);
+  if (!has_times) return bad_input("'" + uri.text + "': " + has_times.error().message);
   Result<std::unique_ptr<Decoder>> decoder = make_decoder(protocol);
   if (!decoder) return bad_input("'" + uri.text + "': " + decoder.error().message);
   Result<std::unique_ptr<ByteStream>> stream = make_source_stream(uri);
   if (!stream) return stream.error();
   const LineOrder order = uri.order;
   const std::string name = uri.text;
-  auto source = std::make_unique<DeviceSource>(std::move(uri), sent, std::move(*stream), std::move(*decoder));
+  auto source =
+      std::make_unique<DeviceSource>(std::move(uri), sent, std::move(*stream), std::move(*decoder), *has_times);
   if (const Status opened = source->open(); !opened) return opened.error();
   return turned_source(std::move(source), order, name);
 }

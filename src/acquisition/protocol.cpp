@@ -8,6 +8,7 @@
 #include "acquisition/protocols.hpp"
 #include "dermis/core/array_description.hpp"
 #include "dermis/core/nearest_name.hpp"
+#include "dermis/layouts/layout.hpp"
 
 namespace dermis::acquisition {
 namespace {
@@ -67,6 +68,19 @@ Result<const ProtocolEntry*> find_for(const ProtocolOptions& options) {
   return protocol;
 }
 
+Result<std::unique_ptr<Decoder>> make_layout_decoder(const ProtocolOptions& options) {
+  Result<layouts::Layout> layout = layouts::read_layout(options.layout);
+  if (!layout) return layout.error();
+  const Result<std::size_t> array = layout->find_array(options.array);
+  if (!array) return bad_input(options.layout + ": " + array.error().message);
+  const FrameShape& shape = layout->arrays[*array].shape;
+  if (options.shape && *options.shape != shape) {
+    return bad_input(to_string(*options.shape) + ": " + options.layout + " has " + to_string(shape));
+  }
+  return layouts::make_decoder(std::make_shared<const layouts::Layout>(*std::move(layout)), *array,
+                               options.waits_for_late_frames);
+}
+
 }  // namespace
 
 const std::vector<std::string>& protocol_names() {
@@ -79,6 +93,7 @@ const std::vector<std::string>& protocol_names() {
 }
 
 Result<std::unique_ptr<Decoder>> make_decoder(const ProtocolOptions& options) {
+  if (!options.layout.empty()) return make_layout_decoder(options);
   const Result<const ProtocolEntry*> protocol = find_for(options);
   if (!protocol) return protocol.error();
   return (*protocol)->make_decoder(options);

@@ -5,10 +5,10 @@
 #include <memory>
 #include <optional>
 
-#include "dermis/acquisition/decoder.hpp"
 #include "dermis/acquisition/encoder.hpp"
 #include "dermis/acquisition/protocol.hpp"
 #include "dermis/core/result.hpp"
+#include "dermis/layouts/decoder.hpp"
 
 /// One pair of factories a protocol, listed in protocol.cpp; each in the file of its name. Shapes that are given are
 /// valid and those of the protocol where it has but one; encoders are given one.

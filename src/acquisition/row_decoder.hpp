@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "acquisition/line_reader.hpp"
 #include "acquisition/row_layout.hpp"
 #include "acquisition/row_syntax.hpp"
-#include "dermis/acquisition/decoder.hpp"
 #include "dermis/core/frame_source.hpp"
+#include "dermis/layouts/decoder.hpp"
+#include "dermis/layouts/line_reader.hpp"
 
 namespace dermis::acquisition {
 
@@ -48,7 +48,7 @@ class RowDecoder : public Decoder {
   void end_stream();
 
   RowSyntax syntax_;
-  LineReader lines_;
+  layouts::LineReader lines_;
   RowLayoutLearner learner_;
   std::optional<RowLayout> layout_;
 

@@ -32,9 +32,9 @@ struct Scheme {
   bool is_target;
 };
 
-const std::set<std::string> kProtocolParameters = {"protocol",  "rows",         "cols",      "nodes_per_packet",
-                                                   "delimited", "bit_shift",    "transpose", "flip_rows",
-                                                   "flip_cols", "skip_columns", "row_order", "col_order"};
+const std::set<std::string> kProtocolParameters = {
+    "protocol",  "layout",    "array",     "rows",      "cols",         "nodes_per_packet", "delimited",
+    "bit_shift", "transpose", "flip_rows", "flip_cols", "skip_columns", "row_order",        "col_order"};
 
 const std::array<Scheme, 9>& schemes() {
   static const std::array<Scheme, 9> kAll = {{
@@ -272,6 +272,12 @@ class Parser {
     if (const auto found = parameters_.find("protocol"); found != parameters_.end()) {
       uri_.protocol.name = found->second;
     }
+    if (const auto found = parameters_.find("layout"); found != parameters_.end()) uri_.protocol.layout = found->second;
+    if (const auto found = parameters_.find("array"); found != parameters_.end()) uri_.protocol.array = found->second;
+    const bool has_layout = !uri_.protocol.layout.empty();
+    if (has_layout && parameters_.contains("protocol")) fail("layout: give it or protocol, not both");
+    if (!has_layout && parameters_.contains("array")) fail("array: is of a layout, which is not given");
+    uri_.protocol.waits_for_late_frames = uri_.transport == Transport::file;
     uri_.protocol.shape = read_shape();
     const auto nodes = read<std::size_t>("nodes_per_packet", 1, 32767, "1 to 32767");
     if (nodes) uri_.protocol.nodes_per_packet = *nodes;

@@ -11,10 +11,10 @@
 #include <limits>
 #include <utility>
 
-#include "acquisition/byte_window.hpp"
 #include "acquisition/protocols.hpp"
 #include "acquisition/wire_values.hpp"
 #include "acquisition/wiresens_packets.hpp"
+#include "dermis/layouts/byte_window.hpp"
 
 namespace dermis::acquisition {
 namespace {
@@ -92,7 +92,7 @@ class WireSensDecoder final : public Decoder {
 
   FrameShape shape_;
   PacketFormat format_;
-  ByteWindow window_;
+  layouts::ByteWindow window_;
   DecoderCounts counts_;
   std::uint64_t frame_end_ = 0;
   bool ended_ = false;

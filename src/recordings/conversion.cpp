@@ -75,6 +75,17 @@ Status copy(FrameSource& source, RawFrame& frame, FrameSink& sink, const std::at
   }
 }
 
+Status write_all(FrameSource& source, const std::string& out, const FrameNotes& notes, const std::atomic<bool>* stop,
+                 Extras& extras) {
+  RawFrame frame;
+  const Result<bool> has_frame = source.next(frame);
+  if (!has_frame) return has_frame.error();
+  if (!*has_frame) return failed("stopped; nothing is written");
+  const Result<std::unique_ptr<FrameSink>> sink = create_frames(out, *source.shape(), notes);
+  if (!sink) return sink.error();
+  return copy(source, frame, **sink, stop, extras);
+}
+
 }  // namespace
 
 Result<std::vector<std::string>> convert_frames(const std::string& in, const std::string& out,
@@ -90,14 +101,23 @@ Result<std::vector<std::string>> convert_frames(const std::string& in, const std
   const Result<bool> has_forces = holds_forces(in);
   if (!has_forces) return has_forces.error();
 
-  RawFrame frame;
-  if (const Result<bool> has_frame = (*source)->next(frame); !has_frame) return has_frame.error();
-  const Result<std::unique_ptr<FrameSink>> sink = create_frames(out, *(*source)->shape(), *notes);
-  if (!sink) return sink.error();
   Extras extras;
   extras.is_timed = has_times(*in_format);
-  if (Status copied = copy(**source, frame, **sink, options.stop, extras); !copied) return copied.error();
+  if (Status copied = write_all(**source, out, *notes, options.stop, extras); !copied) return copied.error();
   return left_out(extras, *has_forces, *notes, *format);
+}
+
+Result<std::vector<std::string>> convert_frames(FrameSource& source, bool is_timed, const std::string& out,
+                                                const ConversionOptions& options) {
+  const Result<FrameFormat> format = output_format(out);
+  if (!format) return format.error();
+  if (!is_timed && has_times(*format)) return bad_input("the frames have no times: give a rate");
+  FrameNotes notes;
+  if (options.array != nullptr) notes = {options.array->name, files::array_to_toml(*options.array)};
+  Extras extras;
+  extras.is_timed = is_timed;
+  if (Status copied = write_all(source, out, notes, options.stop, extras); !copied) return copied.error();
+  return left_out(extras, false, notes, *format);
 }
 
 }  // namespace dermis::recordings

@@ -11,12 +11,15 @@
 #include <string_view>
 #include <vector>
 
-#include "dermis/acquisition/decoder.hpp"
 #include "dermis/acquisition/encoder.hpp"
 #include "dermis/core/frame_source.hpp"
 #include "dermis/core/result.hpp"
+#include "dermis/layouts/decoder.hpp"
 
 namespace dermis::acquisition {
+
+using layouts::Decoder;
+using layouts::DecoderCounts;
 
 /// A device protocol and its options; docs/devices.md describes each.
 struct ProtocolOptions {
@@ -25,13 +28,17 @@ struct ProtocolOptions {
   std::size_t nodes_per_packet = 120;  ///< wiresens: readings in a packet, 1 ... 32767.
   bool delimited = true;               ///< wiresens: "wr" ends a packet (serial); false: bare packets (TCP, UDP).
   int bit_shift = 5;                   ///< stag: bits of the low byte of a reading, 5 or 6.
+  std::string layout{};  ///< Path of a description of the bytes (layouts/layout.hpp), which replaces `name`.
+  std::string array{};   ///< layout: the array whose frames are wanted; empty: the only one.
+  bool waits_for_late_frames = false;  ///< layout: frames with times are put in order.
   bool datagrams = false;              ///< Frames may come late or twice (UDP); those with a number are then dropped.
 };
 
 /// "flexitac", "3dvitac", ..., and "auto" at the end.
 [[nodiscard]] const std::vector<std::string>& protocol_names();
 
-/// Fails on an unknown name (with the nearest known one), and on shapes or options that the protocol cannot have.
+/// Fails on an unknown name (with the nearest known one), on shapes or options that the protocol cannot have, and on
+/// a layout that cannot be read.
 [[nodiscard]] Result<std::unique_ptr<Decoder>> make_decoder(const ProtocolOptions& options);
 
 /// The same; `shape` is required, and "auto" cannot be encoded.

@@ -36,7 +36,8 @@ struct SourceUri {
   std::string path;            ///< serial, file: the path; simulation: the scene.
   std::string host;            ///< tcp, tcp-listen, udp: name or address, IPv6 without brackets.
   std::uint16_t port = 0;      ///< 0 (any that is free) only for tcp-listen and udp.
-  ProtocolOptions protocol{};  ///< protocol, rows, cols, nodes_per_packet, delimited, bit_shift; not of a simulation.
+  ProtocolOptions protocol{};  ///< protocol, layout, array, rows, cols, nodes_per_packet, delimited, bit_shift; not of
+                               ///< a simulation.
   LineOrder order{};           ///< Order of the lines, by the names of its members; not of a simulation.
   unsigned baud = 0;           ///< serial: 50 ... 20,000,000; not given: the usual one of the protocol.
   Nanos reconnect{};           ///< serial, tcp: how long an unplugged device may stay away; reconnect_s, 0 ... 1e6.

@@ -24,4 +24,9 @@ struct ConversionOptions {
 [[nodiscard]] Result<std::vector<std::string>> convert_frames(const std::string& in, const std::string& out,
                                                               const ConversionOptions& options = {});
 
+/// The same of frames that are read elsewhere. `is_timed`: their times are those of the measurement.
+[[nodiscard]] Result<std::vector<std::string>> convert_frames(FrameSource& source, bool is_timed,
+                                                              const std::string& out,
+                                                              const ConversionOptions& options = {});
+
 }  // namespace dermis::recordings

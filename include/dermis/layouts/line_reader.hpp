@@ -8,23 +8,24 @@
 #include <cstring>
 #include <span>
 
-#include "acquisition/byte_window.hpp"
+#include "dermis/layouts/byte_window.hpp"
 
-namespace dermis::acquisition {
+namespace dermis::layouts {
 
-/// Lines of a stream. Lines that were read are kept until they are forgotten, so that they can be read again.
+/// Lines of a stream, each with the byte that ends it. Lines that were read are kept until they are forgotten, so that
+/// they can be read again.
 class LineReader {
  public:
-  explicit LineReader(std::size_t longest_line) : longest_line_(longest_line) {}
+  explicit LineReader(std::size_t longest_line, std::uint8_t end = '\n') : longest_line_(longest_line), end_(end) {}
 
   void push(std::span<const std::uint8_t> bytes) { window_.push(bytes); }
 
-  /// The next line with its '\n', empty where it has not come yet. Where no '\n' comes within the longest line, so many
+  /// The next line with its end, empty where it has not come yet. Where no end comes within the longest line, so many
   /// bytes without it.
   [[nodiscard]] std::span<const std::uint8_t> next() {
     const std::span<const std::uint8_t> rest = window_.bytes().subspan(read_);
     const std::size_t reach = std::min(rest.size(), longest_line_);
-    const void* end = reach > searched_ ? std::memchr(rest.data() + searched_, '\n', reach - searched_) : nullptr;
+    const void* end = reach > searched_ ? std::memchr(rest.data() + searched_, end_, reach - searched_) : nullptr;
     searched_ = reach;
     if (end == nullptr && reach < longest_line_) return {};
     const std::size_t size =
@@ -60,8 +61,9 @@ class LineReader {
  private:
   ByteWindow window_;
   std::size_t longest_line_;
+  std::uint8_t end_;          // of a line
   std::size_t read_ = 0;      // bytes of lines that were read and are kept
-  std::size_t searched_ = 0;  // bytes after them that are known to hold no '\n'
+  std::size_t searched_ = 0;  // bytes after them that are known to hold no end
 };
 
-}  // namespace dermis::acquisition
+}  // namespace dermis::layouts

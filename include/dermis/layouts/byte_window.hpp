@@ -9,9 +9,9 @@
 #include <span>
 #include <utility>
 
-#include "dermis/acquisition/decoder.hpp"
+#include "dermis/layouts/decoder.hpp"
 
-namespace dermis::acquisition {
+namespace dermis::layouts {
 
 /// The bytes of a stream that a decoder has not yet made up its mind about: added at the end, dropped at the front.
 class ByteWindow {
@@ -56,4 +56,4 @@ class ByteWindow {
   std::uint64_t position_ = 0;
 };
 
-}  // namespace dermis::acquisition
+}  // namespace dermis::layouts

@@ -12,7 +12,7 @@
 #include "dermis/core/frame_source.hpp"
 #include "dermis/core/frames.hpp"
 
-namespace dermis::acquisition {
+namespace dermis::layouts {
 
 /// Result of the bytes so far.
 struct DecoderCounts {
@@ -74,4 +74,4 @@ class Decoder {
   [[nodiscard]] virtual std::string_view detected_protocol() const noexcept { return {}; }
 };
 
-}  // namespace dermis::acquisition
+}  // namespace dermis::layouts

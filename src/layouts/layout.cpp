@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/layouts/layout.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "layouts/frames_in_order.hpp"
+#include "layouts/packet_decoder.hpp"
+#include "layouts/text_decoder.hpp"
+
+namespace dermis::layouts {
+namespace {
+
+bool is_time(Role role) noexcept {
+  return role == Role::time || role == Role::clock || role == Role::datetime;
+}
+
+template <typename Fields>
+bool has_time(const Fields& fields) {
+  return std::any_of(fields.begin(), fields.end(), [](const auto& field) { return is_time(field.role); });
+}
+
+}  // namespace
+
+bool Layout::has_times() const {
+  const auto* const text = std::get_if<TextLayout>(&form);
+  return text != nullptr ? has_time(text->line) : has_time(std::get<PacketLayout>(form).packet);
+}
+
+Result<std::size_t> Layout::find_array(const std::string& name) const {
+  if (name.empty() && arrays.size() == 1) return std::size_t{0};
+  const auto found =
+      std::find_if(arrays.begin(), arrays.end(), [&](const LayoutArray& array) { return array.name == name; });
+  if (!name.empty() && found != arrays.end()) return static_cast<std::size_t>(found - arrays.begin());
+  std::string names;
+  for (const LayoutArray& array : arrays) names += (names.empty() ? "" : ", ") + array.name;
+  if (name.empty()) return bad_input("the layout has several arrays; name one: " + names);
+  return bad_input("the layout has no array '" + name + "'" + (names.empty() ? "" : "; it has " + names));
+}
+
+std::unique_ptr<Decoder> make_decoder(std::shared_ptr<const Layout> layout, std::size_t array,
+                                      bool waits_for_late_frames) {
+  const bool is_ordered = waits_for_late_frames && layout->has_times();
+  std::unique_ptr<Decoder> decoder;
+  if (std::holds_alternative<TextLayout>(layout->form)) {
+    decoder = std::make_unique<TextDecoder>(std::move(layout), array);
+  } else {
+    decoder = std::make_unique<PacketDecoder>(std::move(layout), array);
+  }
+  if (!is_ordered) return decoder;
+  return std::make_unique<FramesInOrder>(std::move(decoder));
+}
+
+}  // namespace dermis::layouts

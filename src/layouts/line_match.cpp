@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "layouts/line_match.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string_view>
+
+namespace dermis::layouts {
+namespace {
+
+constexpr std::size_t kMostShown = 24;
+constexpr double kMostNanos = 9e18;
+
+bool is_blank(std::uint8_t byte) noexcept {
+  return byte == ' ' || byte == '\t';
+}
+
+/// Blank, or a bracket of a list in a line.
+bool is_passed_over(std::uint8_t byte) noexcept {
+  return is_blank(byte) || byte == '[' || byte == ']' || byte == '(' || byte == ')';
+}
+
+std::uint32_t digit(std::uint8_t byte) noexcept {
+  return static_cast<std::uint32_t>(byte) - '0';
+}
+
+bool has_field(const TextLayout& text, Role role) {
+  return std::any_of(text.line.begin(), text.line.end(), [&](const TextField& field) { return field.role == role; });
+}
+
+/// How many readings of an array stand in a line: a frame, a row or a taxel of it.
+std::size_t values_of(const TextLayout& text, const FrameShape& shape) {
+  if (has_field(text, Role::col) || has_field(text, Role::first)) return 1;
+  const bool is_row = has_field(text, Role::row) || text.frame_end.has_value();
+  return is_row ? shape.cols : shape.taxel_count();
+}
+
+}  // namespace
+
+LineMatch::LineMatch(const Layout& layout, std::size_t array)
+    : layout_(layout),
+      text_(std::get<TextLayout>(layout.form)),
+      array_(array),
+      names_array_(has_field(text_, Role::array)),
+      numbers_(values_of(text_, layout.arrays[array].shape)) {
+  for (const LayoutArray& other : layout.arrays) counts_.push_back(values_of(text_, other.shape));
+  others_.resize(*std::max_element(counts_.begin(), counts_.end()));
+}
+
+bool LineMatch::read(std::span<const std::uint8_t> line, Piece& piece) {
+  piece = {};
+  piece.array = array_;
+  at_ = line.data();
+  end_ = line.data() + line.size();
+  for (std::size_t k = 0; k < text_.line.size(); ++k) {
+    const TextField* const next = k + 1 < text_.line.size() ? &text_.line[k + 1] : nullptr;
+    if (!read_field(text_.line[k], next, piece)) return false;
+  }
+  skip_separator();
+  return at_ == end_ || fail("the line should end");
+}
+
+std::string LineMatch::misfit() const {
+  if (at_ == end_) return std::string("at its end: ") + why_;
+  const std::size_t shown = std::min(kMostShown, static_cast<std::size_t>(end_ - at_));
+  std::string text(at_, at_ + shown);
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c < 0x20 || c > 0x7E; }, '?');
+  return "at '" + text + "': " + why_;
+}
+
+bool LineMatch::fail(const char* why) noexcept {
+  why_ = why;
+  return false;
+}
+
+bool LineMatch::read_field(const TextField& field, const TextField* next, Piece& piece) {
+  if (field.role == Role::literal) return read_literal(field.literal);
+  if (field.role == Role::values) return read_values(names_array_ ? piece.array : field.array);
+  skip_blanks();
+  double number = 0.0;
+  switch (field.role) {
+    case Role::skip: return skip_to(next);
+    case Role::row: return read_whole(piece.row);
+    case Role::col: return read_whole(piece.col);
+    case Role::first: return read_whole(piece.first);
+    case Role::frame: return read_whole(piece.frame);
+    case Role::flags: return read_whole(piece.flags);
+    case Role::array: return read_array(next, piece);
+    case Role::clock: return read_clock(piece.time_ns.emplace());
+    case Role::datetime: return read_datetime(piece.time_ns.emplace());
+    default: break;
+  }
+  if (!read_number(number)) return fail("a number is expected");
+  number *= field.unit;
+  if (field.role == Role::temperature) piece.temperature_celsius = number;
+  if (field.role == Role::supply && number > 0.0) piece.supply_v = number;
+  if (field.role != Role::time) return true;
+  const double nanos = std::round(1e9 * number);
+  if (!(nanos >= 0.0 && nanos < kMostNanos)) return fail("a time of 0 or more is expected");
+  piece.time_ns = static_cast<std::uint64_t>(nanos);
+  return true;
+}
+
+bool LineMatch::read_literal(const std::string& literal) noexcept {
+  if (!is_passed_over(static_cast<std::uint8_t>(literal.front()))) {
+    while (at_ != end_ && is_passed_over(*at_)) ++at_;
+  }
+  for (const char c : literal) {
+    const auto byte = static_cast<std::uint8_t>(c);
+    if (is_blank(byte)) {
+      skip_blanks();
+    } else if (at_ == end_ || *at_ != byte) {
+      return fail("other text is expected");
+    } else {
+      ++at_;
+    }
+  }
+  return true;
+}
+
+bool LineMatch::skip_to(const TextField* next) noexcept {
+  if (next == nullptr) {
+    at_ = end_;
+    return true;
+  }
+  const std::string_view first(next->literal.data(), next->literal.size());
+  const auto* const found = std::search(at_, end_, first.begin(), first.end(), [](std::uint8_t a, char b) {
+    return a == static_cast<std::uint8_t>(b) || (is_blank(a) && is_blank(static_cast<std::uint8_t>(b)));
+  });
+  at_ = found;
+  return found != end_ || fail("more is expected");
+}
+
+bool LineMatch::read_values(std::size_t array) {
+  const std::size_t count = counts_[array];
+  float* const values = array == array_ ? numbers_.data() : others_.data();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i == 0 || text_.width > 0) {
+      while (at_ != end_ && is_passed_over(*at_)) ++at_;
+    } else if (!skip_separator()) {
+      return fail(at_ == end_ ? "more readings are expected" : "a separator is expected");
+    }
+    if (!read_reading(values[i])) return fail("a reading is expected");
+  }
+  return true;
+}
+
+/// A reading, or NaN for an empty one and for nan.
+bool LineMatch::read_reading(float& value) noexcept {
+  const std::uint8_t* const first = at_;
+  if (text_.width > 0 || text_.is_hexadecimal) {
+    const std::uint8_t* const last =
+        text_.width > 0 && static_cast<std::size_t>(end_ - at_) >= text_.width ? at_ + text_.width : end_;
+    if (text_.width > 0 && last == end_ && static_cast<std::size_t>(end_ - at_) < text_.width) return false;
+    std::uint32_t whole = 0;
+    const char* const from = reinterpret_cast<const char*>(at_);
+    const auto [end, error] =
+        std::from_chars(from, reinterpret_cast<const char*>(last), whole, text_.is_hexadecimal ? 16 : 10);
+    if (error != std::errc{} || (text_.width > 0 && end != reinterpret_cast<const char*>(last))) return false;
+    at_ += end - from;
+    value = static_cast<float>(whole);
+    return true;
+  }
+  std::uint32_t whole = 0;
+  for (std::uint32_t next = digit(*at_); next <= 9; next = digit(*++at_)) whole = 10 * whole + next;
+  const bool is_whole = at_ != first && at_ - first <= 9 && *at_ != static_cast<std::uint8_t>(text_.decimal_point) &&
+                        (*at_ | 0x20U) != 'e';
+  if (is_whole) {
+    value = static_cast<float>(whole);
+    return true;
+  }
+  at_ = first;
+  double number = 0.0;
+  if (read_number(number)) {
+    value = static_cast<float>(number);
+    return true;
+  }
+  const bool is_empty = at_ != end_ && (*at_ == ',' || *at_ == ';');
+  value = std::numeric_limits<float>::quiet_NaN();
+  return is_empty;
+}
+
+bool LineMatch::read_whole(std::optional<std::uint64_t>& value) noexcept {
+  const char* const from = reinterpret_cast<const char*>(at_);
+  std::uint64_t whole = 0;
+  const auto [end, error] = std::from_chars(from, reinterpret_cast<const char*>(end_), whole);
+  if (error != std::errc{}) return fail("a whole number is expected");
+  at_ += end - from;
+  value = whole;
+  return true;
+}
+
+bool LineMatch::read_number(double& value) noexcept {
+  constexpr std::size_t kLongest = 32;
+  const std::uint8_t* last = at_;
+  std::array<char, kLongest> text{};
+  std::size_t size = 0;
+  const auto is_part = [](std::uint8_t byte) {
+    return digit(byte) <= 9 || byte == '+' || byte == '-' || (byte | 0x20U) == 'e' || (byte | 0x20U) == 'n' ||
+           (byte | 0x20U) == 'a';
+  };
+  if (last != end_ && *last == '+') ++last;
+  for (; last != end_ && size < kLongest; ++last) {
+    const bool is_point = *last == static_cast<std::uint8_t>(text_.decimal_point);
+    if (!is_point && !is_part(*last)) break;
+    text[size++] = is_point ? '.' : static_cast<char>(*last);
+  }
+  const auto [end, error] = std::from_chars(text.data(), text.data() + size, value);
+  if (error != std::errc{} || end != text.data() + size) return false;
+  at_ = last;
+  return true;
+}
+
+/// "18:45:00", with a fraction behind a point or comma.
+bool LineMatch::read_clock(std::uint64_t& nanos) noexcept {
+  const auto part = [&](std::uint64_t most, std::uint64_t& value) {
+    std::optional<std::uint64_t> whole;
+    if (!read_whole(whole) || *whole > most) return false;
+    value = *whole;
+    return true;
+  };
+  std::uint64_t hours = 0;
+  std::uint64_t minutes = 0;
+  std::uint64_t seconds = 0;
+  const auto colon = [&] { return at_ != end_ && *at_++ == ':'; };
+  if (!part(23, hours) || !colon() || !part(59, minutes) || !colon() || !part(60, seconds)) {
+    return fail("a time of day is expected, as 18:45:00");
+  }
+  nanos = ((hours * 60 + minutes) * 60 + seconds) * 1'000'000'000;
+  if (at_ == end_ || (*at_ != '.' && *at_ != ',') || at_ + 1 == end_ || digit(at_[1]) > 9) return true;
+  std::uint64_t unit = 100'000'000;
+  for (++at_; at_ != end_ && digit(*at_) <= 9; ++at_, unit /= 10) nanos += unit * digit(*at_);
+  return true;
+}
+
+bool LineMatch::read_datetime(std::uint64_t& nanos) noexcept {
+  std::optional<std::uint64_t> year;
+  std::optional<std::uint64_t> month;
+  std::optional<std::uint64_t> day;
+  const auto dash = [&] { return at_ != end_ && *at_++ == '-'; };
+  if (!read_whole(year) || !dash() || !read_whole(month) || !dash() || !read_whole(day) || at_ == end_) {
+    return fail("a date and time is expected, as 2026-11-27 18:45:00");
+  }
+  ++at_;
+  if (!read_clock(nanos)) return false;
+  if (at_ != end_ && *at_ == 'Z') ++at_;
+  if (*year < 1970 || *year > 2200 || *month > 12 || *day > 31) return fail("a date after 1970 is expected");
+  const std::chrono::year_month_day date{std::chrono::year(static_cast<int>(*year)),
+                                         std::chrono::month(static_cast<unsigned>(*month)),
+                                         std::chrono::day(static_cast<unsigned>(*day))};
+  if (!date.ok()) return fail("there is no such date");
+  nanos += static_cast<std::uint64_t>(Nanos(std::chrono::sys_days(date).time_since_epoch()).count());
+  return true;
+}
+
+/// A name or an id, up to a blank or the text that follows.
+bool LineMatch::read_array(const TextField* next, Piece& piece) {
+  const std::uint8_t stop = next != nullptr ? static_cast<std::uint8_t>(next->literal.front()) : 0;
+  const std::uint8_t* const last =
+      std::find_if(at_, end_, [&](std::uint8_t byte) { return is_blank(byte) || (next != nullptr && byte == stop); });
+  const std::string name(at_, last);
+  const auto found = std::find_if(layout_.arrays.begin(), layout_.arrays.end(), [&](const LayoutArray& array) {
+    return array.id ? name == std::to_string(*array.id) : name == array.name;
+  });
+  if (found == layout_.arrays.end()) return fail("the name or id of an array is expected");
+  at_ = last;
+  piece.array = static_cast<std::size_t>(found - layout_.arrays.begin());
+  return true;
+}
+
+void LineMatch::skip_blanks() noexcept {
+  while (at_ != end_ && is_blank(*at_)) ++at_;
+}
+
+/// True where something separates two readings.
+bool LineMatch::skip_separator() noexcept {
+  const std::uint8_t* const first = at_;
+  while (at_ != end_ && is_passed_over(*at_)) ++at_;
+  if (text_.separator.empty()) {
+    const bool is_sign = at_ != end_ && ((*at_ == ',' && text_.decimal_point != ',') || *at_ == ';');
+    if (is_sign) ++at_;
+  } else if (static_cast<std::size_t>(end_ - at_) >= text_.separator.size() &&
+             std::memcmp(at_, text_.separator.data(), text_.separator.size()) == 0) {
+    at_ += text_.separator.size();
+  } else if (!is_blank(static_cast<std::uint8_t>(text_.separator.front()))) {
+    return at_ == end_ ? false : (at_ = first, false);
+  }
+  const bool is_separated = at_ != first;
+  while (at_ != end_ && is_passed_over(*at_)) ++at_;
+  return is_separated;
+}
+
+}  // namespace dermis::layouts

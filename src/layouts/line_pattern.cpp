@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "layouts/line_pattern.hpp"
+
+#include "layouts/field_names.hpp"
+
+namespace dermis::layouts {
+namespace {
+
+constexpr std::size_t kLongestPattern = 4096;
+
+Status check_order(const std::vector<TextField>& fields) {
+  std::size_t values = 0;
+  for (std::size_t k = 0; k < fields.size(); ++k) {
+    const bool is_followed_by_field = k + 1 < fields.size() && fields[k + 1].role != Role::literal;
+    if (fields[k].role != Role::literal && is_followed_by_field) {
+      return bad_input("two fields need something between them, such as a comma");
+    }
+    if (fields[k].role == Role::values) ++values;
+  }
+  if (values == 0) return bad_input("has no readings: write {values}, or the name of an array, where they stand");
+  return Done{};
+}
+
+}  // namespace
+
+Result<std::vector<TextField>> parse_line_pattern(std::string_view pattern, const std::vector<LayoutArray>& arrays) {
+  if (pattern.size() > kLongestPattern) return bad_input("has more than 4096 characters");
+  std::vector<TextField> fields;
+  const auto add_text = [&](char c) {
+    if (fields.empty() || fields.back().role != Role::literal) fields.emplace_back();
+    fields.back().literal += c;
+  };
+  for (std::size_t at = 0; at < pattern.size(); ++at) {
+    const bool is_doubled = at + 1 < pattern.size() && pattern[at + 1] == pattern[at];
+    if (pattern[at] == '{' && !is_doubled) {
+      const std::size_t end = pattern.find('}', at);
+      if (end == std::string_view::npos) return bad_input("'{' has no '}'");
+      const Result<NamedField> field = field_named(pattern.substr(at + 1, end - at - 1), FieldsOf::line, arrays);
+      if (!field) return field.error();
+      fields.push_back({.role = field->role, .array = field->array, .unit = field->unit});
+      at = end;
+      continue;
+    }
+    if ((pattern[at] == '{' || pattern[at] == '}') && is_doubled) ++at;
+    add_text(pattern[at]);
+  }
+  if (Status ordered = check_order(fields); !ordered) return ordered.error();
+  return fields;
+}
+
+}  // namespace dermis::layouts

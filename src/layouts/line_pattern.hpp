@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dermis/core/result.hpp"
+#include "dermis/layouts/layout.hpp"
+
+namespace dermis::layouts {
+
+/// The fields of "{row},{values}". Errors are those of the pattern.
+[[nodiscard]] Result<std::vector<TextField>> parse_line_pattern(std::string_view pattern,
+                                                                const std::vector<LayoutArray>& arrays);
+
+}  // namespace dermis::layouts

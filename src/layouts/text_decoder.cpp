@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "layouts/text_decoder.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace dermis::layouts {
+namespace {
+
+constexpr std::size_t kLongestReading = 32;
+constexpr std::size_t kOtherText = 4096;
+constexpr std::uint64_t kNanosOfDay = 86'400'000'000'000;
+
+/// A line holds every array once at most.
+std::size_t longest_line(const Layout& layout) {
+  std::size_t taxels = 0;
+  for (const LayoutArray& array : layout.arrays) taxels += array.shape.taxel_count();
+  return kLongestReading * taxels + kOtherText;
+}
+
+Moduli moduli_of(const TextLayout& text) {
+  const bool has_clock =
+      std::any_of(text.line.begin(), text.line.end(), [](const TextField& field) { return field.role == Role::clock; });
+  return {0, has_clock ? kNanosOfDay : 0};
+}
+
+bool begins_with(std::span<const std::uint8_t> line, const std::string& text) noexcept {
+  return line.size() >= text.size() && std::equal(text.begin(), text.end(), line.begin(), [](char a, std::uint8_t b) {
+           return static_cast<std::uint8_t>(a) == b;
+         });
+}
+
+}  // namespace
+
+TextDecoder::TextDecoder(std::shared_ptr<const Layout> layout, std::size_t array)
+    : layout_(std::move(layout)),
+      text_(std::get<TextLayout>(layout_->form)),
+      array_(array),
+      end_byte_(text_.line_end.empty() ? '\n' : static_cast<std::uint8_t>(text_.line_end.back())),
+      lines_(longest_line(*layout_), end_byte_),
+      match_(*layout_, array),
+      assembly_(*layout_, array, moduli_of(text_)) {}
+
+bool TextDecoder::next(RawFrame& frame) {
+  for (;;) {
+    const std::span<const std::uint8_t> line = lines_.next();
+    if (line.empty()) break;
+    ++line_number_;
+    const bool is_frame = read(line, frame);
+    frame_end_ = is_frame ? lines_.position() : frame_end_;
+    lines_.forget();
+    if (is_frame) return true;
+  }
+  if (std::exchange(has_ended_, false)) {
+    assembly_.skip(lines_.forget_all());
+    assembly_.end_frame();
+  }
+  return false;
+}
+
+bool TextDecoder::read(std::span<const std::uint8_t> line, RawFrame& frame) {
+  const std::span<const std::uint8_t> text = without_end(line);
+  const bool has_end = line.back() == end_byte_;
+  if (has_end && !is_comment(text)) {
+    if (match_.read(text, piece_)) return assembly_.add(piece_, match_.numbers(), line.size(), frame);
+    if (ends_frame(text)) {
+      assembly_.end_frame();
+    } else if (counts().frames == 0) {
+      misfit_ = "line " + std::to_string(line_number_) + " does not fit layout.line " + match_.misfit();
+    }
+  }
+  assembly_.skip(line.size());
+  return false;
+}
+
+std::span<const std::uint8_t> TextDecoder::without_end(std::span<const std::uint8_t> line) const noexcept {
+  std::size_t size = line.size();
+  if (line.back() == end_byte_) --size;
+  if (text_.line_end.empty()) {
+    if (size > 0 && line[size - 1] == '\r') --size;
+    return line.first(size);
+  }
+  for (std::size_t k = text_.line_end.size() - 1; k > 0 && size > 0; --k, --size) {
+    if (line[size - 1] != static_cast<std::uint8_t>(text_.line_end[k - 1])) break;
+  }
+  return line.first(size);
+}
+
+bool TextDecoder::is_comment(std::span<const std::uint8_t> line) const noexcept {
+  return !text_.comment.empty() && begins_with(line, text_.comment);
+}
+
+bool TextDecoder::ends_frame(std::span<const std::uint8_t> line) const noexcept {
+  if (!text_.frame_end) return false;
+  return text_.frame_end->empty() ? line.empty() : begins_with(line, *text_.frame_end);
+}
+
+std::string TextDecoder::advice() const {
+  return counts().frames == 0 ? misfit_ : std::string();
+}
+
+}  // namespace dermis::layouts

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "dermis/layouts/decoder.hpp"
+#include "dermis/layouts/layout.hpp"
+#include "dermis/layouts/line_reader.hpp"
+#include "layouts/frame_assembly.hpp"
+#include "layouts/line_match.hpp"
+
+namespace dermis::layouts {
+
+/// Frames of a TextLayout.
+class TextDecoder final : public Decoder {
+ public:
+  TextDecoder(std::shared_ptr<const Layout> layout, std::size_t array);
+
+  void push(std::span<const std::uint8_t> bytes) override { lines_.push(bytes); }
+  [[nodiscard]] bool next(RawFrame& frame) override;
+  void finish() override { has_ended_ = true; }
+  [[nodiscard]] std::uint64_t frame_end() const noexcept override { return frame_end_; }
+  [[nodiscard]] std::optional<FrameShape> shape() const noexcept override { return layout_->arrays[array_].shape; }
+  [[nodiscard]] const DecoderCounts& counts() const noexcept override { return assembly_.counts(); }
+  [[nodiscard]] std::string advice() const override;
+
+ private:
+  [[nodiscard]] std::span<const std::uint8_t> without_end(std::span<const std::uint8_t> line) const noexcept;
+  [[nodiscard]] bool is_comment(std::span<const std::uint8_t> line) const noexcept;
+  [[nodiscard]] bool ends_frame(std::span<const std::uint8_t> line) const noexcept;
+  [[nodiscard]] bool read(std::span<const std::uint8_t> line, RawFrame& frame);
+
+  std::shared_ptr<const Layout> layout_;
+  const TextLayout& text_;
+  std::size_t array_;
+  std::uint8_t end_byte_;
+  LineReader lines_;
+  LineMatch match_;
+  FrameAssembly assembly_;
+  Piece piece_;
+  std::uint64_t line_number_ = 0;
+  std::uint64_t frame_end_ = 0;
+  std::string misfit_;  ///< Of the last line before the first frame that did not fit, with its number.
+  bool has_ended_ = false;
+};
+
+}  // namespace dermis::layouts

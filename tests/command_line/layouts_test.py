@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 The dermis authors
+"""Streams and files in any form, as layouts describe them. The samples of ../shared/data/layouts give the frames
+beside them, and a device is read as a file is."""
+
+import os
+import pty
+import threading
+import tty
+from pathlib import Path
+
+import numpy
+import support
+
+LAYOUTS = Path(__file__).parents[2] / "examples/layouts"
+SAMPLES = Path(__file__).parents[3] / "shared/data/layouts"
+ENDINGS = (".stream", ".csv", ".txt", ".CSV", ".asc")
+# Of those that hold several: the arrays whose frames stand beside them, along an axis of their own where there are two.
+ARRAYS = {"two_feet_sum8": ("left", "right"), "quoted_matrices": ("Matrix_0", "Matrix_1"), "SENSORLOG": ("right",)}
+
+
+class Layouts(support.SmallArray):
+    def completed(self, *arguments):
+        result = support.dermis(*arguments)
+        self.assertEqual(result.returncode, 0, result.stderr)
+
+    def frames_of(self, sample, layout, array):
+        out = self.work / "out.npy"
+        self.completed("convert", "--layout", layout, f"{sample}#{array}" if array else sample, out, "--force")
+        return numpy.load(out)
+
+    def test_samples_give_the_frames_that_are_in_them(self):
+        if not SAMPLES.exists():
+            self.skipTest("SKIPPED: ../shared/data/layouts is not there")
+        for layout in sorted(LAYOUTS.glob("*.toml")):
+            name = layout.stem
+            with self.subTest(name):
+                [sample] = (SAMPLES / (name + ending) for ending in ENDINGS if (SAMPLES / (name + ending)).exists())
+                found = [self.frames_of(sample, layout, array) for array in ARRAYS.get(name, (None,))]
+                wanted = numpy.load(SAMPLES / f"{name}.npy")
+                found = numpy.stack(found, axis=1) if len(found) > 1 else found[0]
+                numpy.testing.assert_array_equal(found, wanted.astype(numpy.float32))
+
+    def test_every_layout_of_the_examples_has_a_sample(self):
+        if not SAMPLES.exists():
+            self.skipTest("SKIPPED: ../shared/data/layouts is not there")
+        self.assertEqual(
+            {path.stem for path in SAMPLES.glob("*.npy")} - {path.stem for path in LAYOUTS.glob("*.toml")},
+            {"time_in_the_middle"},
+        )
+
+    def test_a_device_is_read_as_a_file_is(self):
+        layout = self.written("mat.toml", '[layout]\nrows = 2\ncols = 2\nline = "Frame {frame}: {values}"\n')
+        ours, theirs = pty.openpty()
+        tty.setraw(theirs)
+        lines = "".join(f"Frame {k}: {k} 1 2 3\r\n" for k in range(50)).encode()
+        device = f"serial://{os.ttyname(theirs)}?layout={layout}&reconnect_s=0"
+        sender = threading.Timer(0.5, os.write, (ours, lines))
+        sender.start()
+        out = self.work / "rec.mcap"
+        self.completed("record", "--from", device, "--out", out, "--frames", 50)
+        sender.join()
+        os.close(ours)
+        os.close(theirs)
+        self.completed("convert", out, self.work / "rec.npy")
+        numpy.testing.assert_array_equal(numpy.load(self.work / "rec.npy")[:, 0, 0], numpy.arange(50))
+
+    def test_times_of_a_file_are_those_of_its_frames(self):
+        layout = self.written("log.toml", '[layout]\nrows = 1\ncols = 2\nline = "{time_ms},{values}"\n')
+        log = self.written("LOG.TXT", "time,a,b\n1000,1,2\n1010,3,4\n1030,5,6\n")
+        self.completed("record", "--from", f"file:{log}?layout={layout}", "--out", self.work / "log.csv")
+        self.completed("convert", "--layout", layout, log, self.work / "again.csv")
+        for name in ("log.csv", "again.csv"):
+            rows = [line.split(",")[0] for line in (self.work / name).read_text().splitlines()[1:]]
+            self.assertEqual([round(float(row) - float(rows[0]), 6) for row in rows], [0.0, 0.01, 0.03], name)
+
+    def test_what_does_not_fit_is_one_line(self):
+        layout = self.written("mat.toml", '[layout]\nrows = 2\ncols = 2\nline = "{row}: {values}"\n')
+        wrong = self.written("wrong.toml", '[layout]\nrows = 2\ncols = 2\nline = "{row}: {vales}"\n')
+        feet = self.written("feet.toml", (LAYOUTS / "two_feet_sum8.toml").read_text())
+        text = self.written("it.txt", "hello\n0: 1 2\n1: x\n")
+        out = self.work / "out.npy"
+        convert = ["convert", text, out, "--layout"]
+        self.refuse([*convert, layout], [f"'{text}'", f"do not fit {layout}", "line 3", "at 'x'", "a reading"])
+        self.refuse([*convert, wrong], [f"{wrong}:4", "layout.line", "did you mean 'values'?"])
+        self.refuse([*convert, feet], [str(feet), "several arrays", "left, right"])
+        self.refuse([*convert, self.work / "none.toml"], ["none.toml"])
+        self.refuse(["convert", text, self.work / "out.csv", "--layout", layout], ["no times", "give a rate"])
+        self.assertFalse(out.exists())
+
+
+if __name__ == "__main__":
+    support.main()

@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/layouts/layout.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dermis::layouts {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+using Readings = std::vector<std::vector<float>>;
+
+constexpr const char* kTwoByTwo = "[layout]\nrows = 2\ncols = 2\n";
+
+Bytes bytes_of(std::string_view text) {
+  return {text.begin(), text.end()};
+}
+
+std::shared_ptr<const Layout> layout_of(const std::string& toml) {
+  Result<Layout> layout = layout_from_toml(toml, "it.toml");
+  EXPECT_TRUE(layout) << layout.error().message;
+  return std::make_shared<const Layout>(*std::move(layout));
+}
+
+std::string error_of(const std::string& toml) {
+  const Result<Layout> layout = layout_from_toml(toml, "it.toml");
+  return layout ? std::string() : layout.error().message;
+}
+
+std::vector<RawFrame> frames_of(Decoder& decoder, const Bytes& bytes, std::size_t piece = 7) {
+  std::vector<RawFrame> frames;
+  RawFrame frame;
+  for (std::size_t at = 0; at < bytes.size(); at += piece) {
+    decoder.push(std::span(bytes).subspan(at, std::min(piece, bytes.size() - at)));
+    while (decoder.next(frame)) frames.push_back(frame);
+  }
+  decoder.finish();
+  while (decoder.next(frame)) frames.push_back(frame);
+  return frames;
+}
+
+std::vector<RawFrame> frames_of(const std::string& toml, const Bytes& bytes, std::size_t array = 0) {
+  return frames_of(*make_decoder(layout_of(toml), array, true), bytes);
+}
+
+Readings readings_of(const std::vector<RawFrame>& frames) {
+  Readings readings;
+  for (const RawFrame& frame : frames) readings.push_back(frame.counts);
+  return readings;
+}
+
+Readings readings_of(const std::string& keys, std::string_view text) {
+  return readings_of(frames_of(kTwoByTwo + keys, bytes_of(text)));
+}
+
+Readings readings_of(const std::string& keys, const Bytes& bytes) {
+  return readings_of(frames_of(kTwoByTwo + keys, bytes));
+}
+
+const Readings kOneToEight = {{1, 2, 3, 4}, {5, 6, 7, 8}};
+
+TEST(TextLayout, a_line_is_a_frame_whatever_separates_its_values) {
+  for (const char* line : {"1 2 3 4\n5 6 7 8\n", "1,2,3,4,\r\n5,6,7,8,\r\n", "[[1, 2], [3, 4]]\n[[5, 6], [7, 8]]\n",
+                           "1,2;3,4\n5,6;7,8\n", "\t1\t2\t3\t4\n5.0 6e0 +7 8.\n"}) {
+    EXPECT_EQ(readings_of("line = \"{values}\"\n", line), kOneToEight) << line;
+  }
+}
+
+TEST(TextLayout, rows_come_in_any_order_by_their_numbers) {
+  EXPECT_EQ(readings_of("line = \"{row},{values}\"\n", "1,3,4\n0,1,2\n1,7,8\n0,5,6\n"), kOneToEight);
+}
+
+TEST(TextLayout, rows_without_a_number_end_with_a_line_of_their_own) {
+  const std::string keys = "line = \"{values}\"\nframe_end = ";
+  EXPECT_EQ(readings_of(keys + "\"\"\n", "1 2\n3 4\n\n5 6\n7 8\n\n"), kOneToEight);
+  EXPECT_EQ(readings_of(keys + "\"--\"\n", "3 4\n--\n1 2\n3 4\n-- 1\n9 9\n--\n5 6\n7 8\n--\n"), kOneToEight);
+}
+
+TEST(TextLayout, taxels_make_a_frame_when_all_have_come) {
+  EXPECT_EQ(readings_of("line = \"{row};{col};{value}\"\n", "0;0;1\n0;1;2\n1;1;4\n1;0;3\n0;0;5\n0;1;6\n1;0;7\n1;1;8\n"),
+            kOneToEight);
+}
+
+TEST(TextLayout, numbers_may_be_signed_broken_hexadecimal_or_of_one_width) {
+  EXPECT_EQ(readings_of("line = \"{values}\"\ndecimal_point = \",\"\n", "1,5 -2 3e1;4\n"),
+            (Readings{{1.5, -2, 30, 4}}));
+  EXPECT_EQ(readings_of("line = \"{values}\"\ndigits = \"hexadecimal\"\n", "0a FF 10 3\n"),
+            (Readings{{10, 255, 16, 3}}));
+  EXPECT_EQ(readings_of("line = \"p{values}\"\ndigits = \"hexadecimal\"\nwidth = 3\n", "p00aFFF010003\n"),
+            (Readings{{10, 4095, 16, 3}}));
+}
+
+TEST(TextLayout, missing_readings_are_not_numbers) {
+  const Readings readings = readings_of("line = \"{values}\"\nabsent = 0\nscale = -1.0\noffset = 10.0\n", "1,,nan,0\n");
+  ASSERT_EQ(readings.size(), 1U);
+  EXPECT_EQ(readings[0][0], 9.0F);
+  EXPECT_TRUE(std::all_of(readings[0].begin() + 1, readings[0].end(), [](float x) { return std::isnan(x); }));
+}
+
+TEST(TextLayout, what_surrounds_the_readings_goes_into_the_frame) {
+  const auto frames = frames_of(
+      std::string(kTwoByTwo) + "line = \"t={time_ms} #{frame} {temperature}C {supply}V: {values} ({skip})\"\n",
+      bytes_of("t=1000 #7 21.5C 3.3V: 1 2 3 4 (ok)\nt=1020.5 #10 21.5C 3.3V: 5 6 7 8 ()\n"));
+  EXPECT_EQ(readings_of(frames), kOneToEight);
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_EQ(frames[1].acquisition.device_time, Nanos(1'020'500'000));
+  EXPECT_EQ(frames[1].acquisition.sequence, 10U);
+  EXPECT_EQ(frames[1].acquisition.lost_before, 2U);
+  EXPECT_EQ(frames[1].temperature_celsius, 21.5);
+  EXPECT_EQ(frames[1].supply_v, 3.3);
+}
+
+TEST(TextLayout, a_clock_goes_on_over_midnight_and_a_date_counts_from_1970) {
+  const std::string clock = std::string(kTwoByTwo) + "line = \"{clock} {values}\"\n";
+  const auto night = frames_of(clock, bytes_of("23:59:59.500 1 2 3 4\n00:00:00,500 5 6 7 8\n"));
+  ASSERT_EQ(night.size(), 2U);
+  EXPECT_EQ(*night[1].acquisition.device_time - *night[0].acquisition.device_time, std::chrono::seconds(1));
+  const auto dated = frames_of(std::string(kTwoByTwo) + "line = \"{datetime},{values}\"\n",
+                               bytes_of("1970-01-02T00:00:01.25Z,1,2,3,4\n"));
+  ASSERT_EQ(dated.size(), 1U);
+  EXPECT_EQ(dated[0].acquisition.device_time, Nanos(86'401'250'000'000));
+}
+
+TEST(TextLayout, late_frames_are_put_in_order) {
+  const std::string toml = std::string(kTwoByTwo) + "line = \"{time_ms} {frame} {values}\"\n";
+  const auto frames =
+      frames_of(toml, bytes_of("0 0 0 0 0 0\n40 2 5 6 7 8\n60 3 1 1 1 1\n20 1 1 2 3 4\n80 4 2 2 2 2\n"));
+  EXPECT_EQ(readings_of(frames), (Readings{{0, 0, 0, 0}, {1, 2, 3, 4}, {5, 6, 7, 8}, {1, 1, 1, 1}, {2, 2, 2, 2}}));
+  for (const RawFrame& frame : frames) EXPECT_EQ(frame.acquisition.lost_before, 0U);
+}
+
+TEST(TextLayout, frames_that_the_device_calls_corrupt_are_dropped_and_absent_ones_have_no_readings) {
+  const std::string toml =
+      std::string(kTwoByTwo) + "line = \"{values} {flags}\"\nflags.corrupt = [4, 6]\nflags.absent = [2]\n";
+  const auto decoder = make_decoder(layout_of(toml), 0, true);
+  const auto frames = frames_of(*decoder, bytes_of("1 2 3 4 0\n0 0 0 0 6\n9 9 9 9 2\n5 6 7 8 1\n"));
+  ASSERT_EQ(frames.size(), 3U);
+  EXPECT_TRUE(std::isnan(frames[1].counts[0]));
+  EXPECT_EQ(decoder->counts().damaged_frames, 1U);
+}
+
+TEST(TextLayout, what_does_not_fit_is_no_reading) {
+  EXPECT_EQ(readings_of("line = \"{values}\"\ncomment = \"#\"\n",
+                        "a,b,c,d\n1 2 3 4\nDEBUG 17\n#1 2 3 4\n1 2 3\n1 2 3 4 5\n5 6 7 8\n5 6 7"),
+            kOneToEight);
+}
+
+TEST(TextLayout, says_which_line_does_not_fit_and_where) {
+  const auto decoder = make_decoder(layout_of(std::string(kTwoByTwo) + "line = \"{row}: {values}\"\n"), 0, true);
+  EXPECT_TRUE(frames_of(*decoder, bytes_of("\n0: 1 x\n")).empty());
+  EXPECT_EQ(decoder->advice(), "line 2 does not fit layout.line at 'x': a reading is expected");
+}
+
+TEST(TextLayout, several_arrays_in_a_line_or_in_turn_are_told_apart) {
+  const std::string arrays =
+      "[[layout.array]]\nname = \"l\"\nrows = 1\ncols = 2\nid = 1\n"
+      "[[layout.array]]\nname = \"r\"\nrows = 1\ncols = 2\nid = 2\n";
+  EXPECT_EQ(readings_of(frames_of("[layout]\nline = \"{r}|{l}\"\n" + arrays, bytes_of("1 2|3 4\n"))),
+            (Readings{{3, 4}}));
+  const std::string in_turn = "[layout]\nline = \"{array}:{values}\"\n" + arrays;
+  const Bytes turns = bytes_of("1:1 2\n2:3 4\n1:5 6\n");
+  EXPECT_EQ(readings_of(frames_of(in_turn, turns, 0)), (Readings{{1, 2}, {5, 6}}));
+  EXPECT_EQ(readings_of(frames_of(in_turn, turns, 1)), (Readings{{3, 4}}));
+}
+
+TEST(PacketLayout, numbers_stand_in_either_order_and_any_width) {
+  EXPECT_EQ(readings_of("packet = [\"AA\", \"values u8\"]\n", {0xAA, 1, 2, 3, 4, 0xAA, 5, 6, 7, 8}), kOneToEight);
+  EXPECT_EQ(readings_of("packet = [\"AA\", \"values u16be\"]\n", {0xAA, 0, 1, 0, 2, 1, 0, 0, 4}),
+            (Readings{{1, 2, 256, 4}}));
+  EXPECT_EQ(readings_of("packet = [\"AA\", \"values i16le\"]\n", {0xAA, 0xFF, 0xFF, 2, 0, 0, 0x80, 4, 0}),
+            (Readings{{-1, 2, -32768, 4}}));
+  EXPECT_EQ(readings_of("packet = [\"AA\", \"values u12be\"]\n", {0xAA, 0x12, 0x34, 0x56, 0x78, 0x9A, 0xBC}),
+            (Readings{{0x123, 0x456, 0x789, 0xABC}}));
+  EXPECT_EQ(readings_of("packet = [\"AA\", \"values u12le\"]\n", {0xAA, 0x23, 0x61, 0x45, 0x89, 0xC7, 0xAB}),
+            (Readings{{0x123, 0x456, 0x789, 0xABC}}));
+  EXPECT_EQ(readings_of("packet = [\"AA\", \"values u10le\"]\n", {0xAA, 0xFF, 0x03, 0x00, 0x00, 0x40}),
+            (Readings{{0x3FF, 0, 0, 0x100}}));
+  EXPECT_EQ(readings_of("packet = [\"AA\", \"values f32le\"]\n",
+                        {0xAA, 0, 0, 0x80, 0x3F, 0, 0, 0, 0x40, 0, 0, 0x40, 0x40, 0, 0, 0x80, 0x40}),
+            (Readings{{1, 2, 3, 4}}));
+}
+
+/// Published check values over "123456789".
+TEST(PacketLayout, checksums_have_the_check_values_of_their_catalogue) {
+  const struct {
+    const char* checksum;
+    Bytes value;
+  } known[] = {{"sum8", {0xDD}},
+               {"xor8", {0x31}},
+               {"crc8", {0xF4}},
+               {"crc8-maxim", {0xA1}},
+               {"crc16be", {0x29, 0xB1}},
+               {"crc16-xmodemle", {0xC3, 0x31}},
+               {"crc16-modbusbe", {0x4B, 0x37}},
+               {"crc16-kermitbe", {0x21, 0x89}},
+               {"crc32be", {0xCB, 0xF4, 0x39, 0x26}},
+               {"sum16be", {0x01, 0xDD}},
+               {"sum8 negated", {0x23}},
+               {"crc16be poly=8005 init=0000 reflected", {0xBB, 0x3D}}};
+  for (const auto& [checksum, value] : known) {
+    const std::string keys =
+        std::string("packet = [\"31 32 33 34 35\", \"values u8\", \"checksum ") + checksum + "\"]\n";
+    Bytes bytes = bytes_of("123456789");
+    bytes.insert(bytes.end(), value.begin(), value.end());
+    EXPECT_EQ(readings_of(keys, bytes), (Readings{{'6', '7', '8', '9'}})) << checksum;
+    bytes.back() ^= 1;
+    EXPECT_TRUE(readings_of(keys, bytes).empty()) << checksum;
+  }
+}
+
+TEST(PacketLayout, escapes_are_undone) {
+  const std::string packet = "packet = [\"values u8\", \"checksum sum8\"]\nescape = ";
+  EXPECT_EQ(readings_of(packet + "\"cobs\"\n", {1, 3, 1, 2, 2, 3, 0, 6, 1, 2, 3, 4, 10, 0}),
+            (Readings{{0, 1, 2, 0}, {1, 2, 3, 4}}));
+  EXPECT_EQ(readings_of(packet + "\"slip\"\n", {0xC0, 0xDB, 0xDC, 0xDB, 0xDD, 1, 2, 0x9E, 0xC0}),
+            (Readings{{0xC0, 0xDB, 1, 2}}));
+  EXPECT_EQ(readings_of(packet + "\"7E 7D 20\"\n", {0x7E, 0x7D, 0x5E, 0x7D, 0x5D, 1, 2, 0xFE, 0x7E}),
+            (Readings{{0x7E, 0x7D, 1, 2}}));
+}
+
+TEST(PacketLayout, counters_and_clocks_go_on_where_they_wrap) {
+  const auto frames = frames_of(std::string(kTwoByTwo) +
+                                    "packet = [\"AA\", \"frame u8\", \"time_ms u16le\", "
+                                    "\"temperature i16le *0.01\", \"values u8\"]\n",
+                                {0xAA, 255, 0xFF, 0xFF, 0x66, 8, 1, 2, 3, 4, 0xAA, 2, 9, 0, 0x66, 8, 5, 6, 7, 8});
+  ASSERT_EQ(readings_of(frames), kOneToEight);
+  EXPECT_EQ(frames[1].acquisition.lost_before, 2U);
+  EXPECT_EQ(*frames[1].acquisition.device_time - *frames[0].acquisition.device_time, std::chrono::milliseconds(10));
+  EXPECT_NEAR(*frames[0].temperature_celsius, 21.5, 1e-9);
+}
+
+TEST(PacketLayout, a_frame_may_come_in_runs) {
+  EXPECT_EQ(readings_of("packet = [\"AA\", \"first u8\", \"count u8\", \"values u8\"]\n",
+                        {0xAA, 0, 3, 1, 2, 3, 0xAA, 3, 1, 4, 0xAA, 0, 4, 5, 6, 7, 8}),
+            kOneToEight);
+}
+
+TEST(PacketLayout, damaged_bytes_cost_no_more_than_their_frames) {
+  const std::string toml = std::string(kTwoByTwo) + "packet = [\"AA 55\", \"values u8\", \"checksum xor8\"]\n";
+  const Bytes one = {0xAA, 0x55, 1, 2, 3, 4, 0xFB};
+  Bytes bytes;
+  for (int k = 0; k < 20; ++k) bytes.insert(bytes.end(), one.begin(), one.end());
+  for (std::size_t at = 0; at < bytes.size(); ++at) {
+    Bytes damaged = bytes;
+    damaged[at] ^= 0x10;
+    EXPECT_GE(frames_of(toml, damaged).size(), 19U) << at;
+    damaged.erase(damaged.begin() + static_cast<std::ptrdiff_t>(at));
+    EXPECT_GE(frames_of(toml, damaged).size(), 19U) << at;
+  }
+}
+
+TEST(LayoutToml, errors_name_the_line_the_key_and_the_mend) {
+  const std::string two = kTwoByTwo;
+  EXPECT_EQ(error_of(two), "it.toml: layout.line: give either line, for text, or packet, for bytes");
+  EXPECT_EQ(error_of(two + "line = \"{vales}\"\n"),
+            "it.toml:4: layout.line: 'vales' is no field; did you mean 'values'?");
+  EXPECT_EQ(error_of(two + "line = \"{row}{values}\"\n"),
+            "it.toml:4: layout.line: two fields need something between them, such as a comma");
+  EXPECT_EQ(
+      error_of(two + "packet = [\"FF\", \"values u16\"]\n"),
+      "it.toml:4: layout.packet: field 2: 'u16' is no type: it is u8, i8, u10, u12, u16, i16, u24, u32, i32, f32 or "
+      "f64, then le where the low byte comes first or be where the high byte does");
+  EXPECT_EQ(error_of(two + "packet = [\"values u8\"]\n"),
+            "it.toml:4: layout.packet: must begin with bytes that mark it, as \"FF FF\", or have an escape");
+  EXPECT_EQ(error_of("[layout]\nrows = 2\nline = \"{values}\"\n"),
+            "it.toml: layout.cols: is missing; it has no default");
+  EXPECT_NE(error_of(two + "line = \"{values}\"\nseperator = \";\"\n").find("did you mean 'layout.separator'?"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace dermis::layouts
