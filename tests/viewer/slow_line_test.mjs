@@ -10,8 +10,8 @@ import { arrayToml, assertUnhurt, becomes, bench, browser, networkDevice, openPa
 
 const TICK_MS = 20;
 const HELD_BYTES = 4096;
-const SETTLE_MS = 4000;
-const LOOK_MS = 3000;
+const SETTLE_MS = 8000;
+const LOOK_MS = 4000;
 const SAID_MS = 1000;
 /** After so long without frames the page says so. */
 const QUIET_MS = 2000;
