@@ -48,6 +48,7 @@ LineMatch::LineMatch(const Layout& layout, std::size_t array)
       text_(std::get<TextLayout>(layout.form)),
       array_(array),
       names_array_(has_field(text_, Role::array)),
+      has_plain_separators_(text_.separator.empty() && text_.decimal_point != ','),
       numbers_(values_of(text_, layout.arrays[array].shape)) {
   for (const LayoutArray& other : layout.arrays) counts_.push_back(values_of(text_, other.shape));
   others_.resize(*std::max_element(counts_.begin(), counts_.end()));
@@ -144,6 +145,8 @@ bool LineMatch::read_values(std::size_t array) {
   for (std::size_t i = 0; i < count; ++i) {
     if (i == 0 || text_.width > 0) {
       while (at_ != end_ && is_passed_over(*at_)) ++at_;
+    } else if (is_plain_separator()) {
+      ++at_;  // nearly all of them
     } else if (!skip_separator()) {
       return fail(at_ == end_ ? "more readings are expected" : "a separator is expected");
     }
@@ -277,6 +280,11 @@ bool LineMatch::read_array(const TextField* next, Piece& piece) {
 
 void LineMatch::skip_blanks() noexcept {
   while (at_ != end_ && is_blank(*at_)) ++at_;
+}
+
+/// One byte between two readings, as most lines have it.
+bool LineMatch::is_plain_separator() const noexcept {
+  return has_plain_separators_ && at_ != end_ && (*at_ == ',' || *at_ == ' ') && digit(at_[1]) <= 9;
 }
 
 /// True where something separates two readings.

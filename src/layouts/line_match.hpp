@@ -40,11 +40,13 @@ class LineMatch {
   bool read_array(const TextField* next, Piece& piece);
   void skip_blanks() noexcept;
   bool skip_separator() noexcept;
+  [[nodiscard]] bool is_plain_separator() const noexcept;
 
   const Layout& layout_;
   const TextLayout& text_;
   std::size_t array_;
-  bool names_array_;                 ///< A field says whose readings a line has.
+  bool names_array_;  ///< A field says whose readings a line has.
+  bool has_plain_separators_;
   std::vector<std::size_t> counts_;  ///< Readings of each array in a line.
   std::vector<float> numbers_;
   std::vector<float> others_;  ///< Readings of other arrays.
