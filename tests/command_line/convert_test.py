@@ -560,7 +560,9 @@ class Recover(FrameFiles):
     def test_a_damaged_chunk_is_left_out_and_told(self):
         damaged = bytearray(self.long.read_bytes())
         begin, end = middle_chunk(damaged)
-        damaged[(begin + end) // 2] ^= 0x10
+        middle = (begin + end) // 2
+        # One bit of LZ4 may lead a copy to other bytes that are the same; that loses nothing.
+        damaged[middle : middle + 64] = bytes(byte ^ 0x5A for byte in damaged[middle : middle + 64])
         (self.work / "damaged.mcap").write_bytes(damaged)
         text = self.succeed("recover", self.work / "damaged.mcap", "--out", self.work / "out.mcap")
         self.assertRegex(text, r"1 damaged chunk with \d+ messages is lost")
