@@ -21,7 +21,7 @@ FrameAssembly::FrameAssembly(const Layout& layout, std::size_t array, const Modu
     : layout_(layout),
       array_(array),
       shape_(layout.arrays[array].shape),
-      has_plain_readings_(layout.scale == 1.0 && layout.offset == 0.0 && layout.absent.empty()),
+      has_plain_readings_(layout.scale == 1.0 && layout.offset == 0.0 && !layout.absent),
       readings_(shape_.taxel_count()),
       is_filled_(shape_.taxel_count()),
       frame_number_(moduli.frame),
@@ -80,9 +80,8 @@ void FrameAssembly::fill(std::size_t begin, std::span<const float> numbers) {
   if (has_plain_readings_) return;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const auto number = static_cast<double>(numbers[i]);
-    const bool is_absent = std::find(layout_.absent.begin(), layout_.absent.end(), number) != layout_.absent.end();
-    readings[i] = is_absent ? std::numeric_limits<float>::quiet_NaN()
-                            : static_cast<float>(layout_.scale * number + layout_.offset);
+    readings[i] = number == layout_.absent ? std::numeric_limits<float>::quiet_NaN()
+                                           : static_cast<float>(layout_.scale * number + layout_.offset);
   }
 }
 

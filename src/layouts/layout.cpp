@@ -6,19 +6,16 @@
 #include <utility>
 
 #include "layouts/frames_in_order.hpp"
+#include "layouts/has_role.hpp"
 #include "layouts/packet_decoder.hpp"
 #include "layouts/text_decoder.hpp"
 
 namespace dermis::layouts {
 namespace {
 
-bool is_time(Role role) noexcept {
-  return role == Role::time || role == Role::clock || role == Role::datetime;
-}
-
-template <typename Fields>
-bool has_time(const Fields& fields) {
-  return std::any_of(fields.begin(), fields.end(), [](const auto& field) { return is_time(field.role); });
+template <typename Field>
+bool has_time(const std::vector<Field>& fields) {
+  return has_role(fields, Role::time) || has_role(fields, Role::clock) || has_role(fields, Role::datetime);
 }
 
 }  // namespace

@@ -3,12 +3,12 @@
 
 // The table [layout] of a TOML file (docs/layouts.md).
 #include <algorithm>
-#include <set>
 #include <utility>
 
 #include "dermis/core/array_description.hpp"
 #include "dermis/files/config_table.hpp"
 #include "dermis/layouts/layout.hpp"
+#include "layouts/has_role.hpp"
 #include "layouts/line_pattern.hpp"
 #include "layouts/packet_entry.hpp"
 
@@ -30,7 +30,6 @@ class LayoutReader {
     const bool is_text = file_.contains("layout.line");
     if (is_text == file_.contains("layout.packet")) {
       fail("line", "give either line, for text, or packet, for bytes");
-      if (is_text) static_cast<void>(file_.contains("layout.packet"));
     }
     read_arrays();
     if (is_text) {
@@ -156,14 +155,11 @@ class LayoutReader {
 
   void check(const PacketLayout& packet) {
     const std::vector<PacketField>& fields = packet.packet;
-    const auto has_role = [&](Role role) {
-      return std::any_of(fields.begin(), fields.end(), [&](const PacketField& field) { return field.role == role; });
-    };
     const bool has_mark = !fields.empty() && fields.front().role == Role::literal;
     if (packet.escape == PacketLayout::Escape::none && !has_mark) {
       fail("packet", "must begin with bytes that mark it, as \"FF FF\", or have an escape");
     }
-    if (!has_role(Role::values)) fail("packet", "has no readings, as \"values u16le\"");
+    if (!has_role(fields, Role::values)) fail("packet", "has no readings, as \"values u16le\"");
     for (const PacketField& field : fields) {
       if (field.literal.size() > kMostLiteral) fail("packet", "a field has more than 256 bytes");
       const std::size_t taxels = layout_.arrays[field.array].shape.taxel_count();
@@ -171,14 +167,14 @@ class LayoutReader {
     }
     const bool has_ids = std::all_of(layout_.arrays.begin(), layout_.arrays.end(),
                                      [](const LayoutArray& array) { return array.id.has_value(); });
-    if (has_role(Role::array) && !has_ids) fail("array", "each array needs an id, which the field array holds");
+    if (has_role(fields, Role::array) && !has_ids) fail("array", "each array needs an id, which the field array holds");
   }
 
   void read_readings() {
     file_.number(key("scale"), layout_.scale);
     file_.number(key("offset"), layout_.offset);
     if (layout_.scale == 0.0) fail("scale", "must not be 0");
-    read_absent();
+    file_.number(key("absent"), layout_.absent);
     read_flags("absent", layout_.flags.absent);
     read_flags("late", layout_.flags.late);
     read_flags("corrupt", layout_.flags.corrupt);
@@ -190,11 +186,6 @@ class LayoutReader {
     if (layout_.rate_hz && !(*layout_.rate_hz > 0.0 && *layout_.rate_hz <= 1e6)) {
       fail("rate", "must be above 0 and at most 1e6 frames a second");
     }
-  }
-
-  void read_absent() {
-    if (!file_.contains(key("absent"))) return;
-    file_.number(key("absent"), layout_.absent.emplace_back());
   }
 
   void read_flags(const std::string& name, std::vector<std::uint64_t>& values) {

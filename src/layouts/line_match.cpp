@@ -11,6 +11,8 @@
 #include <limits>
 #include <string_view>
 
+#include "layouts/has_role.hpp"
+
 namespace dermis::layouts {
 namespace {
 
@@ -30,14 +32,10 @@ std::uint32_t digit(std::uint8_t byte) noexcept {
   return static_cast<std::uint32_t>(byte) - '0';
 }
 
-bool has_field(const TextLayout& text, Role role) {
-  return std::any_of(text.line.begin(), text.line.end(), [&](const TextField& field) { return field.role == role; });
-}
-
 /// How many readings of an array stand in a line: a frame, a row or a taxel of it.
 std::size_t values_of(const TextLayout& text, const FrameShape& shape) {
-  if (has_field(text, Role::col) || has_field(text, Role::first)) return 1;
-  const bool is_row = has_field(text, Role::row) || text.frame_end.has_value();
+  if (has_role(text.line, Role::col) || has_role(text.line, Role::first)) return 1;
+  const bool is_row = has_role(text.line, Role::row) || text.frame_end.has_value();
   return is_row ? shape.cols : shape.taxel_count();
 }
 
@@ -47,7 +45,7 @@ LineMatch::LineMatch(const Layout& layout, std::size_t array)
     : layout_(layout),
       text_(std::get<TextLayout>(layout.form)),
       array_(array),
-      names_array_(has_field(text_, Role::array)),
+      names_array_(has_role(text_.line, Role::array)),
       has_plain_separators_(text_.separator.empty() && text_.decimal_point != ','),
       numbers_(values_of(text_, layout.arrays[array].shape)) {
   for (const LayoutArray& other : layout.arrays) counts_.push_back(values_of(text_, other.shape));

@@ -8,17 +8,13 @@
 #include <utility>
 
 #include "layouts/escapes.hpp"
+#include "layouts/has_role.hpp"
 
 namespace dermis::layouts {
 namespace {
 
 constexpr std::size_t kBytesOfReading = 8;
 constexpr std::size_t kOtherBytes = 4096;
-
-bool has_field(const PacketLayout& layout, Role role) {
-  return std::any_of(layout.packet.begin(), layout.packet.end(),
-                     [&](const PacketField& field) { return field.role == role; });
-}
 
 std::uint64_t range_of(const PacketField& field) {
   return field.type.bits < 64 && field.type.kind == WireType::Kind::whole ? std::uint64_t{1} << field.type.bits : 0;
@@ -46,7 +42,7 @@ PacketDecoder::PacketDecoder(std::shared_ptr<const Layout> layout, std::size_t a
     : layout_(std::move(layout)),
       form_(std::get<PacketLayout>(layout_->form)),
       array_(array),
-      has_checksum_(has_field(form_, Role::checksum)),
+      has_checksum_(has_role(form_.packet, Role::checksum)),
       longest_packet_(longest_packet(*layout_)),
       match_(*layout_, array),
       assembly_(*layout_, array, moduli_of(form_)) {}

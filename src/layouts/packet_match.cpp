@@ -6,6 +6,8 @@
 #include <bit>
 #include <cmath>
 
+#include "layouts/has_role.hpp"
+
 namespace dermis::layouts {
 namespace {
 
@@ -64,7 +66,10 @@ void read_numbers(std::span<const std::uint8_t> bytes, const WireType& type, std
 }  // namespace
 
 PacketMatch::PacketMatch(const Layout& layout, std::size_t array)
-    : layout_(layout), packet_(std::get<PacketLayout>(layout.form).packet), array_(array) {
+    : layout_(layout),
+      packet_(std::get<PacketLayout>(layout.form).packet),
+      array_(array),
+      names_array_(has_role(packet_, Role::array)) {
   std::size_t most = 0;
   for (const LayoutArray& one : layout.arrays) most = std::max(most, one.shape.taxel_count());
   numbers_.resize(most);
@@ -119,10 +124,8 @@ PacketMatch::Outcome PacketMatch::read_literal(const PacketField& field, std::sp
 
 PacketMatch::Outcome PacketMatch::read_values(const PacketField& field, std::span<const std::uint8_t> bytes,
                                               const Piece& piece) {
-  const bool has_array =
-      std::any_of(packet_.begin(), packet_.end(), [](const PacketField& other) { return other.role == Role::array; });
-  const std::size_t array = has_array ? piece.array : field.array;
-  const std::size_t count = count_of(field, piece);
+  const std::size_t array = names_array_ ? piece.array : field.array;
+  const std::size_t count = count_of(field, layout_.arrays[array].shape, piece);
   if (count > layout_.arrays[array].shape.taxel_count()) return Outcome::foreign;
   const std::size_t size = bytes_of(field.type, count);
   if (bytes.size() < size) return Outcome::unfinished;
@@ -134,11 +137,10 @@ PacketMatch::Outcome PacketMatch::read_values(const PacketField& field, std::spa
 }
 
 /// As many as the packet says, or as its array has left.
-std::size_t PacketMatch::count_of(const PacketField& field, const Piece& piece) const noexcept {
+std::size_t PacketMatch::count_of(const PacketField& field, const FrameShape& shape,
+                                  const Piece& piece) const noexcept {
   if (given_count_) return static_cast<std::size_t>(std::min<std::uint64_t>(*given_count_, SIZE_MAX / 128));
   if (field.count > 0) return field.count;
-  const bool has_array = piece.array != array_;
-  const FrameShape& shape = layout_.arrays[has_array ? piece.array : field.array].shape;
   if (piece.col) return 1;
   if (piece.row) return shape.cols;
   return shape.taxel_count() -

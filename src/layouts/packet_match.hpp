@@ -40,11 +40,13 @@ class PacketMatch {
   [[nodiscard]] Outcome read_literal(const PacketField& field, std::span<const std::uint8_t> bytes);
   [[nodiscard]] Outcome read_values(const PacketField& field, std::span<const std::uint8_t> bytes, const Piece& piece);
   [[nodiscard]] bool use(const PacketField& field, double number, Piece& piece);
-  [[nodiscard]] std::size_t count_of(const PacketField& field, const Piece& piece) const noexcept;
+  [[nodiscard]] std::size_t count_of(const PacketField& field, const FrameShape& shape,
+                                     const Piece& piece) const noexcept;
 
   const Layout& layout_;
   const std::vector<PacketField>& packet_;
   std::size_t array_;
+  bool names_array_;                   ///< A field says whose readings a packet has.
   std::vector<ChecksumOf> checksums_;  ///< [fields]
   std::vector<float> numbers_;
   std::size_t count_ = 0;  ///< Of them.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "layouts/has_role.hpp"
+
 namespace dermis::layouts {
 namespace {
 

@@ -245,6 +245,15 @@ TEST(PacketLayout, a_frame_may_come_in_runs) {
             kOneToEight);
 }
 
+TEST(PacketLayout, arrays_in_turn_may_differ_in_size) {
+  const std::string toml =
+      "[layout]\npacket = [\"AA\", \"array u8\", \"values u8\"]\n[[layout.array]]\nname = \"l\"\nrows = 1\ncols = 1\n"
+      "id = 1\n[[layout.array]]\nname = \"r\"\nrows = 1\ncols = 3\nid = 2\n";
+  const Bytes bytes = {0xAA, 1, 7, 0xAA, 2, 1, 2, 3, 0xAA, 1, 8, 0xAA, 2, 4, 5, 6};
+  EXPECT_EQ(readings_of(frames_of(toml, bytes, 0)), (Readings{{7}, {8}}));
+  EXPECT_EQ(readings_of(frames_of(toml, bytes, 1)), (Readings{{1, 2, 3}, {4, 5, 6}}));
+}
+
 TEST(PacketLayout, damaged_bytes_cost_no_more_than_their_frames) {
   const std::string toml = std::string(kTwoByTwo) + "packet = [\"AA 55\", \"values u8\", \"checksum xor8\"]\n";
   const Bytes one = {0xAA, 0x55, 1, 2, 3, 4, 0xFB};

@@ -123,7 +123,7 @@ struct Layout {
   std::variant<TextLayout, PacketLayout> form;
   double scale = 1.0;  ///< A reading is scale * number + offset.
   double offset = 0.0;
-  std::vector<double> absent{};  ///< Numbers that mean no reading.
+  std::optional<double> absent{};  ///< A number that means no reading.
   LayoutFlags flags{};
   std::string unit = "counts";      ///< Of a reading: counts, volts, ohms, kPa or newtons.
   std::optional<double> rate_hz{};  ///< Frames a second; times of a file without times.
@@ -139,7 +139,7 @@ struct Layout {
 [[nodiscard]] Result<Layout> layout_from_toml(std::string_view text, const std::string& name);
 
 /// Decodes the frames of one array of the layout. With `waits_for_late_frames`, frames are put in order where they come
-/// up to a second late, and each waits for it; otherwise late ones are dropped as damaged. Thread-compatible.
+/// up to a second late, and each waits for it; otherwise they come as they are sent. Thread-compatible.
 [[nodiscard]] std::unique_ptr<Decoder> make_decoder(std::shared_ptr<const Layout> layout, std::size_t array,
                                                     bool waits_for_late_frames);
 

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "dermis/layouts/layout.hpp"
+
+namespace dermis::layouts {
+
+/// Whether one of the fields of a line or packet has that role.
+template <typename Field>
+[[nodiscard]] bool has_role(const std::vector<Field>& fields, Role role) {
+  return std::any_of(fields.begin(), fields.end(), [&](const Field& field) { return field.role == role; });
+}
+
+}  // namespace dermis::layouts
