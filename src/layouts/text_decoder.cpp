@@ -62,13 +62,16 @@ bool TextDecoder::next(RawFrame& frame) {
 }
 
 bool TextDecoder::read(std::span<const std::uint8_t> line, RawFrame& frame) {
-  const std::span<const std::uint8_t> text = without_end(line);
+  std::span<const std::uint8_t> text = without_end(line);
   const bool has_end = line.back() == end_byte_;
   if (has_end && !is_comment(text)) {
-    if (match_.read(text, piece_)) return assembly_.add(piece_, match_.numbers(), line.size(), frame);
-    if (ends_frame(text)) {
+    const bool is_end = ends_frame(text);
+    if (is_end) {
       assembly_.end_frame();
-    } else if (counts().frames == 0) {
+      text = text.subspan(text_.frame_end->size());
+    }
+    if (match_.read(text, piece_)) return assembly_.add(piece_, match_.numbers(), line.size(), frame);
+    if (!is_end && counts().frames == 0) {
       misfit_ = "line " + std::to_string(line_number_) + " does not fit layout.line " + match_.misfit();
     }
   }

@@ -76,6 +76,16 @@ TEST(TextLayout, a_line_is_a_frame_whatever_separates_its_values) {
   }
 }
 
+TEST(TextLayout, rows_and_taxels_may_be_counted_from_1_on) {
+  EXPECT_EQ(readings_of("line = \"{row-1}: {values}\"\n", "2: 3 4\n1: 1 2\n0: 9 9\n1: 5 6\n2: 7 8\n"), kOneToEight);
+  EXPECT_EQ(readings_of("line = \"{first-1} {value}\"\n", "1 1\n2 2\n3 3\n4 4\n1 5\n2 6\n3 7\n4 8\n"), kOneToEight);
+}
+
+TEST(TextLayout, a_row_may_follow_the_mark_of_a_frame) {
+  const std::string keys = "line = \"{values}\"\nframe_end = \"\\u001b[H\"\n";
+  EXPECT_EQ(readings_of(keys, "3 4\n\x1b[H1 2\n3 4\n\x1b[H5 6\n7 8\n"), kOneToEight);
+}
+
 TEST(TextLayout, rows_come_in_any_order_by_their_numbers) {
   EXPECT_EQ(readings_of("line = \"{row},{values}\"\n", "1,3,4\n0,1,2\n1,7,8\n0,5,6\n"), kOneToEight);
 }
