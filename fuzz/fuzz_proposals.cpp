@@ -19,7 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const describing::Proposal& proposal : proposals) {
     const auto layout = layouts::layout_from_toml(proposal.toml, "fuzz");
     fuzz::require(layout.has_value() && layout->arrays.front().shape == proposal.shape);
-    fuzz::require(proposal.frames > 0 && proposal.first_frame.size() == proposal.shape.taxel_count());
+    fuzz::require(proposal.frames > 0 && proposal.example.size() == proposal.shape.taxel_count());
     fuzz::require(proposal.left_share >= 0.0 && proposal.left_share <= 1.0);
     for (const describing::Part& part : proposal.parts) fuzz::require(part.begin <= part.end && part.end <= size - 2);
   }

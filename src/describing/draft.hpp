@@ -33,7 +33,8 @@ struct Draft {
   std::string look{};                    ///< "60 lines of 81 numbers"
   bool has_certain_shape = false;
   bool has_certain_unit = false;
-  double merit = 0.0;  ///< What speaks for it beside the frames: checksums, counters, what is known.
+  bool is_weak = false;  ///< Nothing but its readings speaks for it.
+  double merit = 0.0;    ///< What speaks for it beside the frames: checksums, counters, what is known.
 };
 
 /// As a string of TOML.

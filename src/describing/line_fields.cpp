@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::size_t kFewestOfArray = 4;
 constexpr std::size_t kFewRows = 3;  // so many are rather arrays in turn
-constexpr std::size_t kMostInTurn = 8;
+constexpr double kOfChance = 0.3;    // merit of a number that counts by chance
+constexpr std::size_t kMostInTurn = 5;
 
 std::vector<std::size_t> numbers_in(std::string_view name) {
   std::vector<std::size_t> numbers;
@@ -184,7 +185,20 @@ class Interpreter {
 }  // namespace
 
 std::vector<LineFields> fields_of(const std::vector<Column>& columns) {
-  return Interpreter(columns).all();
+  std::vector<LineFields> all = Interpreter(columns).all();
+  std::vector<Column> plain = columns;
+  bool has_counted = false;
+  for (Column& column : plain) {
+    if (column.field != "cycle" && column.field != "turn") continue;
+    column.field = "";
+    has_counted = true;
+  }
+  if (!has_counted) return all;
+  for (LineFields& fields : Interpreter(plain).all()) {  // what seems to count may be readings
+    fields.merit -= kOfChance;
+    all.push_back(std::move(fields));
+  }
+  return all;
 }
 
 }  // namespace dermis::describing

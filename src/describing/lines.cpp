@@ -20,7 +20,8 @@ std::string plain(std::string_view text, bool is_first, bool is_last) {
   std::string result;
   for (const char c : text) {
     const bool is_blank = kBlanks.find(c) != std::string_view::npos;
-    if (!is_blank || result.empty() || result.back() != ' ') result += is_blank ? ' ' : c;
+    const bool is_control = static_cast<unsigned char>(c) < 0x05;  // these stand for what is no text
+    if (!is_blank || result.empty() || result.back() != ' ') result += is_blank ? ' ' : is_control ? '?' : c;
   }
   return result;
 }

@@ -110,6 +110,7 @@ class CutDrafts {
       draft.reasons.push_back(hexadecimal(std::span(packets_.packets.front()).first(packets_.mark_size)) +
                               " comes every " + std::to_string(packets_.size) + " bytes");
     }
+    draft.is_weak = !checksum_ && packets_.escape.empty() && packets_.mark_size < 2;
     if (!checksum_) return draft;
     draft.reasons.push_back("the " + checksum_->entry + " is right");
     draft.merit += 1.0;

@@ -132,7 +132,7 @@ void add_marked(std::span<const std::uint8_t> bytes, const Packets& packets, std
   for (Run& run : runs) {
     const std::size_t inside = (begin_of_stream + packets.size - run.begin) % packets.size;
     run.rarity = rarity_of(run, packets);
-    if (inside < run.size) {  // what comes first in the stream begins a packet
+    if (inside < run.size && packets.packets.front()[begin_of_stream] != 0) {  // it begins a packet
       run = {begin_of_stream, run.size - inside, run.rarity + 2.0};
     }
   }

@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kMostLeft = 1.0 / 3.0;
 constexpr std::size_t kFewestBytes = 16;
+constexpr double kNoise = 0.85;  // roughness of readings that tell nothing
 
 bool is_text(std::span<const std::uint8_t> bytes) {
   const auto count = std::count_if(bytes.begin(), bytes.end(), [](std::uint8_t byte) {
@@ -53,6 +54,16 @@ bool are_whole(const Readings& readings) {
   });
 }
 
+std::vector<float> frame_that_differs_most(const Readings& readings) {
+  const auto range = [](const std::vector<float>& frame) {
+    const auto [least, most] = std::minmax_element(frame.begin(), frame.end());
+    return std::isfinite(*most - *least) ? *most - *least : 0.0F;
+  };
+  const auto best = std::max_element(readings.begin(), readings.end(),
+                                     [&](const auto& a, const auto& b) { return range(a) < range(b); });
+  return best == readings.end() ? std::vector<float>() : *best;
+}
+
 std::string question_of(const Draft& draft, const Known& known) {
   const FrameShape& shape = draft.arrays.front().shape;
   const std::string text = "rows=" + std::to_string(shape.rows) + ", cols=" + std::to_string(shape.cols);
@@ -82,6 +93,9 @@ std::optional<Judged> judge(Draft draft, std::span<const std::uint8_t> bytes, co
   // The first and the last frame may be cut.
   const double frame = (1.0 - left) / static_cast<double>(trial->frames);
   if (left - std::min(2.0 * frame, 0.5 * (1.0 - left)) > kMostLeft) return std::nullopt;
+  const double along = roughness_along(trial->readings);
+  const double in_time = roughness_in_time(trial->readings);
+  if (draft.is_weak && along > kNoise && in_time > kNoise) return std::nullopt;
   describe_falling(*trial, draft);
   Judged judged;
   judged.merit =
@@ -103,7 +117,7 @@ std::optional<Judged> judge(Draft draft, std::span<const std::uint8_t> bytes, co
   proposal.frames = trial->frames;
   proposal.left_share = left;
   proposal.shape = draft.arrays.front().shape;
-  if (!trial->readings.empty()) proposal.first_frame = trial->readings.front();
+  proposal.example = frame_that_differs_most(trial->readings);
   return judged;
 }
 

@@ -39,8 +39,8 @@ struct Proposal {
   std::vector<std::string> open;       ///< Keys that the bytes cannot tell: "rows", "cols", "unit".
   std::size_t frames = 0;              ///< Of the first array.
   double left_share = 0.0;             ///< Of the bytes, 0 to 1.
-  std::vector<float> first_frame;      ///< Of the first array, row-major.
-  FrameShape shape;                    ///< Of it.
+  std::vector<float> example;  ///< Of the first frames of the first array that whose readings differ most, row-major.
+  FrameShape shape;            ///< Of it.
 };
 
 /// The most bytes that are looked at.
