@@ -26,6 +26,7 @@ class FramesInOrder final : public Decoder {
   [[nodiscard]] std::uint64_t frame_end() const noexcept override { return decoder_->frame_end(); }
   [[nodiscard]] std::optional<FrameShape> shape() const noexcept override { return decoder_->shape(); }
   [[nodiscard]] const DecoderCounts& counts() const noexcept override { return counts_; }
+  [[nodiscard]] std::string_view request() const noexcept override { return decoder_->request(); }
   [[nodiscard]] std::string advice() const override { return decoder_->advice(); }
 
  private:

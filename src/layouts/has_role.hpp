@@ -15,4 +15,9 @@ template <typename Field>
   return std::any_of(fields.begin(), fields.end(), [&](const Field& field) { return field.role == role; });
 }
 
+/// The same of several lines.
+[[nodiscard]] inline bool has_role(const std::vector<TextLayout::Pattern>& lines, Role role) {
+  return std::any_of(lines.begin(), lines.end(), [&](const auto& line) { return has_role(line, role); });
+}
+
 }  // namespace dermis::layouts

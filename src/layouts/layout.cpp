@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "layouts/constant_packets.hpp"
 #include "layouts/frames_in_order.hpp"
 #include "layouts/has_role.hpp"
 #include "layouts/packet_decoder.hpp"
@@ -13,8 +14,8 @@
 namespace dermis::layouts {
 namespace {
 
-template <typename Field>
-bool has_time(const std::vector<Field>& fields) {
+template <typename Fields>
+bool has_time(const Fields& fields) {
   return has_role(fields, Role::time) || has_role(fields, Role::clock) || has_role(fields, Role::datetime);
 }
 
@@ -22,7 +23,12 @@ bool has_time(const std::vector<Field>& fields) {
 
 bool Layout::has_times() const {
   const auto* const text = std::get_if<TextLayout>(&form);
-  return text != nullptr ? has_time(text->line) : has_time(std::get<PacketLayout>(form).packet);
+  return text != nullptr ? has_time(text->lines) : has_time(std::get<PacketLayout>(form).packet);
+}
+
+std::string_view Layout::request_after(bool is_sending) const noexcept {
+  if (!request.empty()) return request;
+  return is_sending ? std::string_view{} : std::string_view(start);
 }
 
 Result<std::size_t> Layout::find_array(const std::string& name) const {
@@ -36,12 +42,19 @@ Result<std::size_t> Layout::find_array(const std::string& name) const {
   return bad_input("the layout has no array '" + name + "'" + (names.empty() ? "" : "; it has " + names));
 }
 
+std::unique_ptr<Decoder> make_decoder(const std::vector<std::shared_ptr<const Layout>>& layouts) {
+  return std::make_unique<ConstantPackets>(layouts, 0, ConstantPackets::FirstMark::may_be_readings);
+}
+
 std::unique_ptr<Decoder> make_decoder(std::shared_ptr<const Layout> layout, std::size_t array,
                                       bool waits_for_late_frames) {
   const bool is_ordered = waits_for_late_frames && layout->has_times();
   std::unique_ptr<Decoder> decoder;
   if (std::holds_alternative<TextLayout>(layout->form)) {
     decoder = std::make_unique<TextDecoder>(std::move(layout), array);
+  } else if (constant_size(*layout)) {
+    decoder = std::make_unique<ConstantPackets>(std::vector{std::move(layout)}, array,
+                                                ConstantPackets::FirstMark::begins_frame);
   } else {
     decoder = std::make_unique<PacketDecoder>(std::move(layout), array);
   }

@@ -8,6 +8,7 @@
 #include "dermis/core/array_description.hpp"
 #include "dermis/files/config_table.hpp"
 #include "dermis/layouts/layout.hpp"
+#include "layouts/constant_packets.hpp"
 #include "layouts/has_role.hpp"
 #include "layouts/line_pattern.hpp"
 #include "layouts/packet_entry.hpp"
@@ -20,6 +21,7 @@ using files::ConfigFile;
 constexpr std::size_t kMostArrays = 64;
 constexpr std::size_t kMostTaxels = std::size_t{1} << 20U;
 constexpr std::size_t kMostFields = 256;
+constexpr std::size_t kMostPatterns = 64;
 constexpr std::size_t kMostLiteral = 256;
 
 class LayoutReader {
@@ -88,13 +90,21 @@ class LayoutReader {
 
   void read_text() {
     TextLayout text;
-    std::string pattern;
-    file_.text(key("line"), pattern);
-    Result<std::vector<TextField>> line = parse_line_pattern(pattern, layout_.arrays);
-    if (!line) {
-      fail("line", line.error().message);
+    std::vector<std::string> patterns;
+    if (file_.holds_text(key("line"))) {
+      file_.text(key("line"), patterns.emplace_back());
     } else {
-      text.line = *std::move(line);
+      file_.texts(key("line"), patterns);
+    }
+    if (patterns.size() > kMostPatterns) fail("line", "has more than 64 patterns");
+    for (std::size_t k = 0; k < std::min(patterns.size(), kMostPatterns); ++k) {
+      Result<TextLayout::Pattern> line = parse_line_pattern(patterns[k], layout_.arrays);
+      const std::string which = patterns.size() > 1 ? "pattern " + std::to_string(k + 1) + ": " : "";
+      if (!line) fail("line", which + line.error().message);
+      if (line) text.lines.push_back(*std::move(line));
+    }
+    if (patterns.empty() || (!text.lines.empty() && !has_role(text.lines, Role::values))) {
+      fail("line", "has no readings: write {values}, or the name of an array, where they stand");
     }
     file_.text(key("line_end"), text.line_end);
     const std::string_view numbers = "0123456789abcdefABCDEF+-.,";
@@ -155,10 +165,7 @@ class LayoutReader {
 
   void check(const PacketLayout& packet) {
     const std::vector<PacketField>& fields = packet.packet;
-    const bool has_mark = !fields.empty() && fields.front().role == Role::literal;
-    if (packet.escape == PacketLayout::Escape::none && !has_mark) {
-      fail("packet", "must begin with bytes that mark it, as \"FF FF\", or have an escape");
-    }
+    check_mark(packet);
     if (!has_role(fields, Role::values)) fail("packet", "has no readings, as \"values u16le\"");
     for (const PacketField& field : fields) {
       if (field.literal.size() > kMostLiteral) fail("packet", "a field has more than 256 bytes");
@@ -170,11 +177,22 @@ class LayoutReader {
     if (has_role(fields, Role::array) && !has_ids) fail("array", "each array needs an id, which the field array holds");
   }
 
+  void check_mark(const PacketLayout& packet) {
+    if (packet.packet.empty() || packet.escape != PacketLayout::Escape::none) return;
+    if (packet.packet.front().role == Role::literal) return;
+    const bool ends_with_mark = packet.packet.back().role == Role::literal;
+    if (ends_with_mark && constant_size({layout_.arrays, packet})) return;
+    fail("packet", ends_with_mark ? "its size differs, so it must begin with bytes that mark it, or have an escape"
+                                  : "must begin or end with bytes that mark it, as \"FF FF\", or have an escape");
+  }
+
   void read_readings() {
     file_.number(key("scale"), layout_.scale);
     file_.number(key("offset"), layout_.offset);
     if (layout_.scale == 0.0) fail("scale", "must not be 0");
     file_.number(key("absent"), layout_.absent);
+    file_.text(key("start"), layout_.start);
+    file_.text(key("request"), layout_.request);
     read_flags("absent", layout_.flags.absent);
     read_flags("late", layout_.flags.late);
     read_flags("corrupt", layout_.flags.corrupt);

@@ -32,11 +32,8 @@ std::uint32_t digit(std::uint8_t byte) noexcept {
   return static_cast<std::uint32_t>(byte) - '0';
 }
 
-/// How many readings of an array stand in a line: a frame, a row or a taxel of it.
-std::size_t values_of(const TextLayout& text, const FrameShape& shape) {
-  if (has_role(text.line, Role::col) || has_role(text.line, Role::first)) return 1;
-  const bool is_row = has_role(text.line, Role::row) || text.frame_end.has_value();
-  return is_row ? shape.cols : shape.taxel_count();
+bool has_time(const TextLayout::Pattern& line) {
+  return has_role(line, Role::time) || has_role(line, Role::clock) || has_role(line, Role::datetime);
 }
 
 }  // namespace
@@ -45,43 +42,73 @@ LineMatch::LineMatch(const Layout& layout, std::size_t array)
     : layout_(layout),
       text_(std::get<TextLayout>(layout.form)),
       array_(array),
-      names_array_(has_role(text_.line, Role::array)),
-      has_plain_separators_(text_.separator.empty() && text_.decimal_point != ','),
-      numbers_(values_of(text_, layout.arrays[array].shape)) {
-  for (const LayoutArray& other : layout.arrays) counts_.push_back(values_of(text_, other.shape));
-  others_.resize(*std::max_element(counts_.begin(), counts_.end()));
+      names_array_(has_role(text_.lines, Role::array)),
+      has_plain_separators_(text_.separator.empty() && text_.decimal_point != ',' && text_.width == 0 &&
+                            !text_.is_hexadecimal) {
+  for (const TextLayout::Pattern& fields : text_.lines) patterns_.push_back(pattern_of(fields));
+  std::size_t most = 0;
+  for (const LayoutArray& other : layout.arrays) most = std::max(most, other.shape.taxel_count());
+  numbers_.resize(most);
+  others_.resize(most);
+  heads_.array = array;
+}
+
+LineMatch::Pattern LineMatch::pattern_of(const TextLayout::Pattern& fields) const {
+  const bool is_head = !has_role(fields, Role::values);
+  const bool has_no_field = std::ranges::all_of(
+      fields, [](const TextField& field) { return field.role == Role::literal || field.role == Role::skip; });
+  const bool begins_frame = is_head && (has_no_field || has_role(fields, Role::frame) || has_time(fields));
+  const bool is_taxel = has_role(fields, Role::col) || has_role(fields, Role::first);
+  const bool is_row = has_role(fields, Role::row) || has_role(text_.lines, Role::row);
+  const bool may_be_row = text_.frame_end.has_value() || text_.lines.size() > 1;
+  const Holds holds = is_taxel ? Holds::taxel : is_row ? Holds::row : may_be_row ? Holds::row_or_frame : Holds::frame;
+  return {&fields, holds, is_head, begins_frame};
 }
 
 bool LineMatch::read(std::span<const std::uint8_t> line, Piece& piece) {
-  piece = {};
-  piece.array = array_;
+  misfit_at_ = line.data();
+  for (const Pattern& pattern : patterns_) {
+    pattern_ = &pattern;
+    if (!read_pattern(line, piece)) continue;
+    if (pattern.is_head) heads_ = piece;
+    return true;
+  }
+  return false;
+}
+
+bool LineMatch::read_pattern(std::span<const std::uint8_t> line, Piece& piece) {
+  piece = heads_;
+  count_ = 0;
   at_ = line.data();
   end_ = line.data() + line.size();
-  for (std::size_t k = 0; k < text_.line.size(); ++k) {
-    const TextField* const next = k + 1 < text_.line.size() ? &text_.line[k + 1] : nullptr;
-    if (!read_field(text_.line[k], next, piece)) return false;
+  const TextLayout::Pattern& fields = *pattern_->fields;
+  for (std::size_t k = 0; k < fields.size(); ++k) {
+    const TextField* const next = k + 1 < fields.size() ? &fields[k + 1] : nullptr;
+    if (!read_field(fields[k], next, piece)) return false;
   }
   skip_separator();
   return at_ == end_ || fail("the line should end");
 }
 
 std::string LineMatch::misfit() const {
-  if (at_ == end_) return std::string("at its end: ") + why_;
-  const std::size_t shown = std::min(kMostShown, static_cast<std::size_t>(end_ - at_));
-  std::string text(at_, at_ + shown);
+  if (misfit_at_ == end_) return std::string("at its end: ") + why_;
+  const std::size_t shown = std::min(kMostShown, static_cast<std::size_t>(end_ - misfit_at_));
+  std::string text(misfit_at_, misfit_at_ + shown);
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c < 0x20 || c > 0x7E; }, '?');
   return "at '" + text + "': " + why_;
 }
 
 bool LineMatch::fail(const char* why) noexcept {
+  if (at_ < misfit_at_) return false;
+  misfit_at_ = at_;
   why_ = why;
   return false;
 }
 
 bool LineMatch::read_field(const TextField& field, const TextField* next, Piece& piece) {
   if (field.role == Role::literal) return read_literal(field.literal);
-  if (field.role == Role::values) return read_values(names_array_ ? piece.array : field.array);
+  if (field.role == Role::values) return read_readings(names_array_ ? piece.array : field.array, piece);
   skip_blanks();
   double number = 0.0;
   switch (field.role) {
@@ -137,20 +164,50 @@ bool LineMatch::skip_to(const TextField* next) noexcept {
   return found != end_ || fail("more is expected");
 }
 
-bool LineMatch::read_values(std::size_t array) {
-  const std::size_t count = counts_[array];
-  float* const values = array == array_ ? numbers_.data() : others_.data();
-  for (std::size_t i = 0; i < count; ++i) {
+bool LineMatch::read_readings(std::size_t array, Piece& piece) {
+  const FrameShape& shape = layout_.arrays[array].shape;
+  const Holds holds = pattern_->holds;
+  const std::size_t least = holds == Holds::taxel ? 1 : holds == Holds::frame ? shape.taxel_count() : shape.cols;
+  const std::size_t most = holds == Holds::row_or_frame ? shape.taxel_count() : least;
+  const std::span<float> values = array == array_ ? std::span(numbers_) : std::span(others_);
+  if (!read_values(values, 0, least)) return false;
+  const std::uint8_t* const row_end = at_;
+  const bool is_frame = least == most || read_values(values, least, most);
+  if (!is_frame) at_ = row_end;
+  if (array == array_) count_ = is_frame ? most : least;
+  if (!names_array_) piece.array = count_ > 0 ? array_ : array;
+  return true;
+}
+
+bool LineMatch::read_values(std::span<float> values, std::size_t from, std::size_t to) noexcept {
+  for (std::size_t i = from; i < to; ++i) {
     if (i == 0 || text_.width > 0) {
       while (at_ != end_ && is_passed_over(*at_)) ++at_;
-    } else if (is_plain_separator()) {
-      ++at_;  // nearly all of them
     } else if (!skip_separator()) {
       return fail(at_ == end_ ? "more readings are expected" : "a separator is expected");
     }
     if (!read_reading(values[i])) return fail("a reading is expected");
+    if (has_plain_separators_) i += read_plain(values.subspan(i + 1, to - i - 1));
   }
   return true;
+}
+
+/// Reads whole numbers behind one blank or comma each, as most lines have them. Returns how many there are before
+/// anything else.
+std::size_t LineMatch::read_plain(std::span<float> values) noexcept {
+  constexpr std::ptrdiff_t kMostDigits = 9;
+  const std::uint8_t* at = at_;
+  std::size_t count = 0;
+  for (; count < values.size() && at != end_ && (*at == ' ' || *at == ','); ++count) {
+    const std::uint8_t* const first = ++at;
+    std::uint32_t whole = 0;
+    for (std::uint32_t next = digit(*at); next <= 9; next = digit(*++at)) whole = 10 * whole + next;
+    const bool is_whole = at != first && at - first <= kMostDigits && *at != '.' && (*at | 0x20U) != 'e';
+    if (!is_whole) break;
+    values[count] = static_cast<float>(whole);
+    at_ = at;
+  }
+  return count;
 }
 
 /// A reading, or NaN for an empty one and for nan.
@@ -286,11 +343,6 @@ bool LineMatch::read_array(const TextField* next, Piece& piece) {
 
 void LineMatch::skip_blanks() noexcept {
   while (at_ != end_ && is_blank(*at_)) ++at_;
-}
-
-/// One byte between two readings, as most lines have it.
-bool LineMatch::is_plain_separator() const noexcept {
-  return has_plain_separators_ && at_ != end_ && (*at_ == ',' || *at_ == ' ') && digit(at_[1]) <= 9;
 }
 
 /// True where something separates two readings.

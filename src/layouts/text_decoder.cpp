@@ -22,9 +22,7 @@ std::size_t longest_line(const Layout& layout) {
 }
 
 Moduli moduli_of(const TextLayout& text) {
-  const bool has_clock =
-      std::any_of(text.line.begin(), text.line.end(), [](const TextField& field) { return field.role == Role::clock; });
-  return {0, has_clock ? kNanosOfDay : 0};
+  return {0, has_role(text.lines, Role::clock) ? kNanosOfDay : 0};
 }
 
 bool begins_with(std::span<const std::uint8_t> line, const std::string& text) noexcept {
@@ -52,11 +50,13 @@ bool TextDecoder::next(RawFrame& frame) {
     const bool is_frame = read(line, frame);
     frame_end_ = is_frame ? lines_.position() : frame_end_;
     lines_.forget();
+    is_sending_ = is_sending_ || is_frame;
     if (is_frame) return true;
   }
   if (std::exchange(has_ended_, false)) {
     assembly_.skip(lines_.forget_all());
     assembly_.end_frame();
+    is_sending_ = false;
   }
   return false;
 }
@@ -70,12 +70,20 @@ bool TextDecoder::read(std::span<const std::uint8_t> line, RawFrame& frame) {
       assembly_.end_frame();
       text = text.subspan(text_.frame_end->size());
     }
-    if (match_.read(text, piece_)) return assembly_.add(piece_, match_.numbers(), line.size(), frame);
+    if (match_.read(text, piece_)) return add(line.size(), frame);
     if (!is_end && counts().frames == 0) {
       misfit_ = "line " + std::to_string(line_number_) + " does not fit layout.line " + match_.misfit();
     }
   }
   assembly_.skip(line.size());
+  return false;
+}
+
+/// The line fits. A head of a frame ends the frame before it.
+bool TextDecoder::add(std::size_t bytes, RawFrame& frame) {
+  if (!match_.is_head()) return assembly_.add(piece_, match_.numbers(), bytes, frame);
+  if (match_.begins_frame() && piece_.array == array_) assembly_.end_frame();
+  assembly_.skip(bytes);
   return false;
 }
 

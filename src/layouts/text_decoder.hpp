@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "dermis/layouts/decoder.hpp"
 #include "dermis/layouts/layout.hpp"
@@ -28,6 +29,7 @@ class TextDecoder final : public Decoder {
   [[nodiscard]] std::uint64_t frame_end() const noexcept override { return frame_end_; }
   [[nodiscard]] std::optional<FrameShape> shape() const noexcept override { return layout_->arrays[array_].shape; }
   [[nodiscard]] const DecoderCounts& counts() const noexcept override { return assembly_.counts(); }
+  [[nodiscard]] std::string_view request() const noexcept override { return layout_->request_after(is_sending_); }
   [[nodiscard]] std::string advice() const override;
 
  private:
@@ -35,6 +37,7 @@ class TextDecoder final : public Decoder {
   [[nodiscard]] bool is_comment(std::span<const std::uint8_t> line) const noexcept;
   [[nodiscard]] bool ends_frame(std::span<const std::uint8_t> line) const noexcept;
   [[nodiscard]] bool read(std::span<const std::uint8_t> line, RawFrame& frame);
+  [[nodiscard]] bool add(std::size_t bytes, RawFrame& frame);
 
   std::shared_ptr<const Layout> layout_;
   const TextLayout& text_;
@@ -48,6 +51,7 @@ class TextDecoder final : public Decoder {
   std::uint64_t frame_end_ = 0;
   std::string misfit_;  ///< Of the last line before the first frame that did not fit, with its number.
   bool has_ended_ = false;
+  bool is_sending_ = false;
 };
 
 }  // namespace dermis::layouts

@@ -159,6 +159,53 @@ TEST(TextLayout, frames_that_the_device_calls_corrupt_are_dropped_and_absent_one
   EXPECT_EQ(decoder->counts().damaged_frames, 1U);
 }
 
+TEST(TextLayout, a_head_says_whose_and_when_the_lines_behind_it_are) {
+  const std::string keys = "line = [\"Frame {frame} at {time_ms} ms\", \"T={temperature}\", \"{values}\"]\n";
+  const std::vector<RawFrame> frames =
+      frames_of(kTwoByTwo + keys,
+                bytes_of("Frame 7 at 20 ms\n1 2\nT=21.5\n3 4\nFrame 9 at 40 ms\n5 6 7 8\nFrame 10 at 60 ms\n9 9\n"));
+  EXPECT_EQ(readings_of(frames), kOneToEight);
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_EQ(frames[1].acquisition.sequence, 9U);
+  EXPECT_EQ(frames[1].acquisition.lost_before, 1U);
+  EXPECT_EQ(frames[1].acquisition.device_time, std::chrono::milliseconds(40));
+  EXPECT_EQ(frames[0].temperature_celsius, std::nullopt);
+  EXPECT_EQ(frames[1].temperature_celsius, 21.5);
+}
+
+TEST(TextLayout, a_head_cuts_the_frame_that_lacks_rows) {
+  EXPECT_EQ(readings_of("line = [\"FRAME\", \"{values}\"]\n", "FRAME\n1 2\n3 4\nFRAME\n9 9\nFRAME\n5 6\n7 8\n"),
+            kOneToEight);
+}
+
+TEST(TextLayout, arrays_have_lines_or_heads_of_their_own) {
+  const std::string arrays =
+      "[[layout.array]]\nname = \"left\"\nrows = 2\ncols = 2\n[[layout.array]]\nname = \"right\"\nrows = 1\ncols = 2\n";
+  const std::string own = "[layout]\nline = [\"L {left}\", \"R {right}\"]\n" + arrays;
+  const Bytes lines = bytes_of("L 1 2 3 4\nR 7 7\nL 5 6 7 8\nR 8 8\n");
+  EXPECT_EQ(readings_of(frames_of(own, lines, 0)), kOneToEight);
+  EXPECT_EQ(readings_of(frames_of(own, lines, 1)), (Readings{{7, 7}, {8, 8}}));
+  const std::string heads = "[layout]\nline = [\"sensor {array}\", \"{values}\"]\n" + arrays;
+  const Bytes rows = bytes_of("sensor left\n1 2\n3 4\nsensor right\n7 7\nsensor left\n5 6\n7 8\n");
+  EXPECT_EQ(readings_of(frames_of(heads, rows, 0)), kOneToEight);
+  EXPECT_EQ(readings_of(frames_of(heads, rows, 1)), (Readings{{7, 7}}));
+}
+
+TEST(TextLayout, a_device_is_asked_before_each_frame_or_until_it_sends) {
+  const auto layout = [](const char* key) { return layout_of(kTwoByTwo + std::string("line = \"{values}\"\n") + key); };
+  const auto started = make_decoder(layout("start = \"go\""), 0, false);
+  const auto asked = make_decoder(layout("request = \"a\""), 0, false);
+  EXPECT_EQ(started->request(), "go");
+  EXPECT_EQ(asked->request(), "a");
+  for (Decoder* const decoder : {started.get(), asked.get()}) {
+    RawFrame frame;
+    decoder->push(bytes_of("1 2 3 4\n"));
+    ASSERT_TRUE(decoder->next(frame));
+  }
+  EXPECT_EQ(started->request(), "");
+  EXPECT_EQ(asked->request(), "a");
+}
+
 TEST(TextLayout, what_does_not_fit_is_no_reading) {
   EXPECT_EQ(readings_of("line = \"{values}\"\ncomment = \"#\"\n",
                         "a,b,c,d\n1 2 3 4\nDEBUG 17\n#1 2 3 4\n1 2 3\n1 2 3 4 5\n5 6 7 8\n5 6 7"),
@@ -201,6 +248,27 @@ TEST(PacketLayout, numbers_stand_in_either_order_and_any_width) {
 }
 
 /// Published check values over "123456789".
+TEST(PacketLayout, packets_of_one_size_may_end_with_their_mark_and_hold_it) {
+  const Bytes at_end = {1, 2, 3, 4, 0xFF, 0xFE, 5, 6, 0xFF, 0xFE, 0xFF, 0xFE, 1, 2, 3, 4, 0xFF, 0xFE};
+  EXPECT_EQ(readings_of("packet = [\"values u8\", \"FF FE\"]\n", at_end),
+            (Readings{{1, 2, 3, 4}, {5, 6, 255, 254}, {1, 2, 3, 4}}));
+  Bytes at_begin;
+  Readings expected;
+  for (int k = 0; k < 20; ++k) {
+    const Bytes readings = {static_cast<std::uint8_t>(k), 255, 255, 255};
+    at_begin.insert(at_begin.end(), {0xFF, 0xFF});
+    at_begin.insert(at_begin.end(), readings.begin(), readings.end());
+    expected.emplace_back(readings.begin(), readings.end());
+  }
+  EXPECT_EQ(readings_of("packet = [\"FF FF\", \"values u8\"]\n", at_begin), expected);
+}
+
+TEST(PacketLayout, bytes_that_never_change_show_where_a_packet_begins) {
+  Bytes bytes;
+  for (int k = 0; k < 8; ++k) bytes.insert(bytes.end(), {0x40, 0x40, 0x40, 0x40, 0x40, 0x0D});
+  EXPECT_EQ(readings_of("packet = [\"40\", \"values u8\", \"0D\"]\n", bytes), Readings(8, {64, 64, 64, 64}));
+}
+
 TEST(PacketLayout, checksums_have_the_check_values_of_their_catalogue) {
   const struct {
     const char* checksum;
@@ -290,7 +358,7 @@ TEST(LayoutToml, errors_name_the_line_the_key_and_the_mend) {
       "it.toml:4: layout.packet: field 2: 'u16' is no type: it is u8, i8, u10, u12, u16, i16, u24, u32, i32, f32 or "
       "f64, then le where the low byte comes first or be where the high byte does");
   EXPECT_EQ(error_of(two + "packet = [\"values u8\"]\n"),
-            "it.toml:4: layout.packet: must begin with bytes that mark it, as \"FF FF\", or have an escape");
+            "it.toml:4: layout.packet: must begin or end with bytes that mark it, as \"FF FF\", or have an escape");
   EXPECT_EQ(error_of("[layout]\nrows = 2\nline = \"{values}\"\n"),
             "it.toml: layout.cols: is missing; it has no default");
   EXPECT_NE(error_of(two + "line = \"{values}\"\nseperator = \";\"\n").find("did you mean 'layout.separator'?"),

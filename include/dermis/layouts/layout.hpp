@@ -56,9 +56,11 @@ struct TextField {
   std::uint64_t from = 0;  ///< row, col, first: the number of the first one.
 };
 
-/// Lines of text. A line that does not fit holds no readings.
+/// Lines of text. A line that fits none of the patterns holds no readings.
 struct TextLayout {
-  std::vector<TextField> line;
+  using Pattern = std::vector<TextField>;
+  /// The first that a line fits holds. One without readings is the head of the frame, or of its part, that follows.
+  std::vector<Pattern> lines;
   std::string line_end{};   ///< Empty: LF, or CR LF.
   std::string separator{};  ///< Between readings; empty: blanks, and one comma or semicolon.
   std::string comment{};    ///< Lines that begin with it are skipped; empty: none are.
@@ -129,7 +131,12 @@ struct Layout {
   std::string unit = "counts";      ///< Of a reading: counts, volts, ohms, kPa or newtons.
   std::optional<double> rate_hz{};  ///< Frames a second; times of a file without times.
 
+  std::string start{};    ///< Sent to the device until its first frame comes; empty: it starts on its own.
+  std::string request{};  ///< Sent to the device before each frame; empty: frames come on their own.
+
   [[nodiscard]] bool has_times() const;
+  /// What the device needs next. `is_sending`: a frame has come since it was connected.
+  [[nodiscard]] std::string_view request_after(bool is_sending) const noexcept;
   /// Place of the array of that name; an empty name is that of the only one. Fails with the names.
   [[nodiscard]] Result<std::size_t> find_array(const std::string& name) const;
 };
@@ -138,6 +145,10 @@ struct Layout {
 [[nodiscard]] Result<Layout> read_layout(const std::string& path);
 /// The same from memory; `name` stands for the path in messages.
 [[nodiscard]] Result<Layout> layout_from_toml(std::string_view text, const std::string& name);
+
+/// Decodes the packets of a device that has one of these layouts: packets of a constant size, without a checksum, that
+/// differ in size and have the same mark.
+[[nodiscard]] std::unique_ptr<Decoder> make_decoder(const std::vector<std::shared_ptr<const Layout>>& layouts);
 
 /// Decodes the frames of one array of the layout. With `waits_for_late_frames`, frames are put in order where they come
 /// up to a second late, and each waits for it; otherwise they come as they are sent. Thread-compatible.
