@@ -20,6 +20,7 @@
 #include "dermis/recordings/frame_files.hpp"
 #include "dermis/report/model_facts.hpp"
 #include "shape_options.hpp"
+#include "unread_bytes.hpp"
 
 namespace dermis::app {
 namespace {
@@ -70,7 +71,7 @@ void print_json(const Json& json) {
   fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
-void print_json(const std::string& file, const FrameFileInfo& info) {
+void print_json(const std::string& file, const FrameFileInfo& info, const std::string& look) {
   Json json = {{"file", file},
                {"format", recordings::to_string(info.format)},
                {"size_bytes", info.bytes},
@@ -83,6 +84,7 @@ void print_json(const std::string& file, const FrameFileInfo& info) {
                {"lost", or_null(info.lost)},
                {"complete", info.complete},
                {"unread", or_null(info.unread)},
+               {"or", or_null(look)},
                {"temperature_celsius", or_null(info.temperature_celsius)},
                {"name", or_null(info.notes.name)},
                {"array_toml", or_null(info.notes.array_toml)},
@@ -189,6 +191,18 @@ void print_described(const InfoOptions& options, const Described& described) {
   for (const auto& [name, text] : described.calibration) fmt::print(kWide, name, text);
 }
 
+Error with_look(Error error, const std::string& file) {
+  const std::string look = look_of_unread_file(file);
+  if (!look.empty()) error.message += ". " + look;
+  return error;
+}
+
+/// Numbers without a head are one frame, or many.
+std::string other_look(const std::string& file, const FrameFileInfo& info) {
+  const bool is_one = info.format == recordings::FrameFormat::text_matrix && info.frames == 1;
+  return is_one ? look_of_unread_file(file) : std::string();
+}
+
 Status print_info(const InfoOptions& options) {
   const Result<std::optional<Described>> described = read_described(options.file);
   if (!described) return described.error();
@@ -199,11 +213,13 @@ Status print_info(const InfoOptions& options) {
   const Result<std::optional<FrameShape>> shape = options.shape.shape();
   if (!shape) return shape.error();
   const Result<FrameFileInfo> info = recordings::frame_file_info(options.file, *shape);
-  if (!info) return info.error();
+  if (!info) return with_look(info.error(), options.file);
+  const std::string look = other_look(options.file, *info);
   if (options.json) {
-    print_json(options.file, *info);
+    print_json(options.file, *info, look);
   } else {
     print_text(*info);
+    print_line("or", look);
   }
   if (info->frames == 0) {
     return bad_input(options.file + ": has no frame" + (info->unread.empty() ? "" : ": " + info->unread));

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <vector>
 
+#include "describing/byte_text.hpp"
 #include "describing/draft.hpp"
 #include "describing/trial.hpp"
 
@@ -84,16 +84,6 @@ std::optional<FoundChecksum> checksum_of(const Packets& packets, std::span<const
     if (!is_constant(packets, packets.size - 1 - trailer)) break;
   }
   return std::nullopt;
-}
-
-std::string hexadecimal(std::span<const std::uint8_t> bytes) {
-  std::string text;
-  for (const std::uint8_t byte : bytes) {
-    std::array<char, 4> digits{};
-    std::snprintf(digits.data(), digits.size(), "%02X", unsigned{byte});
-    text += (text.empty() ? "" : " ") + std::string(digits.data());
-  }
-  return text;
 }
 
 }  // namespace dermis::describing

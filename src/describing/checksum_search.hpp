@@ -25,7 +25,4 @@ struct FoundChecksum {
 [[nodiscard]] std::span<const std::uint8_t> first_packets(const Packets& packets, std::span<const std::uint8_t> bytes,
                                                           std::size_t count);
 
-/// "AA 55" of the bytes from `begin` to `end`.
-[[nodiscard]] std::string hexadecimal(std::span<const std::uint8_t> bytes);
-
 }  // namespace dermis::describing

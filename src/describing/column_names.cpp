@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <cstddef>
+#include <set>
 #include <utility>
 
 namespace dermis::describing {
@@ -50,6 +51,9 @@ constexpr std::array<std::string_view, 6> kTemperature = {"temp", "temperature",
 constexpr std::array<std::string_view, 7> kSupply = {"vcc", "supply", "vbat", "battery", "vdd", "vin", "batt"};
 constexpr std::array<std::string_view, 4> kFlags = {"flag", "flags", "status", "state"};
 
+constexpr std::array<std::string_view, 9> kArray = {"id",   "array", "sensor",  "hand", "foot",
+                                                    "side", "pad",   "channel", "mat"};
+
 /// Where the cells of a line begin and end: at separators outside quotes.
 std::vector<std::pair<std::size_t, std::size_t>> cells_of(std::string_view line, char separator) {
   std::vector<std::pair<std::size_t, std::size_t>> cells;
@@ -82,6 +86,9 @@ std::vector<std::string> names_in(const Line& head, const Line& line, char separ
   const auto names = cells_of(head.text, separator);
   const auto cells = cells_of(line.text, separator);
   if (names.size() < 2 || names.size() != cells.size()) return {};
+  std::set<std::string_view> different;
+  for (const auto& [begin, end] : names) different.insert(head.text.substr(begin, end - begin));
+  if (different.size() < names.size()) return {};  // rather readings
   std::vector<std::string> result;
   for (const Token& token : line.tokens) {
     if (token.kind == Token::Kind::text) continue;
@@ -110,7 +117,8 @@ std::string field_of_name(std::string_view name) {
   if (has_any(words, kFrame)) return "frame";
   if (has_any(words, kRow)) return "row";
   if (has_any(words, kCol)) return "col";
-  return has_any(words, kFlags) ? "flags" : "";
+  if (has_any(words, kFlags)) return "flags";
+  return has_any(words, kArray) ? "array" : "";
 }
 
 std::string unit_of_name(std::string_view name) {

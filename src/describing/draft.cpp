@@ -38,7 +38,9 @@ std::string toml_of(const Draft& draft) {
   std::string text = "[layout]\n";
   const bool is_alone = draft.arrays.size() == 1;
   if (is_alone) text += shape_keys(draft.arrays.front().shape);
-  if (!draft.line.empty()) text += "line = " + quoted(draft.line) + "\n";
+  const std::string line = quoted(draft.line);
+  if (!draft.line.empty())
+    text += "line = " + (draft.head.empty() ? line : "[" + quoted(draft.head) + ", " + line + "]") + "\n";
   if (!draft.packet.empty()) {
     text += "packet = [";
     for (const std::string& field : draft.packet) text += (text.back() == '[' ? "" : ", ") + quoted(field);

@@ -24,8 +24,9 @@ struct DraftArray {
 /// A layout that may be right.
 struct Draft {
   std::vector<DraftArray> arrays;
-  std::string line{};                                       ///< The pattern of text,
-  std::vector<std::string> packet{};                        ///< or the fields of a packet.
+  std::string line{};                 ///< The pattern of text,
+  std::string head{};                 ///< The pattern of the lines that begin a frame; empty: there are none.
+  std::vector<std::string> packet{};  ///< or the fields of a packet.
   std::vector<std::pair<std::string, std::string>> keys{};  ///< Further keys, with their values in TOML.
   std::vector<std::string> reasons{};
   std::vector<std::string> left_over{};  ///< As in a proposal.

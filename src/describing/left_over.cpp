@@ -73,7 +73,11 @@ std::vector<std::string> left_over_lines(const std::vector<Line>& lines, const s
 std::string ordinal(std::size_t number) {
   constexpr std::array kWords = {"",      "",        "second", "third", "fourth", "fifth",
                                  "sixth", "seventh", "eighth", "ninth", "tenth"};
-  return number >= 2 && number < kWords.size() ? kWords[number] : std::to_string(number) + "th";
+  if (number >= 2 && number < kWords.size()) return kWords[number];
+  constexpr std::array kEndings = {"th", "st", "nd", "rd"};
+  const std::size_t last = number % 10;
+  const bool is_regular = last >= kEndings.size() || number / 10 % 10 == 1;
+  return std::to_string(number) + kEndings[is_regular ? 0 : last];
 }
 
 }  // namespace dermis::describing

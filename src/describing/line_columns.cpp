@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "describing/column_names.hpp"
 #include "describing/tokens.hpp"
@@ -27,7 +28,7 @@ class ColumnReader {
   ColumnReader(const std::vector<Line>& lines, const LineGroup& group, const Numerals& numerals)
       : lines_(lines), group_(group) {
     find_runs(numerals);
-    if (columns_.back().run >= kMostRuns) columns_.clear();
+    if (!columns_.empty() && columns_.back().run >= kMostRuns) columns_.clear();
     name_columns();
     for (std::size_t k = 0; k < columns_.size(); ++k) {
       if (is_beside_readings(k)) columns_[k].series = series_of(k);
@@ -60,7 +61,12 @@ class ColumnReader {
                                   columns_.back().kind == Token::Kind::number && is_separator(before, numerals);
       const bool is_glued = k > 1 && is_part_of_word(tokens, k - 2);
       const std::size_t run = columns_.empty() ? 0 : columns_.back().run + (follows_number && !is_glued ? 0 : 1);
-      columns_.push_back({.kind = tokens[k].kind, .run = run, .label = follows_number ? "" : label_of(before)});
+      std::string separator(follows_number ? before : std::string_view());
+      std::erase(separator, ' ');
+      columns_.push_back({.kind = tokens[k].kind,
+                          .run = run,
+                          .label = follows_number ? "" : label_of(before),
+                          .before = std::move(separator)});
       before = {};
     }
   }
@@ -141,6 +147,8 @@ class ColumnReader {
     } else if ((field == "row" || field == "col") && cycle_of(series)) {
       give(column, "cycle", called + "counts through the same numbers again and again");
       column.is_counted_from_1 = cycle_of(series)->first == 1;
+    } else if (field == "array" && !numbers_in_turn(series).empty()) {
+      give(column, "turn", "");
     } else if (field == "temperature" || field == "supply" || field == "flags") {
       const bool is_possible = std::all_of(series.begin(), series.end(), [&](double value) {
         return field == "flags" ? value >= 0.0 && value == static_cast<double>(static_cast<std::uint64_t>(value))

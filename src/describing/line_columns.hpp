@@ -18,6 +18,7 @@ struct Column {
   std::size_t run = 0;   ///< Numbers of a run stand side by side, with nothing but separators between them.
   std::string name{};    ///< In the head of the table.
   std::string label{};   ///< The text before it.
+  std::string before{};  ///< What separates it from the number before it, without blanks.
   std::string field{};   ///< What it holds, as in a layout; empty: a reading.
   std::string reason{};  ///< A sentence on it.
   Series series{};       ///< Of those that may hold something else than readings.

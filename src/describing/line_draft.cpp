@@ -61,6 +61,22 @@ std::vector<Place> places_of(const LinesAlike& text, const Draft& draft, const L
 
 }  // namespace
 
+std::string head_of(const LinesAlike& text, const std::vector<std::size_t>& heads) {
+  if (heads.empty()) return {};
+  const LineGroup group{.members = heads};
+  const Line& first = text.lines[heads.front()];
+  const auto is_other = [&](std::size_t line) { return text.lines[line].skeleton != first.skeleton; };
+  if (std::any_of(heads.begin(), heads.end(), is_other)) return {};
+  std::vector<Place> places;
+  bool tells = false;
+  for (const Column& column : columns_of(text.lines, group, text.numerals)) {
+    const bool is_told = column.field == "frame" || role_of(column.field) == layouts::Role::time;
+    tells = tells || is_told;
+    places.push_back({is_told ? column.field : "skip", places.size() + 1, role_of(column.field)});
+  }
+  return tells ? pattern_of(first, places, 0, 0) : std::string();
+}
+
 Draft begin_line_draft(const LinesAlike& text, const LineFields& fields, const Known& known) {
   Draft draft;
   draft.merit = fields.merit;
@@ -86,9 +102,10 @@ void write_line(const LinesAlike& text, const LineFields& fields, Draft& draft) 
     if (text.lines[member].begin > kMostBytesOfParts) break;
     add_parts(text.lines[member], places, draft.parts);
   }
-  const Span& span = fields.spans.front();
-  draft.look =
-      std::to_string(text.group.members.size()) + " lines of " + std::to_string(span.end - span.begin) + " numbers";
+  std::size_t numbers = 0;
+  for (const Span& span : fields.spans) numbers += span.end - span.begin;
+  draft.look = std::to_string(text.group.members.size()) + " lines of " + std::to_string(numbers) +
+               (numbers == 1 ? " number" : " numbers");
   draft.left_over = left_over_lines(text.lines, text.group.members);
 }
 

@@ -21,6 +21,9 @@ struct LinesAlike {
   std::vector<Column> columns;
 };
 
+/// The pattern of lines that begin frames, where they say a number or a time of these; empty otherwise.
+[[nodiscard]] std::string head_of(const LinesAlike& text, const std::vector<std::size_t>& heads);
+
 /// A draft with all but its arrays and its line.
 [[nodiscard]] Draft begin_line_draft(const LinesAlike& text, const LineFields& fields, const Known& known);
 

@@ -53,6 +53,18 @@ std::optional<FrameShape> named_shape(const std::vector<Column>& columns, std::s
   return shape.taxel_count() == end - begin ? std::optional(shape) : std::nullopt;
 }
 
+/// Rows in brackets, or with another separator between them than between their readings.
+std::optional<FrameShape> parted_shape(const std::vector<Column>& columns, std::size_t begin, std::size_t end) {
+  std::size_t cols = 0;
+  for (std::size_t k = begin + 1; k < end; ++k) {
+    const bool begins_row = columns[k].before != columns[begin + 1].before;
+    if (begins_row && cols == 0) cols = k - begin;
+    if (cols > 0 && begins_row != ((k - begin) % cols == 0)) return std::nullopt;
+  }
+  if (cols < 2 || (end - begin) % cols != 0) return std::nullopt;
+  return FrameShape{(end - begin) / cols, cols};
+}
+
 /// Readings side by side, cut where their names change.
 std::vector<Span> spans_of(const std::vector<Column>& columns) {
   std::vector<Span> spans;
@@ -69,7 +81,10 @@ std::vector<Span> spans_of(const std::vector<Column>& columns) {
     }
     spans.back().end = k + 1;
   }
-  for (Span& span : spans) span.named_shape = named_shape(columns, span.begin, span.end);
+  for (Span& span : spans) {
+    span.shown_shape = parted_shape(columns, span.begin, span.end);
+    if (!span.shown_shape) span.shown_shape = named_shape(columns, span.begin, span.end);
+  }
   return spans;
 }
 
@@ -125,7 +140,8 @@ class Interpreter {
       if (count == 3) add(base_, {"array", row_of(1), col_of(2)});
     } else if (count == 1) {
       const std::size_t lines = numbers_of(0).size();
-      add(base_, {row_of(0)}, lines > kFewRows ? 0.1 : 0.0);
+      const bool is_row = columns_[counting_[0]].field == "cycle";
+      if (is_row) add(base_, {row_of(0)}, lines > kFewRows ? 0.1 : 0.0);
       if (lines <= kMostInTurn) add(base_, {"array"}, lines > kFewRows ? 0.0 : 0.1);
     } else if (count == 2) {
       add(base_, {"array", row_of(1)});

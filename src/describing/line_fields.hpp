@@ -18,8 +18,8 @@ struct Span {
   std::size_t begin = 0;  ///< The first of the columns,
   std::size_t end = 0;    ///< and the one behind the last.
   std::string name{};     ///< Which all of their names begin with.
-  /// As the names of its columns count: "r0c0".
-  std::optional<FrameShape> named_shape{};
+  /// As brackets or other separators part its rows, or as the names of its columns count: "r0c0".
+  std::optional<FrameShape> shown_shape{};
 };
 
 /// One way to understand a line.

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "describing/byte_text.hpp"
 #include "describing/checksum_search.hpp"
 #include "describing/packet_fields.hpp"
 #include "describing/packet_search.hpp"

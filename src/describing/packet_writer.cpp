@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <span>
 
+#include "describing/byte_text.hpp"
+
 namespace dermis::describing {
 namespace {
 

@@ -6,8 +6,10 @@
 #include <utility>
 
 #include "dermis/describing/proposals.hpp"
+#include "describing/byte_text.hpp"
 #include "describing/draft.hpp"
 #include "describing/packet_drafts.hpp"
+#include "describing/shapes.hpp"
 #include "describing/smoothness.hpp"
 #include "describing/text_drafts.hpp"
 #include "describing/trial.hpp"
@@ -18,15 +20,6 @@ namespace {
 constexpr double kMostLeft = 1.0 / 3.0;
 constexpr std::size_t kFewestBytes = 16;
 constexpr double kNoise = 0.85;  // roughness of readings that tell nothing
-
-bool is_text(std::span<const std::uint8_t> bytes) {
-  const auto count = std::count_if(bytes.begin(), bytes.end(), [](std::uint8_t byte) {
-    return (byte >= 0x20 && byte < 0x7F) || byte == '\t' || byte == '\r' || byte == '\n' || byte == 0x1B;
-  });
-  const auto nuls = std::count(bytes.begin(), bytes.end(), 0);
-  return 20 * (static_cast<std::size_t>(count) + std::min(static_cast<std::size_t>(nuls), bytes.size() / 8)) >=
-         17 * bytes.size();
-}
 
 /// Readings that rest at the top of their range, and fall.
 void describe_falling(const Trial& trial, Draft& draft) {
@@ -117,6 +110,8 @@ std::optional<Judged> judge(Draft draft, std::span<const std::uint8_t> bytes, co
   proposal.frames = trial->frames;
   proposal.left_share = left;
   proposal.shape = draft.arrays.front().shape;
+  proposal.arrays = draft.arrays.size();
+  proposal.merit = judged.merit;
   proposal.example = frame_that_differs_most(trial->readings);
   return judged;
 }

@@ -37,11 +37,4 @@ std::vector<std::vector<FrameShape>> shapes_of(const std::vector<std::size_t>& s
   return choices;
 }
 
-std::string printable(std::string_view text) {
-  std::string result(text);
-  std::replace_if(
-      result.begin(), result.end(), [](char c) { return c < 0x20 || c > 0x7E; }, '?');
-  return result;
-}
-
 }  // namespace dermis::describing

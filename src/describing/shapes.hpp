@@ -3,8 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "dermis/core/frame_source.hpp"
@@ -19,8 +17,5 @@ namespace dermis::describing {
 /// them. Readings of one that are several times those of a known array are so many arrays side by side.
 [[nodiscard]] std::vector<std::vector<FrameShape>> shapes_of(const std::vector<std::size_t>& sizes,
                                                              const Readings& frames, const Known& known);
-
-/// For a message: other characters become '?'.
-[[nodiscard]] std::string printable(std::string_view text);
 
 }  // namespace dermis::describing

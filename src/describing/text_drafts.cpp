@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "describing/byte_text.hpp"
 #include "describing/column_names.hpp"
 #include "describing/frame_marks.hpp"
 #include "describing/line_draft.hpp"
@@ -19,6 +20,8 @@
 namespace dermis::describing {
 namespace {
 
+constexpr std::size_t kFewRows = 3;  // so many are rather arrays in turn
+constexpr std::size_t kMostColsOfRow = 32;
 constexpr std::size_t kMostFrames = 24;  // whose readings are compared
 
 /// Drafts of one group of lines.
@@ -39,9 +42,9 @@ class GroupDrafts {
       return add_arrays(
           fields, {fields.shape->cols},
           readings_of_taxels(text_.lines, text_.group.members, fields.spans.front(), fields.shape->cols, kMostFrames));
-    const std::optional<FrameMark> mark =
-        fields.spans.size() == 1 && fields.ids.empty() ? frame_mark_of(text_.lines, text_.group.members) : std::nullopt;
-    if (mark) add_marked(fields, *mark);
+    if (fields.spans.size() == 1 && fields.ids.empty() && text_.group.names.empty()) {
+      for (const FrameMark& mark : frame_marks_of(text_.lines, text_.group.members)) add_marked(fields, mark);
+    }
     std::vector<std::size_t> sizes;
     for (const Span& span : fields.spans) sizes.push_back(span.end - span.begin);
     const std::size_t beside = text_.columns.size() - sizes.front();
@@ -55,7 +58,7 @@ class GroupDrafts {
     if (!is_known(shape, known_)) return;
     Draft draft = begin_line_draft(text_, fields, known_);
     draft.has_certain_shape = true;
-    draft.merit += 0.2;
+    draft.merit += shape.rows > kFewRows || known_.rows ? 0.2 : -0.2;
     for (const std::uint64_t id : fields.ids) draft.arrays.push_back({"array_" + std::to_string(id), shape, id});
     for (const std::string& name : text_.group.names) draft.arrays.push_back({name, shape});
     if (draft.arrays.empty()) draft.arrays.push_back({"", shape});
@@ -66,42 +69,38 @@ class GroupDrafts {
   void add_marked(const LineFields& fields, const FrameMark& mark) {
     const Span& span = fields.spans.front();
     const FrameShape shape{mark.rows, span.end - span.begin};
-    if (!is_known(shape, known_) || !text_.group.names.empty()) return;
+    if (!is_known(shape, known_)) return;
     Draft draft = begin_line_draft(text_, fields, known_);
     draft.has_certain_shape = true;
+    draft.head = head_of(text_, mark.lines);
     const bool says_nothing = mark.text.find_first_not_of("[](){}-=#\x1b") == std::string::npos;
-    draft.merit += (says_nothing ? 0.3 : 0.0) +
-                   gain_of_rows(readings_of_lines(text_.lines, text_.group.members, span, 4 * mark.rows), mark.rows);
-    draft.keys.emplace_back("frame_end", quoted(mark.text));
-    draft.reasons.push_back(mark.text.empty()
-                                ? "an empty line comes after " + std::to_string(mark.rows) + " rows"
-                                : "'" + printable(mark.text) + "' comes every " + std::to_string(mark.rows) + " rows");
+    draft.merit += says_nothing || !draft.head.empty() ? 0.3 : shape.cols <= kMostColsOfRow ? 0.1 : 0.0;
+    draft.merit += gain_of_rows(readings_of_lines(text_.lines, text_.group.members, span, 4 * mark.rows), mark.rows);
+    if (draft.head.empty()) draft.keys.emplace_back("frame_end", quoted(mark.text));
+    draft.reasons.push_back((mark.text.empty() ? "an empty line" : "'" + printable(mark.text) + "'") + " comes every " +
+                            std::to_string(mark.rows) + " rows");
     draft.arrays = {{"", shape}};
     write_line(text_, fields, draft);
     drafts_.push_back(std::move(draft));
   }
 
   void add_arrays(const LineFields& fields, const std::vector<std::size_t>& sizes, const Readings& frames) {
-    const std::vector<std::vector<FrameShape>> shapes = shapes_of(sizes, frames, known_);
+    std::optional<FrameShape> shown = fields.spans.front().shown_shape;
+    if (sizes.size() > 1 || (shown && (shown->taxel_count() != sizes.front() || !is_known(*shown, known_))))
+      shown.reset();
+    std::vector<std::vector<FrameShape>> shapes;
+    if (shown) shapes.push_back({*shown});
+    if (!shown) shapes = shapes_of(sizes, frames, known_);
     for (std::size_t k = 0; k < shapes.size(); ++k) {
       Draft draft = begin_line_draft(text_, fields, known_);
       draft.merit -= 0.05 * static_cast<double>(k);
-      const std::optional<FrameShape>& named = fields.spans.front().named_shape;
-      if (named && is_known(*named, known_)) {
-        draft.has_certain_shape = true;
-        draft.reasons.push_back("the names of its columns count rows and columns");
-        if (k > 0) break;
+      draft.has_certain_shape = shown.has_value();
+      if (shown) draft.reasons.emplace_back("a line shows where its rows end");
+      for (const std::uint64_t id : fields.ids) {
+        draft.arrays.push_back({"array_" + std::to_string(id), shapes[k].front(), id});
       }
-      draft.has_certain_shape = draft.has_certain_shape || (known_.rows && known_.cols);
-      for (std::size_t i = 0; i < shapes[k].size(); ++i) {
-        draft.arrays.push_back(array_at(fields, i,
-                                        named && sizes.size() == 1 && is_known(*named, known_) ? *named : shapes[k][i],
-                                        shapes[k].size()));
-      }
-      if (sizes.size() == 1 && !fields.ids.empty()) {
-        draft.arrays.clear();
-        for (const std::uint64_t id : fields.ids)
-          draft.arrays.push_back({"array_" + std::to_string(id), shapes[k].front(), id});
+      for (std::size_t i = 0; fields.ids.empty() && i < shapes[k].size(); ++i) {
+        draft.arrays.push_back(array_at(fields, i, shapes[k][i], shapes[k].size()));
       }
       write_line(text_, fields, draft);
       drafts_.push_back(std::move(draft));

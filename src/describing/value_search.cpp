@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "describing/byte_text.hpp"
 #include "describing/checksum_search.hpp"
 #include "describing/draft.hpp"
 #include "describing/trial.hpp"

@@ -146,6 +146,21 @@ class Describe(support.SmallArray):
         lines = self.written("rows.txt", LINES.replace(" ", ","))
         self.assertEqual(self.described(f"file:{lines}")["known"], "csv")
 
+    def test_what_dermis_cannot_read_is_said_as_it_looks(self):
+        shown = self.succeed("info", self.written("bare.csv", LINES.replace(" ", ",")))
+        self.assertRegex(shown, r"(?m)^or +The bytes look like 40 lines of 24 numbers: rows=4, cols=6\?; 'dermis describe ")
+        log = self.written("LOG.DAT", LINES)
+        self.refuse(["info", log], ["tells no format", "40 lines of 24 numbers", f"'dermis describe {log}' shows more"])
+        triples = "".join(
+            "".join(f"{row},{col},{value}\n" for (row, col), value in numpy.ndenumerate(frame)) + "\n"
+            for frame in pressed(30, 4, 6)
+        )
+        source = f"file:{self.written('triples', triples)}"
+        self.refuse(
+            ["record", "--from", source, "--out", self.work / "out.npy"],
+            ["no known protocol", "720 lines of 1 number: rows=4, cols=6", f"'dermis describe {source}' shows more"],
+        )
+
     def test_bad_input_is_one_line(self):
         prose = self.written("prose.txt", "The quick brown fox jumps over the lazy dog.\n" * 50)
         self.refuse(["describe", prose], ["prose.txt", "no layout reads most of these bytes"])

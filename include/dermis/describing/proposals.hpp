@@ -37,8 +37,10 @@ struct Proposal {
   std::vector<std::string> left_over;  ///< Sentences on bytes that belong to no frame.
   std::vector<Part> parts;             ///< Of the first bytes, in order; those between them are text or left over.
   std::vector<std::string> open;       ///< Keys that the bytes cannot tell: "rows", "cols", "unit".
-  std::size_t frames = 0;              ///< Of the first array.
-  double left_share = 0.0;             ///< Of the bytes, 0 to 1.
+  double merit = 0.0;                  ///< The greater, the better than another proposal of the same bytes.
+  std::size_t arrays = 1;
+  std::size_t frames = 0;      ///< Of the first array.
+  double left_share = 0.0;     ///< Of the bytes, 0 to 1.
   std::vector<float> example;  ///< Of the first frames of the first array that whose readings differ most, row-major.
   FrameShape shape;            ///< Of it.
 };
