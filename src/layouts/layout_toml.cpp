@@ -40,6 +40,7 @@ class LayoutReader {
       read_packet();
     }
     read_readings();
+    for (const char* const table : {"array", "readout"}) file_.ignore(table);
     if (Status finished = file_.finish(); !finished) return finished.error();
     return std::move(layout_);
   }
@@ -62,7 +63,8 @@ class LayoutReader {
   void read_arrays() {
     const std::size_t count = file_.table_count(key("array"));
     if (count > kMostArrays) return fail("array", "there are more than 64");
-    if (count == 0) read_shape("layout.", layout_.arrays.emplace_back().shape);
+    const bool is_in_array = file_.contains("array.rows") && !file_.contains(key("rows"));
+    if (count == 0) read_shape(is_in_array ? "array." : "layout.", layout_.arrays.emplace_back().shape);
     for (std::size_t k = 0; k < count; ++k) read_array(key("array[" + std::to_string(k) + "]."));
     if (layout_.arrays.empty()) layout_.arrays.push_back({"", {1, 1}});
     std::size_t taxels = 0;

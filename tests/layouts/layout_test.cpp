@@ -139,6 +139,27 @@ TEST(TextLayout, late_frames_are_put_in_order) {
   for (const RawFrame& frame : frames) EXPECT_EQ(frame.acquisition.lost_before, 0U);
 }
 
+TEST(TextLayout, late_frames_are_counted_and_a_live_reader_drops_them) {
+  const auto layout = layout_of(std::string(kTwoByTwo) + "line = \"{time_ms} {frame} {values}\"\n");
+  const Bytes bytes = bytes_of("0 0 0 0 0 0\n40 2 5 6 7 8\n20 1 1 2 3 4\n60 3 1 1 1 1\n5000 4 2 2 2 2\n10 5 3 3 3 3\n");
+  const auto live = make_decoder(layout, 0, false);
+  EXPECT_EQ(readings_of(frames_of(*live, bytes)),
+            (Readings{{0, 0, 0, 0}, {5, 6, 7, 8}, {1, 1, 1, 1}, {2, 2, 2, 2}, {3, 3, 3, 3}}))
+      << "more than a second back is a restart";
+  EXPECT_EQ(live->counts(), (DecoderCounts{.frames = 5, .lost_frames = 1, .late_frames = 1}));
+  const auto waiting = make_decoder(layout, 0, true);
+  EXPECT_EQ(frames_of(*waiting, bytes).size(), 6U);
+  EXPECT_EQ(waiting->counts(), (DecoderCounts{.frames = 6, .late_frames = 1}));
+}
+
+TEST(TextLayout, a_frame_that_is_sent_again_is_dropped_and_one_that_only_looks_so_is_not) {
+  const auto layout = layout_of(std::string(kTwoByTwo) + "line = \"{frame}: {values}\"\n");
+  const auto decoder = make_decoder(layout, 0, false);
+  EXPECT_EQ(readings_of(frames_of(*decoder, bytes_of("1: 1 2 3 4\n1: 1 2 3 4\n2: 1 2 3 4\n2: 5 6 7 8\n"))),
+            (Readings{{1, 2, 3, 4}, {1, 2, 3, 4}, {5, 6, 7, 8}}));
+  EXPECT_EQ(decoder->counts().repeated_frames, 1U);
+}
+
 TEST(TextLayout, frames_that_the_device_calls_corrupt_are_dropped_and_absent_ones_have_no_readings) {
   const std::string toml =
       std::string(kTwoByTwo) + "line = \"{values} {flags}\"\nflags.corrupt = [4, 6]\nflags.absent = [2]\n";
@@ -334,6 +355,14 @@ TEST(PacketLayout, damaged_bytes_cost_no_more_than_their_frames) {
     damaged.erase(damaged.begin() + static_cast<std::ptrdiff_t>(at));
     EXPECT_GE(frames_of(toml, damaged).size(), 19U) << at;
   }
+}
+
+TEST(LayoutToml, stands_beside_the_array_that_it_is_of) {
+  const Result<Layout> layout = layout_from_toml(
+      "[array]\nname = \"mat\"\nrows = 2\ncols = 3\n[readout]\nadc_bits = 12\n[layout]\nline = \"{values}\"\n",
+      "it.toml");
+  ASSERT_TRUE(layout) << layout.error().message;
+  EXPECT_EQ(layout->arrays.front().shape, (FrameShape{2, 3}));
 }
 
 TEST(LayoutToml, errors_name_the_line_the_key_and_the_mend) {

@@ -134,6 +134,7 @@ struct Layout {
   std::string request{};  ///< Sent to the device before each frame; empty: frames come on their own.
 
   [[nodiscard]] bool has_times() const;
+  [[nodiscard]] bool has_numbers() const;
   /// What the device needs next. `is_sending`: a frame has come since it was connected.
   [[nodiscard]] std::string_view request_after(bool is_sending) const noexcept;
   /// Place of the array of that name; an empty name is that of the only one. Fails with the names.
