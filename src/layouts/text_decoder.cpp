@@ -65,6 +65,7 @@ bool TextDecoder::read(std::span<const std::uint8_t> line, RawFrame& frame) {
   const std::span<const std::uint8_t> text = without_end(line);
   const bool has_end = line.back() == end_byte_;
   if (has_end && !is_comment(text)) {
+    if (!text_.frame_begin.empty() && begins_with(text, text_.frame_begin)) assembly_.end_frame();
     if (match_.read(text, piece_)) return add(line.size(), frame);
     if (ends_frame(text)) {
       assembly_.end_frame();

@@ -91,6 +91,11 @@ TEST(TextLayout, taxels_make_a_frame_when_all_have_come) {
             kOneToEight);
 }
 
+TEST(TextLayout, hexadecimal_numbers_may_have_their_prefix) {
+  EXPECT_EQ(readings_of("line = \"{values}\"\ndigits = \"hexadecimal\"\n", "0x1,0x2,0x3,0x4\n05 06 7 8\n"),
+            kOneToEight);
+}
+
 TEST(TextLayout, numbers_may_be_signed_broken_hexadecimal_or_of_one_width) {
   EXPECT_EQ(readings_of("line = \"{values}\"\ndecimal_point = \",\"\n", "1,5 -2 3e1;4\n"),
             (Readings{{1.5, -2, 30, 4}}));
@@ -202,6 +207,33 @@ TEST(TextLayout, arrays_have_lines_or_heads_of_their_own) {
   EXPECT_EQ(readings_of(frames_of(heads, rows, 1)), (Readings{{7, 7}}));
 }
 
+TEST(TextLayout, fields_of_readings_share_those_of_a_line) {
+  EXPECT_EQ(readings_of("line = \"R0: {values} | R1: {values}\"\n", "R0: 1 2 | R1: 3 4\nR0: 5 6 | R1: 7 8\n"),
+            kOneToEight);
+  EXPECT_EQ(readings_of("line = \"{row},{value},{skip},{value}\"\n", "0,1,x,2\n1,3,x,4\n0,5,x,6\n1,7,x,8\n"),
+            kOneToEight);
+  EXPECT_EQ(error_of(std::string(kTwoByTwo) + "line = \"{value} a {value} b {value}\"\n"),
+            "it.toml:4: layout.line: 3 fields of readings cannot share those of a frame");
+}
+
+TEST(TextLayout, a_line_may_show_that_a_frame_begins) {
+  EXPECT_EQ(
+      readings_of("line = \"{values}\"\nframe_begin = \"[[\"\n", " [9 9]]\n[[1 2]\n [3 4]]\n[[9 9]\n[[5 6]\n [7 8]]\n"),
+      kOneToEight);
+}
+
+TEST(TextLayout, seconds_and_smaller_units_add_up) {
+  const std::string heads = "line = [\"sec: {time_s}\", \"nsec: {time_ns}\", \"{values}\"]\n";
+  const auto frames = frames_of(kTwoByTwo + heads, bytes_of("sec: 2\nnsec: 7\n1 2 3 4\nsec: 3\nnsec: 8\n5 6 7 8\n"));
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_EQ(frames[0].acquisition.device_time, std::chrono::nanoseconds(2'000'000'007));
+  EXPECT_EQ(frames[1].acquisition.device_time, std::chrono::nanoseconds(3'000'000'008));
+  const auto zoned = frames_of(std::string(kTwoByTwo) + "line = \"{datetime},{values}\"\n",
+                               bytes_of("1970-01-01T02:30:05+02:30,1,2,3,4\n"));
+  ASSERT_EQ(zoned.size(), 1U);
+  EXPECT_EQ(zoned[0].acquisition.device_time, std::chrono::seconds(5));
+}
+
 TEST(TextLayout, a_device_is_asked_before_each_frame_or_until_it_sends) {
   const auto layout = [](const char* key) { return layout_of(kTwoByTwo + std::string("line = \"{values}\"\n") + key); };
   const auto started = make_decoder(layout("start = \"go\""), 0, false);
@@ -278,6 +310,18 @@ TEST(PacketLayout, bytes_that_never_change_show_where_a_packet_begins) {
   Bytes bytes;
   for (int k = 0; k < 8; ++k) bytes.insert(bytes.end(), {0x40, 0x40, 0x40, 0x40, 0x40, 0x0D});
   EXPECT_EQ(readings_of("packet = [\"40\", \"values u8\", \"0D\"]\n", bytes), Readings(8, {64, 64, 64, 64}));
+}
+
+TEST(PacketLayout, readings_may_stand_apart_and_beside_other_bits) {
+  const Bytes apart = {0xA5, 1, 2, 0, 3, 4, 0xA5, 5, 6, 0, 7, 8};
+  EXPECT_EQ(readings_of("packet = [\"A5\", \"values u8\", \"00\", \"values u8\"]\n", apart), kOneToEight);
+  EXPECT_EQ(readings_of("packet = [\"A5\", \"values u8 x2\", \"skip 1\", \"values u8 x2\"]\n", apart), kOneToEight);
+  const Bytes channels = {0xA5, 0x00, 1, 0x11, 2, 0x20, 3, 0x3F, 0xFF};
+  EXPECT_EQ(readings_of("packet = [\"A5\", \"values u16be mask=0FFF\"]\n", channels), (Readings{{1, 258, 3, 4095}}));
+  EXPECT_EQ(readings_of("packet = [\"A5\", \"values u16be mask=F000\"]\n", channels), (Readings{{0, 1, 2, 3}}));
+  EXPECT_EQ(
+      error_of(std::string(kTwoByTwo) + "packet = [\"A5\", \"values u8 mask=100\"]\n"),
+      "it.toml:4: layout.packet: field 2: mask= must be hexadecimal digits of bits that a number without a sign has");
 }
 
 TEST(PacketLayout, checksums_have_the_check_values_of_their_catalogue) {
@@ -374,8 +418,8 @@ TEST(LayoutToml, errors_name_the_line_the_key_and_the_mend) {
             "it.toml:4: layout.line: two fields need something between them, such as a comma");
   EXPECT_EQ(
       error_of(two + "packet = [\"FF\", \"values u16\"]\n"),
-      "it.toml:4: layout.packet: field 2: 'u16' is no type: it is u8, i8, u10, u12, u16, i16, u24, u32, i32, f32 or "
-      "f64, then le where the low byte comes first or be where the high byte does");
+      "it.toml:4: layout.packet: field 2: 'u16' is no type: it is u8, i8, u10, u12, u16, i16, u24, u32, i32, u64, "
+      "f32 or f64, then le where the low byte comes first or be where the high byte does");
   EXPECT_EQ(error_of(two + "packet = [\"values u8\"]\n"),
             "it.toml:4: layout.packet: must begin or end with bytes that mark it, as \"FF FF\", or have an escape");
   EXPECT_EQ(error_of("[layout]\nrows = 2\nline = \"{values}\"\n"),

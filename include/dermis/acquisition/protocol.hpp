@@ -15,7 +15,10 @@
 #include "dermis/core/frame_source.hpp"
 #include "dermis/core/result.hpp"
 #include "dermis/layouts/decoder.hpp"
-#include "dermis/layouts/layout.hpp"
+
+namespace dermis::layouts {
+struct Layout;
+}  // namespace dermis::layouts
 
 namespace dermis::acquisition {
 

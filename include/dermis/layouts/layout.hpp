@@ -60,9 +60,10 @@ struct TextLayout {
   using Pattern = std::vector<TextField>;
   /// The first that a line fits holds. One without readings is the head of the frame, or of its part, that follows.
   std::vector<Pattern> lines;
-  std::string line_end{};   ///< Empty: LF, or CR LF.
-  std::string separator{};  ///< Between readings; empty: blanks, and one comma or semicolon.
-  std::string comment{};    ///< Lines that begin with it are skipped; empty: none are.
+  std::string line_end{};     ///< Empty: LF, or CR LF.
+  std::string separator{};    ///< Between readings; empty: blanks, and one comma or semicolon.
+  std::string comment{};      ///< Lines that begin with it are skipped; empty: none are.
+  std::string frame_begin{};  ///< A line that begins with it begins a frame; empty: none does.
   /// Ends a frame where rows carry no number: a line that begins with it, or for "" an empty one.
   std::optional<std::string> frame_end{};
   std::size_t width = 0;  ///< Characters of a reading, which then need no separator; 0: any.
@@ -74,8 +75,9 @@ struct TextLayout {
 struct WireType {
   enum class Kind { whole, negative, real };  ///< Without a sign, with one, or IEEE 754.
   Kind kind = Kind::whole;
-  unsigned bits = 8;  ///< 8 ... 32, 64 of a real; 10 and 12 are packed without gaps.
+  unsigned bits = 8;  ///< 8 ... 32, 64; 10 and 12 are packed without gaps.
   bool is_big_endian = false;
+  std::uint64_t mask = 0;  ///< Bits of the number that count, of a number without a sign; 0: all.
 };
 
 /// A checksum over the bytes of a packet from `from` on to where it stands.
@@ -96,9 +98,10 @@ struct PacketField {
   std::vector<std::uint8_t> literal{};  ///< Where it is one.
   WireType type{};
   std::size_t array = 0;  ///< values: place in Layout::arrays.
-  std::size_t count = 0;  ///< values: how many, 0: as many as the array has, or as a field `count` says; skip: bytes.
-  double unit = 1.0;      ///< Factor on its number.
-  double offset = 0.0;    ///< Added then.
+  /// values: how many; 0: its share of what the array has, or as a field `count` says. skip: bytes.
+  std::size_t count = 0;
+  double unit = 1.0;    ///< Factor on its number.
+  double offset = 0.0;  ///< Added then.
   Checksum checksum{};
 };
 
