@@ -69,7 +69,7 @@ Result<const ProtocolEntry*> find_for(const ProtocolOptions& options) {
 }
 
 Result<std::unique_ptr<Decoder>> make_layout_decoder(const ProtocolOptions& options) {
-  Result<layouts::Layout> layout = layouts::read_layout(options.layout);
+  Result<layouts::Layout> layout = read_layout(options);
   if (!layout) return layout.error();
   const Result<std::size_t> array = layout->find_array(options.array);
   if (!array) return bad_input(options.layout + ": " + array.error().message);
@@ -93,10 +93,20 @@ const std::vector<std::string>& protocol_names() {
 }
 
 Result<std::unique_ptr<Decoder>> make_decoder(const ProtocolOptions& options) {
-  if (!options.layout.empty()) return make_layout_decoder(options);
+  if (options.has_layout()) return make_layout_decoder(options);
   const Result<const ProtocolEntry*> protocol = find_for(options);
   if (!protocol) return protocol.error();
   return (*protocol)->make_decoder(options);
+}
+
+Result<layouts::Layout> read_layout(const ProtocolOptions& options) {
+  if (!options.layout.empty()) return layouts::read_layout(options.layout);
+  Result<layouts::Layout> layout = layouts::layout_from_toml(options.layout_keys, "");
+  if (layout) return layout;
+  const std::string& message = layout.error().message;
+  constexpr std::string_view kTable = "layout.";
+  const std::size_t key = message.find(kTable);
+  return bad_input(key == std::string::npos ? message : message.substr(key + kTable.size()));
 }
 
 Result<std::unique_ptr<Encoder>> make_encoder(const ProtocolOptions& options) {

@@ -6,6 +6,8 @@
 #include <array>
 #include <cstdio>
 
+#include "layouts/has_role.hpp"
+
 namespace dermis::layouts {
 namespace {
 
@@ -60,8 +62,9 @@ std::optional<std::size_t> constant_size(const Layout& layout) {
       case Role::checksum: return std::nullopt;
       case Role::values: {
         const std::size_t taxels = layout.arrays[field.array].shape.taxel_count();
-        if (field.count != 0 && field.count != taxels) return std::nullopt;
-        size += bytes_of(field.type, taxels);
+        const std::size_t shares = shares_of(packet->packet, field.array);
+        if (field.count != 0 && field.count * shares != taxels) return std::nullopt;
+        size += bytes_of(field.type, taxels / shares);
         break;
       }
       case Role::literal: size += field.literal.size(); break;

@@ -10,6 +10,7 @@ namespace dermis::layouts {
 namespace {
 
 constexpr std::int64_t kMostLost = 1000;  // more missing frames are a restart of the device
+constexpr std::int64_t kMostLateFrames = 63;
 constexpr std::int64_t kMostLateNanos = 1'000'000'000;
 constexpr float kAbsent = std::numeric_limits<float>::quiet_NaN();
 
@@ -45,7 +46,7 @@ bool FrameFields::write(const Piece& piece, RawFrame& frame) {
 }
 
 void FrameFields::count(std::uint64_t number, Acquisition& acquisition) {
-  const std::int64_t total = frame_number_.count(number, 0);
+  const std::int64_t total = frame_number_.count(number, kMostLateFrames);
   const std::int64_t step = last_number_ ? total - *last_number_ : 1;
   if (step > 1 && step <= kMostLost + 1) acquisition.lost_before = static_cast<std::uint32_t>(step - 1);
   acquisition.sequence = static_cast<std::uint64_t>(total);

@@ -22,8 +22,15 @@ struct Piece {
   std::optional<std::uint64_t> frame{};
   std::optional<std::uint64_t> flags{};
   std::optional<std::uint64_t> time_ns{};
+  double time_unit = 0.0;  ///< Seconds, of the field that was read last.
   std::optional<double> temperature_celsius{};
   std::optional<double> supply_v{};
+
+  /// A time in a smaller unit than the one before adds to it: seconds and then microseconds.
+  void set_time(std::uint64_t nanos, double unit) noexcept {
+    time_ns = nanos + (unit < time_unit ? time_ns.value_or(0) : 0);
+    time_unit = unit;
+  }
 };
 
 /// Moduli of what a device counts; 0: it does not wrap.

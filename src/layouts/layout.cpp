@@ -26,6 +26,12 @@ bool Layout::has_times() const {
   return text != nullptr ? has_time(text->lines) : has_time(std::get<PacketLayout>(form).packet);
 }
 
+bool Layout::has_numbers() const {
+  const auto* const text = std::get_if<TextLayout>(&form);
+  return text != nullptr ? has_role(text->lines, Role::frame)
+                         : has_role(std::get<PacketLayout>(form).packet, Role::frame);
+}
+
 std::string_view Layout::request_after(bool is_sending) const noexcept {
   if (!request.empty()) return request;
   return is_sending ? std::string_view{} : std::string_view(start);
@@ -48,7 +54,8 @@ std::unique_ptr<Decoder> make_decoder(const std::vector<std::shared_ptr<const La
 
 std::unique_ptr<Decoder> make_decoder(std::shared_ptr<const Layout> layout, std::size_t array,
                                       bool waits_for_late_frames) {
-  const bool is_ordered = waits_for_late_frames && layout->has_times();
+  const bool has_times = layout->has_times();
+  const bool is_ordered = has_times || layout->has_numbers();
   std::unique_ptr<Decoder> decoder;
   if (std::holds_alternative<TextLayout>(layout->form)) {
     decoder = std::make_unique<TextDecoder>(std::move(layout), array);
@@ -59,7 +66,9 @@ std::unique_ptr<Decoder> make_decoder(std::shared_ptr<const Layout> layout, std:
     decoder = std::make_unique<PacketDecoder>(std::move(layout), array);
   }
   if (!is_ordered) return decoder;
-  return std::make_unique<FramesInOrder>(std::move(decoder));
+  const bool waits = waits_for_late_frames && has_times;
+  return std::make_unique<FramesInOrder>(std::move(decoder),
+                                         waits ? FramesInOrder::Late::wait_for : FramesInOrder::Late::drop);
 }
 
 }  // namespace dermis::layouts

@@ -40,6 +40,7 @@ class LayoutReader {
       read_packet();
     }
     read_readings();
+    for (const char* const table : {"array", "readout"}) file_.ignore(table);
     if (Status finished = file_.finish(); !finished) return finished.error();
     return std::move(layout_);
   }
@@ -62,7 +63,8 @@ class LayoutReader {
   void read_arrays() {
     const std::size_t count = file_.table_count(key("array"));
     if (count > kMostArrays) return fail("array", "there are more than 64");
-    if (count == 0) read_shape("layout.", layout_.arrays.emplace_back().shape);
+    const bool is_in_array = file_.contains("array.rows") && !file_.contains(key("rows"));
+    if (count == 0) read_shape(is_in_array ? "array." : "layout.", layout_.arrays.emplace_back().shape);
     for (std::size_t k = 0; k < count; ++k) read_array(key("array[" + std::to_string(k) + "]."));
     if (layout_.arrays.empty()) layout_.arrays.push_back({"", {1, 1}});
     std::size_t taxels = 0;
@@ -106,6 +108,9 @@ class LayoutReader {
     if (patterns.empty() || (!text.lines.empty() && !has_role(text.lines, Role::values))) {
       fail("line", "has no readings: write {values}, or the name of an array, where they stand");
     }
+    for (const TextLayout::Pattern& line : text.lines) {
+      check_shares("line", line, !has_role(line, Role::col) && has_role(text.lines, Role::row));
+    }
     file_.text(key("line_end"), text.line_end);
     const std::string_view numbers = "0123456789abcdefABCDEF+-.,";
     if (!text.line_end.empty() && numbers.find(text.line_end.back()) != std::string_view::npos) {
@@ -113,6 +118,7 @@ class LayoutReader {
     }
     file_.text(key("separator"), text.separator);
     file_.text(key("comment"), text.comment);
+    file_.text(key("frame_begin"), text.frame_begin);
     if (file_.contains(key("frame_end"))) file_.text(key("frame_end"), text.frame_end.emplace());
     file_.count(key("width"), text.width);
     if (text.width > 9) fail("width", "must be at most 9 characters");
@@ -124,6 +130,19 @@ class LayoutReader {
     file_.choice(key("digits"), {"decimal", "hexadecimal"}, digits);
     text.is_hexadecimal = digits == 1;
     layout_.form = std::move(text);
+  }
+
+  /// Fields of one array share its readings.
+  template <typename Field>
+  void check_shares(const char* name, const std::vector<Field>& fields, bool holds_row) {
+    if (has_role(fields, Role::col) || has_role(fields, Role::first)) return;
+    for (std::size_t k = 0; k < layout_.arrays.size(); ++k) {
+      const FrameShape& shape = layout_.arrays[k].shape;
+      const std::size_t shares = shares_of(fields, k);
+      if (shares == 0 || (holds_row ? shape.cols : shape.taxel_count()) % shares == 0) continue;
+      fail(name,
+           std::to_string(shares) + " fields of readings cannot share those of a " + (holds_row ? "row" : "frame"));
+    }
   }
 
   void read_packet() {
@@ -166,6 +185,10 @@ class LayoutReader {
   void check(const PacketLayout& packet) {
     const std::vector<PacketField>& fields = packet.packet;
     check_mark(packet);
+    const bool has_counts = has_role(fields, Role::count) || std::ranges::any_of(fields, [](const PacketField& field) {
+                              return field.role == Role::values && field.count > 0;
+                            });
+    if (!has_counts) check_shares("packet", fields, has_role(fields, Role::row));
     if (!has_role(fields, Role::values)) fail("packet", "has no readings, as \"values u16le\"");
     for (const PacketField& field : fields) {
       if (field.literal.size() > kMostLiteral) fail("packet", "a field has more than 256 bytes");

@@ -60,9 +60,11 @@ LineMatch::Pattern LineMatch::pattern_of(const TextLayout::Pattern& fields) cons
   const bool begins_frame = is_head && (has_no_field || has_role(fields, Role::frame) || has_time(fields));
   const bool is_taxel = has_role(fields, Role::col) || has_role(fields, Role::first);
   const bool is_row = has_role(fields, Role::row) || has_role(text_.lines, Role::row);
-  const bool may_be_row = text_.frame_end.has_value() || text_.lines.size() > 1;
+  const bool may_be_row = text_.frame_end.has_value() || !text_.frame_begin.empty() || text_.lines.size() > 1;
   const Holds holds = is_taxel ? Holds::taxel : is_row ? Holds::row : may_be_row ? Holds::row_or_frame : Holds::frame;
-  return {&fields, holds, is_head, begins_frame};
+  std::vector<std::size_t> shares;
+  for (std::size_t k = 0; k < layout_.arrays.size(); ++k) shares.push_back(shares_of(fields, k));
+  return {&fields, holds, std::move(shares), is_head, begins_frame};
 }
 
 bool LineMatch::read(std::span<const std::uint8_t> line, Piece& piece) {
@@ -119,8 +121,8 @@ bool LineMatch::read_field(const TextField& field, const TextField* next, Piece&
     case Role::frame: return read_whole(piece.frame);
     case Role::flags: return read_whole(piece.flags);
     case Role::array: return read_array(next, piece);
-    case Role::clock: return read_clock(piece.time_ns.emplace());
-    case Role::datetime: return read_datetime(piece.time_ns.emplace());
+    case Role::clock: piece.set_time(0, 1.0); return read_clock(*piece.time_ns);
+    case Role::datetime: piece.set_time(0, 1.0); return read_datetime(*piece.time_ns);
     default: break;
   }
   if (!read_number(number)) return fail("a number is expected");
@@ -130,7 +132,7 @@ bool LineMatch::read_field(const TextField& field, const TextField* next, Piece&
   if (field.role != Role::time) return true;
   const double nanos = std::round(1e9 * number);
   if (!(nanos >= 0.0 && nanos < kMostNanos)) return fail("a time of 0 or more is expected");
-  piece.time_ns = static_cast<std::uint64_t>(nanos);
+  piece.set_time(static_cast<std::uint64_t>(nanos), field.unit);
   return true;
 }
 
@@ -166,15 +168,18 @@ bool LineMatch::skip_to(const TextField* next) noexcept {
 
 bool LineMatch::read_readings(std::size_t array, Piece& piece) {
   const FrameShape& shape = layout_.arrays[array].shape;
+  const std::size_t shares = std::max<std::size_t>(pattern_->shares[names_array_ ? 0 : array], 1);
   const Holds holds = pattern_->holds;
-  const std::size_t least = holds == Holds::taxel ? 1 : holds == Holds::frame ? shape.taxel_count() : shape.cols;
-  const std::size_t most = holds == Holds::row_or_frame ? shape.taxel_count() : least;
-  const std::span<float> values = array == array_ ? std::span(numbers_) : std::span(others_);
+  const bool may_be_row = holds == Holds::row || (holds == Holds::row_or_frame && shares == 1);
+  const std::size_t least = holds == Holds::taxel ? 1 : (may_be_row ? shape.cols : shape.taxel_count()) / shares;
+  const std::size_t most = holds == Holds::row_or_frame ? shape.taxel_count() / shares : least;
+  const std::span<float> values = array == array_ ? std::span(numbers_).subspan(count_) : std::span(others_);
+  if (values.size() < most) return fail("more readings than the array has");
   if (!read_values(values, 0, least)) return false;
   const std::uint8_t* const row_end = at_;
   const bool is_frame = least == most || read_values(values, least, most);
   if (!is_frame) at_ = row_end;
-  if (array == array_) count_ = is_frame ? most : least;
+  if (array == array_) count_ += is_frame ? most : least;
   if (!names_array_) piece.array = count_ > 0 ? array_ : array;
   return true;
 }
@@ -218,6 +223,8 @@ bool LineMatch::read_reading(float& value) noexcept {
         text_.width > 0 && static_cast<std::size_t>(end_ - at_) >= text_.width ? at_ + text_.width : end_;
     if (text_.width > 0 && last == end_ && static_cast<std::size_t>(end_ - at_) < text_.width) return false;
     std::uint32_t whole = 0;
+    const bool has_prefix = text_.is_hexadecimal && last - at_ > 2 && *at_ == '0' && (at_[1] | 0x20U) == 'x';
+    if (has_prefix) at_ += 2;
     const char* const from = reinterpret_cast<const char*>(at_);
     const auto [end, error] =
         std::from_chars(from, reinterpret_cast<const char*>(last), whole, text_.is_hexadecimal ? 16 : 10);
@@ -316,13 +323,32 @@ bool LineMatch::read_datetime(std::uint64_t& nanos) noexcept {
   }
   ++at_;
   if (!read_clock(nanos)) return false;
-  if (at_ != end_ && *at_ == 'Z') ++at_;
+  std::int64_t east_ns = 0;
+  if (!read_zone(east_ns)) return false;
   if (*year < 1970 || *year > 2200 || *month > 12 || *day > 31) return fail("a date after 1970 is expected");
   const std::chrono::year_month_day date{std::chrono::year(static_cast<int>(*year)),
                                          std::chrono::month(static_cast<unsigned>(*month)),
                                          std::chrono::day(static_cast<unsigned>(*day))};
   if (!date.ok()) return fail("there is no such date");
-  nanos += static_cast<std::uint64_t>(Nanos(std::chrono::sys_days(date).time_since_epoch()).count());
+  nanos += static_cast<std::uint64_t>(Nanos(std::chrono::sys_days(date).time_since_epoch()).count() - east_ns);
+  return true;
+}
+
+/// "Z", "+01:00", "-0330", or nothing.
+bool LineMatch::read_zone(std::int64_t& east_ns) noexcept {
+  if (at_ == end_) return true;
+  if (*at_ == 'Z') return ++at_, true;
+  const bool is_west = *at_ == '-';
+  if (!is_west && *at_ != '+') return true;
+  std::array<std::uint32_t, 4> digits{};
+  ++at_;
+  for (std::size_t k = 0; k < digits.size(); ++k, ++at_) {
+    if (k == 2 && at_ != end_ && *at_ == ':') ++at_;
+    if (at_ == end_ || digit(*at_) > 9) return fail("a time zone is expected, as +01:00");
+    digits[k] = digit(*at_);
+  }
+  const std::int64_t minutes = 60 * (10 * digits[0] + digits[1]) + 10 * digits[2] + digits[3];
+  east_ns = (is_west ? -minutes : minutes) * 60'000'000'000;
   return true;
 }
 

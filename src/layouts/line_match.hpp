@@ -38,6 +38,7 @@ class LineMatch {
   struct Pattern {
     const TextLayout::Pattern* fields = nullptr;
     Holds holds = Holds::frame;
+    std::vector<std::size_t> shares{};  ///< Fields of each array, which share what the line holds of it.
     bool is_head = false;
     bool begins_frame = false;
   };
@@ -57,6 +58,7 @@ class LineMatch {
   bool read_number(double& value) noexcept;
   bool read_clock(std::uint64_t& nanos) noexcept;
   bool read_datetime(std::uint64_t& nanos) noexcept;
+  bool read_zone(std::int64_t& east_ns) noexcept;
   bool read_array(const TextField* next, Piece& piece);
   void skip_blanks() noexcept;
   bool skip_separator() noexcept;

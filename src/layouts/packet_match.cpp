@@ -38,6 +38,7 @@ std::uint64_t bits_at(std::span<const std::uint8_t> bytes, const WireType& type,
 }
 
 double number_of(std::uint64_t bits, const WireType& type) noexcept {
+  if (type.mask != 0) return static_cast<double>((bits & type.mask) >> std::countr_zero(type.mask));
   if (type.kind == WireType::Kind::real) {
     return type.bits == 64 ? std::bit_cast<double>(bits)
                            : static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
@@ -60,7 +61,7 @@ void read_16(std::span<const std::uint8_t> bytes, std::size_t count, float* valu
 
 void read_numbers(std::span<const std::uint8_t> bytes, const WireType& type, std::size_t count,
                   float* values) noexcept {
-  const bool is_whole = type.kind == WireType::Kind::whole;
+  const bool is_whole = type.kind == WireType::Kind::whole && type.mask == 0;
   if (is_whole && type.bits == 8) return void(std::copy_n(bytes.begin(), count, values));
   if (is_whole && type.bits == 16) {
     const bool is_swapped = type.is_big_endian == (std::endian::native == std::endian::little);
@@ -80,7 +81,9 @@ Moduli moduli_of(const PacketLayout& layout) {
   for (const PacketField& field : layout.packet) {
     if (field.role == Role::frame) moduli.frame = range_of(field);
     const double nanos = std::round(1e9 * field.unit * static_cast<double>(range_of(field)));
-    if (field.role == Role::time && nanos < 9e18) moduli.time_ns = static_cast<std::uint64_t>(nanos);
+    if (field.role == Role::time && nanos < 9e18) {
+      moduli.time_ns = std::max(moduli.time_ns, static_cast<std::uint64_t>(nanos));
+    }
   }
   return moduli;
 }
@@ -91,6 +94,7 @@ PacketMatch::PacketMatch(const Layout& layout, std::size_t array)
       array_(array),
       names_array_(has_role(packet_, Role::array)),
       has_checksum_(has_role(packet_, Role::checksum)) {
+  for (std::size_t k = 0; k < layout.arrays.size(); ++k) shares_.push_back(shares_of(packet_, k));
   for (const PacketField& field : packet_) {
     const bool is_checksum = field.role == Role::checksum;
     checksums_.push_back(is_checksum ? ChecksumOf(field.checksum, field.type.bits) : ChecksumOf());
@@ -100,7 +104,7 @@ PacketMatch::PacketMatch(const Layout& layout, std::size_t array)
 PacketMatch::Outcome PacketMatch::read(std::span<const std::uint8_t> bytes, Piece& piece, std::vector<float>& numbers) {
   piece = {};
   piece.array = array_;
-  at_ = 0;
+  at_ = count_ = 0;
   given_count_.reset();
   end_.reset();
   for (std::size_t place = 0; place < packet_.size(); ++place) {
@@ -110,6 +114,7 @@ PacketMatch::Outcome PacketMatch::read(std::span<const std::uint8_t> bytes, Piec
     return outcome;
   }
   misfit_ = packet_.size();
+  numbers.resize(count_);
   return !end_ || *end_ == at_ ? Outcome::whole : Outcome::foreign;
 }
 
@@ -144,26 +149,28 @@ PacketMatch::Outcome PacketMatch::read_literal(const PacketField& field, std::sp
 PacketMatch::Outcome PacketMatch::read_values(const PacketField& field, std::span<const std::uint8_t> bytes,
                                               const Piece& piece, std::vector<float>& numbers) {
   const std::size_t array = names_array_ ? piece.array : field.array;
-  const std::size_t count = count_of(field, layout_.arrays[array].shape, piece);
-  if (count > layout_.arrays[array].shape.taxel_count()) return Outcome::foreign;
+  const std::size_t taxels = layout_.arrays[array].shape.taxel_count();
+  const std::size_t count = count_of(field, array, piece);
+  if (count > taxels || (array == array_ && count > taxels - count_)) return Outcome::foreign;
   const std::size_t size = bytes_of(field.type, count);
   if (bytes.size() < size) return Outcome::unfinished;
   at_ += size;
   if (array != array_) return Outcome::whole;
-  numbers.resize(count);
-  read_numbers(bytes, field.type, count, numbers.data());
+  if (numbers.size() < count_ + count) numbers.resize(count_ + count);
+  read_numbers(bytes, field.type, count, numbers.data() + count_);
+  count_ += count;
   return Outcome::whole;
 }
 
 /// As many as the packet says, or as its array has left.
-std::size_t PacketMatch::count_of(const PacketField& field, const FrameShape& shape,
-                                  const Piece& piece) const noexcept {
+std::size_t PacketMatch::count_of(const PacketField& field, std::size_t array, const Piece& piece) const noexcept {
+  const FrameShape& shape = layout_.arrays[array].shape;
   if (given_count_) return static_cast<std::size_t>(std::min<std::uint64_t>(*given_count_, SIZE_MAX / 128));
   if (field.count > 0) return field.count;
   if (piece.col) return 1;
-  if (piece.row) return shape.cols;
-  return shape.taxel_count() -
-         static_cast<std::size_t>(std::min<std::uint64_t>(piece.first.value_or(0), shape.taxel_count()));
+  if (piece.row) return shape.cols / shares_[field.array];
+  const std::size_t first = std::min<std::uint64_t>(piece.first.value_or(0), shape.taxel_count());
+  return (shape.taxel_count() - first) / shares_[field.array];
 }
 
 /// False where the number cannot be what the field holds.
@@ -180,7 +187,7 @@ bool PacketMatch::use(const PacketField& field, double number, Piece& piece) {
   if (field.role == Role::time) {
     const double nanos = std::round(1e9 * value);
     if (!(nanos >= 0.0 && nanos < kMostNanos)) return false;
-    piece.time_ns = static_cast<std::uint64_t>(nanos);
+    piece.set_time(static_cast<std::uint64_t>(nanos), field.unit);
     return true;
   }
   if (!(value >= 0.0 && value < kMostNanos)) return false;

@@ -48,15 +48,16 @@ class PacketMatch {
   [[nodiscard]] Outcome read_values(const PacketField& field, std::span<const std::uint8_t> bytes, const Piece& piece,
                                     std::vector<float>& numbers);
   [[nodiscard]] bool use(const PacketField& field, double number, Piece& piece);
-  [[nodiscard]] std::size_t count_of(const PacketField& field, const FrameShape& shape,
-                                     const Piece& piece) const noexcept;
+  [[nodiscard]] std::size_t count_of(const PacketField& field, std::size_t array, const Piece& piece) const noexcept;
 
   const Layout& layout_;
   const std::vector<PacketField>& packet_;
   std::size_t array_;
   bool names_array_;  ///< A field says whose readings a packet has.
   bool has_checksum_;
+  std::vector<std::size_t> shares_;    ///< Fields of each array, which share its readings.
   std::vector<ChecksumOf> checksums_;  ///< [fields]
+  std::size_t count_ = 0;              ///< Readings so far.
   std::size_t at_ = 0;
   std::optional<std::uint64_t> given_count_;
   std::optional<std::uint64_t> end_;  ///< As a field `length` says.

@@ -62,16 +62,16 @@ bool TextDecoder::next(RawFrame& frame) {
 }
 
 bool TextDecoder::read(std::span<const std::uint8_t> line, RawFrame& frame) {
-  std::span<const std::uint8_t> text = without_end(line);
+  const std::span<const std::uint8_t> text = without_end(line);
   const bool has_end = line.back() == end_byte_;
   if (has_end && !is_comment(text)) {
-    const bool is_end = ends_frame(text);
-    if (is_end) {
-      assembly_.end_frame();
-      text = text.subspan(text_.frame_end->size());
-    }
+    const bool begins_frame = !text_.frame_begin.empty() && begins_with(text, text_.frame_begin);
+    if (begins_frame) assembly_.end_frame();
     if (match_.read(text, piece_)) return add(line.size(), frame);
-    if (!is_end && counts().frames == 0) {
+    if (begins_frame && match_.read(text.subspan(text_.frame_begin.size()), piece_)) return add(line.size(), frame);
+    if (ends_frame(text)) {
+      assembly_.end_frame();
+    } else if (counts().frames == 0) {
       misfit_ = "line " + std::to_string(line_number_) + " does not fit layout.line " + match_.misfit();
     }
   }

@@ -16,7 +16,7 @@ using acquisition::Transport;
 /// With a rate or an order of lines, and without a protocol, a file may be more than the bytes of a device.
 bool is_file_of_frames(const acquisition::SourceUri& uri) {
   return uri.transport == Transport::file && (uri.rate_hz || !uri.order.is_plain()) && uri.protocol.name == "auto" &&
-         uri.protocol.layout.empty() && recordings::frame_format(recordings::recording_place(uri.path).path);
+         !uri.protocol.has_layout() && recordings::frame_format(recordings::recording_place(uri.path).path);
 }
 
 SourceKind kind_of(const acquisition::SourceUri& uri) {
@@ -57,7 +57,7 @@ bool SourceName::needs_rate() const noexcept {
 }
 
 bool SourceName::has_times_of_its_own() const noexcept {
-  return uri && uri->transport == Transport::file && (uri->rate_hz || !uri->protocol.layout.empty());
+  return uri && uri->transport == Transport::file && (uri->rate_hz || uri->protocol.has_layout());
 }
 
 }  // namespace dermis::sources

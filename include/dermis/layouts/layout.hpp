@@ -61,10 +61,11 @@ struct TextLayout {
   using Pattern = std::vector<TextField>;
   /// The first that a line fits holds. One without readings is the head of the frame, or of its part, that follows.
   std::vector<Pattern> lines;
-  std::string line_end{};   ///< Empty: LF, or CR LF.
-  std::string separator{};  ///< Between readings; empty: blanks, and one comma or semicolon.
-  std::string comment{};    ///< Lines that begin with it are skipped; empty: none are.
-  /// Ends a frame where rows carry no number: a line that begins with it, or for "" an empty one. A row may follow it.
+  std::string line_end{};     ///< Empty: LF, or CR LF.
+  std::string separator{};    ///< Between readings; empty: blanks, and one comma or semicolon.
+  std::string comment{};      ///< Lines that begin with it are skipped; empty: none are.
+  std::string frame_begin{};  ///< A line that begins with it begins a frame, and may go on as a row; empty: none.
+  /// Ends a frame where rows carry no number: a line that begins with it, or for "" an empty one.
   std::optional<std::string> frame_end{};
   std::size_t width = 0;  ///< Characters of a reading, which then need no separator; 0: any.
   char decimal_point = '.';
@@ -75,8 +76,9 @@ struct TextLayout {
 struct WireType {
   enum class Kind { whole, negative, real };  ///< Without a sign, with one, or IEEE 754.
   Kind kind = Kind::whole;
-  unsigned bits = 8;  ///< 8 ... 32, 64 of a real; 10 and 12 are packed without gaps.
+  unsigned bits = 8;  ///< 8 ... 32, 64; 10 and 12 are packed without gaps.
   bool is_big_endian = false;
+  std::uint64_t mask = 0;  ///< Bits of the number that count, of a number without a sign; 0: all.
 };
 
 /// A checksum over the bytes of a packet from `from` on to where it stands.
@@ -97,9 +99,10 @@ struct PacketField {
   std::vector<std::uint8_t> literal{};  ///< Where it is one.
   WireType type{};
   std::size_t array = 0;  ///< values: place in Layout::arrays.
-  std::size_t count = 0;  ///< values: how many, 0: as many as the array has, or as a field `count` says; skip: bytes.
-  double unit = 1.0;      ///< Factor on its number.
-  double offset = 0.0;    ///< Added then.
+  /// values: how many; 0: its share of what the array has, or as a field `count` says. skip: bytes.
+  std::size_t count = 0;
+  double unit = 1.0;    ///< Factor on its number.
+  double offset = 0.0;  ///< Added then.
   Checksum checksum{};
 };
 
@@ -135,6 +138,7 @@ struct Layout {
   std::string request{};  ///< Sent to the device before each frame; empty: frames come on their own.
 
   [[nodiscard]] bool has_times() const;
+  [[nodiscard]] bool has_numbers() const;
   /// What the device needs next. `is_sending`: a frame has come since it was connected.
   [[nodiscard]] std::string_view request_after(bool is_sending) const noexcept;
   /// Place of the array of that name; an empty name is that of the only one. Fails with the names.
