@@ -18,6 +18,7 @@ constexpr std::size_t kFewestOfArray = 4;
 constexpr std::size_t kFewRows = 3;  // so many are rather arrays in turn
 constexpr double kOfChance = 0.3;    // merit of a number that counts by chance
 constexpr std::size_t kMostInTurn = 5;
+constexpr std::size_t kMostArrays = 16;
 
 std::vector<std::size_t> numbers_in(std::string_view name) {
   std::vector<std::size_t> numbers;
@@ -187,6 +188,7 @@ class Interpreter {
       fields.fields[counting_[k]] = counted[k];
       fields.reasons.push_back("a number of each line counts " + std::to_string(numbers.size()) + " " + what);
     }
+    if (fields.ids.size() > kMostArrays) return;
     if (shape.rows > 0) fields.shape = shape;
     fields.merit += merit;
     found_.push_back(std::move(fields));

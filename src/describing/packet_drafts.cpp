@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::size_t kMostLeading = 24;
 constexpr std::size_t kMostTrailing = 12;
+constexpr std::size_t kMostArrays = 16;
 
 /// Drafts of one way to cut the bytes into packets.
 class CutDrafts {
@@ -67,6 +68,7 @@ class CutDrafts {
 
   void add(const ValueSpan& span, const PacketField* turn, const std::string& meaning) {
     if (meaning == "row") return add_rows(span, *turn);
+    if (turn != nullptr && turn->numbers.size() > kMostArrays) return;
     const auto shapes = shapes_of({span.count}, span.readings, known_);
     for (std::size_t k = 0; k < shapes.size(); ++k) {
       const bool are_side_by_side = shapes[k].size() > 1;

@@ -76,7 +76,8 @@ class GroupDrafts {
     const bool says_nothing = mark.text.find_first_not_of("[](){}-=#\x1b") == std::string::npos;
     draft.merit += says_nothing || !draft.head.empty() ? 0.3 : shape.cols <= kMostColsOfRow ? 0.1 : 0.0;
     draft.merit += gain_of_rows(readings_of_lines(text_.lines, text_.group.members, span, 4 * mark.rows), mark.rows);
-    if (draft.head.empty()) draft.keys.emplace_back(mark.lines.empty() ? "frame_begin" : "frame_end", quoted(mark.text));
+    if (draft.head.empty())
+      draft.keys.emplace_back(mark.lines.empty() ? "frame_begin" : "frame_end", quoted(mark.text));
     draft.reasons.push_back((mark.text.empty() ? "an empty line" : "'" + printable(mark.text) + "'") + " comes every " +
                             std::to_string(mark.rows) + " rows");
     draft.arrays = {{"", shape}};

@@ -81,6 +81,12 @@ TEST(TextLayout, rows_and_taxels_may_be_counted_from_1_on) {
   EXPECT_EQ(readings_of("line = \"{first-1} {value}\"\n", "1 1\n2 2\n3 3\n4 4\n1 5\n2 6\n3 7\n4 8\n"), kOneToEight);
 }
 
+TEST(PacketLayout, has_at_most_64_arrays) {
+  std::string toml = "[layout]\npacket = [\"AA\", \"values u8\"]\n";
+  for (int k = 0; k < 65; ++k) toml += "[[layout.array]]\nname = \"a" + std::to_string(k) + "\"\nrows = 1\ncols = 1\n";
+  EXPECT_NE(error_of(toml).find("more than 64"), std::string::npos);
+}
+
 TEST(TextLayout, a_row_may_follow_the_mark_of_a_frame) {
   const std::string keys = "line = \"{values}\"\nframe_begin = \"\\u001b[H\"\n";
   EXPECT_EQ(readings_of(keys, "3 4\n\x1b[H1 2\n3 4\n\x1b[H5 6\n7 8\n"), kOneToEight);
