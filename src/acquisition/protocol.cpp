@@ -78,7 +78,7 @@ Result<std::unique_ptr<Decoder>> make_layout_decoder(const ProtocolOptions& opti
     return bad_input(to_string(*options.shape) + ": " + options.layout + " has " + to_string(shape));
   }
   return layouts::make_decoder(std::make_shared<const layouts::Layout>(*std::move(layout)), *array,
-                               options.waits_for_late_frames);
+                               options.is_whole_file);
 }
 
 }  // namespace
