@@ -109,6 +109,12 @@ Result<layouts::Layout> read_layout(const ProtocolOptions& options) {
   return bad_input(key == std::string::npos ? message : message.substr(key + kTable.size()));
 }
 
+Result<std::string> unit_of(const ProtocolOptions& options) {
+  const Result<layouts::Layout> layout = read_layout(options);
+  if (!layout) return layout.error();
+  return layout->unit;
+}
+
 Result<std::unique_ptr<Encoder>> make_encoder(const ProtocolOptions& options) {
   if (options.name == "auto") return bad_input("protocol=auto: cannot be sent; name the protocol of the device");
   const Result<const ProtocolEntry*> protocol = find_for(options);
