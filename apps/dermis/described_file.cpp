@@ -17,7 +17,7 @@ acquisition::SourceUri uri_of_path(const std::string& name) {
   const std::size_t mark = std::filesystem::exists(name) ? std::string::npos : name.rfind('#');
   uri.path = name.substr(0, mark);
   if (mark != std::string::npos) uri.protocol.array = name.substr(mark + 1);
-  uri.protocol.waits_for_late_frames = true;
+  uri.protocol.is_whole_file = true;
   return uri;
 }
 

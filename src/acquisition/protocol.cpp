@@ -78,7 +78,7 @@ Result<std::unique_ptr<Decoder>> make_layout_decoder(const ProtocolOptions& opti
     return bad_input(to_string(*options.shape) + ": " + options.layout + " has " + to_string(shape));
   }
   return layouts::make_decoder(std::make_shared<const layouts::Layout>(*std::move(layout)), *array,
-                               options.waits_for_late_frames);
+                               options.is_whole_file);
 }
 
 }  // namespace
@@ -107,6 +107,12 @@ Result<layouts::Layout> read_layout(const ProtocolOptions& options) {
   constexpr std::string_view kTable = "layout.";
   const std::size_t key = message.find(kTable);
   return bad_input(key == std::string::npos ? message : message.substr(key + kTable.size()));
+}
+
+Result<std::string> unit_of(const ProtocolOptions& options) {
+  const Result<layouts::Layout> layout = read_layout(options);
+  if (!layout) return layout.error();
+  return layout->unit;
 }
 
 Result<std::unique_ptr<Encoder>> make_encoder(const ProtocolOptions& options) {

@@ -37,9 +37,10 @@ const std::set<std::string> kProtocolParameters = {
     "bit_shift", "transpose", "flip_rows", "flip_cols", "skip_columns", "row_order",        "col_order"};
 
 /// Keys of [layout] that hold text, and a number.
-const std::set<std::string> kLayoutTexts = {"line",   "line_end",      "separator", "comment", "frame_end", "digits",
-                                            "escape", "decimal_point", "unit",      "start",   "request"};
-const std::set<std::string> kLayoutNumbers = {"scale", "offset", "absent", "width"};
+const std::set<std::string> kLayoutTexts = {"line",          "line_end",  "separator", "comment",
+                                            "frame_begin",   "frame_end", "digits",    "escape",
+                                            "decimal_point", "unit",      "start",     "request"};
+const std::set<std::string> kLayoutNumbers = {"scale", "offset", "absent", "width", "lines_from"};
 
 const std::array<Scheme, 9>& schemes() {
   static const std::array<Scheme, 9> kAll = {{
@@ -322,7 +323,7 @@ class Parser {
     }
     if (const auto found = parameters_.find("layout"); found != parameters_.end()) uri_.protocol.layout = found->second;
     if (const auto found = parameters_.find("array"); found != parameters_.end()) uri_.protocol.array = found->second;
-    uri_.protocol.waits_for_late_frames = uri_.transport == Transport::file;
+    uri_.protocol.is_whole_file = uri_.transport == Transport::file;
     uri_.protocol.shape = read_shape();
     const bool has_file = !uri_.protocol.layout.empty();
     uri_.protocol.layout_keys = layout_keys();

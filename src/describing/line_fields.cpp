@@ -157,20 +157,18 @@ class Interpreter {
     numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
     return numbers;
   }
-  [[nodiscard]] const char* from_1(std::size_t place) const {
-    return columns_[counting_[place]].is_counted_from_1 ? "-1" : "";
-  }
   [[nodiscard]] std::string named(std::size_t place, const char* otherwise) const {
     const Column& column = columns_[counting_[place]];
     const std::string name = field_of_name(column.name.empty() ? column.label : column.name);
     return name == "row" || name == "col" ? name : otherwise;
   }
-  [[nodiscard]] std::string row_of(std::size_t place) const { return named(place, "row") + from_1(place); }
-  [[nodiscard]] std::string col_of(std::size_t place) const { return named(place, "col") + from_1(place); }
+  [[nodiscard]] std::string row_of(std::size_t place) const { return named(place, "row"); }
+  [[nodiscard]] std::string col_of(std::size_t place) const { return named(place, "col"); }
 
   void add_taxels_in_turn() {
     LineFields fields = base_;
-    fields.fields[counting_[0]] = std::string("first") + from_1(0);
+    fields.fields[counting_[0]] = "first";
+    fields.are_lines_from_1 = columns_[counting_[0]].is_counted_from_1;
     const std::size_t count = numbers_of(0).size();
     fields.shape = FrameShape{1, count};
     fields.reasons.push_back("a number of each line counts " + std::to_string(count) + " taxels");
@@ -186,6 +184,7 @@ class Interpreter {
       if (what == "columns") shape.cols = numbers.size();
       if (what == "arrays") fields.ids.assign(numbers.begin(), numbers.end());
       fields.fields[counting_[k]] = counted[k];
+      if (what != "arrays" && columns_[counting_[k]].is_counted_from_1) fields.are_lines_from_1 = true;
       fields.reasons.push_back("a number of each line counts " + std::to_string(numbers.size()) + " " + what);
     }
     if (fields.ids.size() > kMostArrays) return;

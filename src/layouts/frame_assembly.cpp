@@ -21,6 +21,7 @@ bool FrameAssembly::add(const Piece& piece, std::span<const float> numbers, std:
     begin = begin_of(piece, numbers.size());
   }
   if (!begin) {
+    outside_ = piece;
     damage(bytes);
     return false;
   }
@@ -68,6 +69,7 @@ void FrameAssembly::fill(std::size_t begin, std::span<const float> numbers) {
 /// Before the first frame, a part of one is the end of a frame whose beginning nobody saw.
 void FrameAssembly::end_frame() {
   if (filled_ == 0) return;
+  most_filled_ = std::max(most_filled_, filled_);
   filled_ = 0;
   if (counts_.frames > 0) ++counts_.damaged_frames;
   skip(bytes_);
@@ -88,6 +90,21 @@ bool FrameAssembly::deliver(RawFrame& frame) {
   ++counts_.frames;
   counts_.lost_frames += frame.acquisition.lost_before;
   return true;
+}
+
+std::string FrameAssembly::advice() const {
+  const auto number = [](const char* name, const std::optional<std::uint64_t>& value) {
+    return value ? std::string(name) + std::to_string(*value) + " " : std::string();
+  };
+  const std::string shape = std::to_string(shape_.rows) + "x" + std::to_string(shape_.cols);
+  if (outside_) {
+    return number("row ", outside_->row) + number("col ", outside_->col) + number("first ", outside_->first) +
+           "is outside of " + shape + ", whose lines count from 0";
+  }
+  const std::size_t most = std::max(most_filled_, filled_);
+  if (most == 0) return {};
+  return "no frame is complete: at most " + std::to_string(most) + " of " + std::to_string(readings_.size()) +
+         " readings came";
 }
 
 }  // namespace dermis::layouts

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "dermis/core/frames.hpp"
@@ -31,6 +32,8 @@ class FrameAssembly {
   void damage(std::size_t bytes) noexcept;
 
   [[nodiscard]] const DecoderCounts& counts() const noexcept { return counts_; }
+  /// Says why no frame is complete, where pieces have come.
+  [[nodiscard]] std::string advice() const;
 
  private:
   [[nodiscard]] std::optional<std::size_t> begin_of(const Piece& piece, std::size_t count) const noexcept;
@@ -47,7 +50,9 @@ class FrameAssembly {
   std::vector<std::uint8_t> is_filled_;
   std::size_t filled_ = 0;
   std::size_t bytes_ = 0;
-  Piece first_;  ///< Of the frame that is being read.
+  std::size_t most_filled_ = 0;   ///< Of all frames that were not complete.
+  std::optional<Piece> outside_;  ///< The last that the array does not have.
+  Piece first_;                   ///< Of the frame that is being read.
   DecoderCounts counts_;
 };
 

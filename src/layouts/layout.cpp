@@ -52,13 +52,12 @@ std::unique_ptr<Decoder> make_decoder(const std::vector<std::shared_ptr<const La
   return std::make_unique<ConstantPackets>(layouts, 0, ConstantPackets::FirstMark::may_be_readings);
 }
 
-std::unique_ptr<Decoder> make_decoder(std::shared_ptr<const Layout> layout, std::size_t array,
-                                      bool waits_for_late_frames) {
+std::unique_ptr<Decoder> make_decoder(std::shared_ptr<const Layout> layout, std::size_t array, bool is_whole_file) {
   const bool has_times = layout->has_times();
   const bool is_ordered = has_times || layout->has_numbers();
   std::unique_ptr<Decoder> decoder;
   if (std::holds_alternative<TextLayout>(layout->form)) {
-    decoder = std::make_unique<TextDecoder>(std::move(layout), array);
+    decoder = std::make_unique<TextDecoder>(std::move(layout), array, is_whole_file);
   } else if (constant_size(*layout)) {
     decoder = std::make_unique<ConstantPackets>(std::vector{std::move(layout)}, array,
                                                 ConstantPackets::FirstMark::begins_frame);
@@ -66,7 +65,7 @@ std::unique_ptr<Decoder> make_decoder(std::shared_ptr<const Layout> layout, std:
     decoder = std::make_unique<PacketDecoder>(std::move(layout), array);
   }
   if (!is_ordered) return decoder;
-  const bool waits = waits_for_late_frames && has_times;
+  const bool waits = is_whole_file && has_times;
   return std::make_unique<FramesInOrder>(std::move(decoder),
                                          waits ? FramesInOrder::Late::wait_for : FramesInOrder::Late::drop);
 }

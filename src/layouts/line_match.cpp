@@ -115,9 +115,9 @@ bool LineMatch::read_field(const TextField& field, const TextField* next, Piece&
   double number = 0.0;
   switch (field.role) {
     case Role::skip: return skip_to(next);
-    case Role::row: return read_counted(field, piece.row);
-    case Role::col: return read_counted(field, piece.col);
-    case Role::first: return read_counted(field, piece.first);
+    case Role::row: return read_place(piece.row);
+    case Role::col: return read_place(piece.col);
+    case Role::first: return read_place(piece.first);
     case Role::frame: return read_whole(piece.frame);
     case Role::flags: return read_whole(piece.flags);
     case Role::array: return read_array(next, piece);
@@ -249,7 +249,19 @@ bool LineMatch::read_reading(float& value) noexcept {
   }
   const bool is_empty = at_ != end_ && (*at_ == ',' || *at_ == ';');
   value = std::numeric_limits<float>::quiet_NaN();
-  return is_empty;
+  return is_empty || skip_absent();
+}
+
+/// What programs print for no reading, beside nan.
+bool LineMatch::skip_absent() noexcept {
+  constexpr std::array<std::string_view, 5> kWords = {"null", "None", "N/A", "NA", "--"};
+  const std::string_view rest(reinterpret_cast<const char*>(at_), static_cast<std::size_t>(end_ - at_));
+  for (const std::string_view word : kWords) {
+    if (!rest.starts_with(word)) continue;
+    at_ += word.size();
+    return true;
+  }
+  return false;
 }
 
 bool LineMatch::read_whole(std::optional<std::uint64_t>& value) noexcept {
@@ -262,11 +274,11 @@ bool LineMatch::read_whole(std::optional<std::uint64_t>& value) noexcept {
   return true;
 }
 
-/// Of rows, columns or taxels, which may be counted from 1 on.
-bool LineMatch::read_counted(const TextField& field, std::optional<std::uint64_t>& value) noexcept {
-  if (!read_whole(value)) return false;
-  if (*value < field.from) return fail("a number of 1 or more is expected");
-  *value -= field.from;
+/// From 0 on.
+bool LineMatch::read_place(std::optional<std::uint64_t>& place) noexcept {
+  if (!read_whole(place)) return false;
+  if (*place < text_.lines_from) return fail("a number from lines_from on is expected");
+  *place -= text_.lines_from;
   return true;
 }
 

@@ -53,8 +53,9 @@ class LineMatch {
   bool read_values(std::span<float> values, std::size_t from, std::size_t to) noexcept;
   std::size_t read_plain(std::span<float> values) noexcept;
   bool read_reading(float& value) noexcept;
+  bool skip_absent() noexcept;
   bool read_whole(std::optional<std::uint64_t>& value) noexcept;
-  bool read_counted(const TextField& field, std::optional<std::uint64_t>& value) noexcept;
+  bool read_place(std::optional<std::uint64_t>& place) noexcept;
   bool read_number(double& value) noexcept;
   bool read_clock(std::uint64_t& nanos) noexcept;
   bool read_datetime(std::uint64_t& nanos) noexcept;

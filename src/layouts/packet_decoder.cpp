@@ -116,7 +116,9 @@ PacketDecoder::Found PacketDecoder::next_escaped(RawFrame& frame) {
 }
 
 std::string PacketDecoder::advice() const {
-  return counts().frames == 0 ? misfit_ : std::string();
+  if (counts().frames > 0) return {};
+  const std::string incomplete = assembly_.advice();
+  return misfit_ + (misfit_.empty() || incomplete.empty() ? "" : "; ") + incomplete;
 }
 
 }  // namespace dermis::layouts

@@ -26,6 +26,17 @@ std::vector<std::string_view> tokens_of(std::string_view text) {
   return tokens;
 }
 
+/// "values u16 le x4" -> "values u16le x4"
+std::string with_order_at_type(const std::vector<std::string_view>& tokens) {
+  std::string text;
+  for (const std::string_view token : tokens) {
+    const bool is_order = token == "le" || token == "be";
+    if (!text.empty() && !is_order) text += ' ';
+    text += token;
+  }
+  return text;
+}
+
 template <typename Number, typename... Base>
 std::optional<Number> number_in(std::string_view text, Base... base) {
   Number value{};
@@ -190,7 +201,8 @@ std::optional<std::vector<std::uint8_t>> parse_bytes(std::string_view text) {
 
 Result<PacketField> parse_packet_entry(std::string_view entry, const std::vector<LayoutArray>& arrays) {
   if (auto bytes = parse_bytes(entry)) return PacketField{.role = Role::literal, .literal = *std::move(bytes)};
-  const std::vector<std::string_view> tokens = tokens_of(entry);
+  const std::string text = with_order_at_type(tokens_of(entry));
+  const std::vector<std::string_view> tokens = tokens_of(text);
   if (tokens.empty()) return bad_input("is empty: it is bytes as FF 0A, or a field and its type");
   const Result<NamedField> named = field_named(tokens[0], FieldsOf::packet, arrays);
   if (!named) return named.error();

@@ -25,7 +25,7 @@ Moduli moduli_of(const TextLayout& text) {
   return {0, has_role(text.lines, Role::clock) ? kNanosOfDay : 0};
 }
 
-bool begins_with(std::span<const std::uint8_t> line, const std::string& text) noexcept {
+bool begins_with(std::span<const std::uint8_t> line, std::string_view text) noexcept {
   return line.size() >= text.size() && std::equal(text.begin(), text.end(), line.begin(), [](char a, std::uint8_t b) {
            return static_cast<std::uint8_t>(a) == b;
          });
@@ -33,19 +33,36 @@ bool begins_with(std::span<const std::uint8_t> line, const std::string& text) no
 
 }  // namespace
 
-TextDecoder::TextDecoder(std::shared_ptr<const Layout> layout, std::size_t array)
+TextDecoder::TextDecoder(std::shared_ptr<const Layout> layout, std::size_t array, bool ends_last_line)
     : layout_(std::move(layout)),
       text_(std::get<TextLayout>(layout_->form)),
       array_(array),
       end_byte_(text_.line_end.empty() ? '\n' : static_cast<std::uint8_t>(text_.line_end.back())),
+      ends_last_line_(ends_last_line),
       lines_(longest_line(*layout_), end_byte_),
       match_(*layout_, array),
       assembly_(*layout_, array, moduli_of(text_)) {}
 
 bool TextDecoder::next(RawFrame& frame) {
+  if (read_lines(frame)) return true;
+  if (!has_ended_) return false;
+  if (ends_last_line_ && lines_.has_open_line()) {
+    const std::uint64_t end = lines_.end();
+    lines_.push({&end_byte_, 1});
+    const bool is_frame = read_lines(frame);
+    frame_end_ = std::min(frame_end_, end);
+    if (is_frame) return true;
+  }
+  has_ended_ = is_sending_ = false;
+  assembly_.skip(lines_.forget_all());
+  assembly_.end_frame();
+  return false;
+}
+
+bool TextDecoder::read_lines(RawFrame& frame) {
   for (;;) {
     const std::span<const std::uint8_t> line = lines_.next();
-    if (line.empty()) break;
+    if (line.empty()) return false;
     ++line_number_;
     const bool is_frame = read(line, frame);
     frame_end_ = is_frame ? lines_.position() : frame_end_;
@@ -53,25 +70,19 @@ bool TextDecoder::next(RawFrame& frame) {
     is_sending_ = is_sending_ || is_frame;
     if (is_frame) return true;
   }
-  if (std::exchange(has_ended_, false)) {
-    assembly_.skip(lines_.forget_all());
-    assembly_.end_frame();
-    is_sending_ = false;
-  }
-  return false;
 }
 
 bool TextDecoder::read(std::span<const std::uint8_t> line, RawFrame& frame) {
   const std::span<const std::uint8_t> text = without_end(line);
   const bool has_end = line.back() == end_byte_;
-  if (has_end && !is_comment(text)) {
+  if (has_end && ends_frame(text)) {
+    assembly_.end_frame();
+  } else if (has_end && !is_comment(text)) {
     const bool begins_frame = !text_.frame_begin.empty() && begins_with(text, text_.frame_begin);
     if (begins_frame) assembly_.end_frame();
     if (match_.read(text, piece_)) return add(line.size(), frame);
     if (begins_frame && match_.read(text.subspan(text_.frame_begin.size()), piece_)) return add(line.size(), frame);
-    if (ends_frame(text)) {
-      assembly_.end_frame();
-    } else if (counts().frames == 0) {
+    if (counts().frames == 0) {
       misfit_ = "line " + std::to_string(line_number_) + " does not fit layout.line " + match_.misfit();
     }
   }
@@ -87,9 +98,12 @@ bool TextDecoder::add(std::size_t bytes, RawFrame& frame) {
   return false;
 }
 
+/// Without a byte order mark, too.
 std::span<const std::uint8_t> TextDecoder::without_end(std::span<const std::uint8_t> line) const noexcept {
+  const bool is_first = line_number_ == 1;
+  if (is_first && begins_with(line, "\xEF\xBB\xBF")) line = line.subspan(3);
   std::size_t size = line.size();
-  if (line.back() == end_byte_) --size;
+  if (!line.empty() && line.back() == end_byte_) --size;
   if (text_.line_end.empty()) {
     if (size > 0 && line[size - 1] == '\r') --size;
     return line.first(size);
@@ -110,7 +124,9 @@ bool TextDecoder::ends_frame(std::span<const std::uint8_t> line) const noexcept 
 }
 
 std::string TextDecoder::advice() const {
-  return counts().frames == 0 ? misfit_ : std::string();
+  if (counts().frames > 0) return {};
+  const std::string incomplete = assembly_.advice();
+  return misfit_ + (misfit_.empty() || incomplete.empty() ? "" : "; ") + incomplete;
 }
 
 }  // namespace dermis::layouts

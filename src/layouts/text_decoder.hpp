@@ -21,7 +21,7 @@ namespace dermis::layouts {
 /// Frames of a TextLayout.
 class TextDecoder final : public Decoder {
  public:
-  TextDecoder(std::shared_ptr<const Layout> layout, std::size_t array);
+  TextDecoder(std::shared_ptr<const Layout> layout, std::size_t array, bool ends_last_line);
 
   void push(std::span<const std::uint8_t> bytes) override { lines_.push(bytes); }
   [[nodiscard]] bool next(RawFrame& frame) override;
@@ -33,6 +33,7 @@ class TextDecoder final : public Decoder {
   [[nodiscard]] std::string advice() const override;
 
  private:
+  [[nodiscard]] bool read_lines(RawFrame& frame);
   [[nodiscard]] std::span<const std::uint8_t> without_end(std::span<const std::uint8_t> line) const noexcept;
   [[nodiscard]] bool is_comment(std::span<const std::uint8_t> line) const noexcept;
   [[nodiscard]] bool ends_frame(std::span<const std::uint8_t> line) const noexcept;
@@ -43,6 +44,7 @@ class TextDecoder final : public Decoder {
   const TextLayout& text_;
   std::size_t array_;
   std::uint8_t end_byte_;
+  bool ends_last_line_;  ///< The last line of a file needs no end.
   LineReader lines_;
   LineMatch match_;
   FrameAssembly assembly_;

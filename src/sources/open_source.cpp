@@ -48,10 +48,37 @@ Status check_order(const std::string& path, const ArrayDescription* array) {
   return notes ? check_recorded_order(path, notes->array_toml, *array) : Status(Done{});
 }
 
+/// What the circuit of an array is called that gives readings in such a unit; empty: none does.
+std::string circuit_of(const std::string& unit) {
+  if (unit == "kPa") return "pressure";
+  return unit == "newtons" ? "force" : "";
+}
+
+/// The readings of a layout must be what the description of the array says.
+Status check_unit(const acquisition::SourceUri& uri, const ArrayDescription& array) {
+  if (!uri.protocol.has_layout()) return Done{};
+  const Result<std::string> unit = acquisition::unit_of(uri.protocol);
+  if (!unit) return bad_input("'" + uri.text + "': " + unit.error().message);
+  const Readout& readout = array.readout;
+  const std::string is = readout.quantity == Quantity::pressure ? "kPa"
+                         : readout.quantity == Quantity::force  ? "newtons"
+                                                                : "counts";
+  if (*unit == is) return Done{};
+  const std::string place =
+      "'" + uri.text + "': readings are " + *unit + " by the layout and " + is + " by the description of the array";
+  const std::string circuit = circuit_of(*unit);
+  if (!circuit.empty()) return bad_input(place + ": write circuit = \"" + circuit + "\" in it");
+  const std::optional<double> full_scale_v = readout.adc_reference_v ? readout.adc_reference_v : readout.supply_v;
+  if (*unit != "volts" || is != "counts" || !full_scale_v) return bad_input(place);
+  return bad_input(place + ": counts are volts times " + std::to_string(readout.full_scale_counts() / *full_scale_v) +
+                   ", by scale in the layout");
+}
+
 /// Its frames are turned as the array's description says. Those of files were turned when they were written.
 Result<std::unique_ptr<FrameSource>> open_device(const acquisition::SourceUri& uri, const SourceOptions& options) {
   acquisition::DeviceOptions device_options{{}, options.stop, options.notice, options.received};
   if (options.array == nullptr) return acquisition::open_device(uri, device_options);
+  if (Status same = check_unit(uri, *options.array); !same) return same.error();
   const LineOrder& order = options.array->order;
   device_options.shape = order.sent(*shape_of(options.array));
   Result<std::unique_ptr<FrameSource>> device = acquisition::open_device(uri, device_options);

@@ -99,6 +99,18 @@ class Layouts(support.SmallArray):
         self.assertIn("111 frames a second where 100 are described", said.stderr)
         self.assertIn("0 lost, 0 damaged, 1 late", said.stderr)
 
+    def test_units_of_layout_and_description_agree(self):
+        log = self.written("log.txt", "0,1,2\n10,3,4\n")
+        keys = '[layout]\nrows = 1\ncols = 2\nline = "{time_ms},{values}"\nunit = '
+        array = '[array]\nname = "mat"\nrows = 1\ncols = 2\npitch_mm = [10, 10]\n[readout]\n'
+        divider = 'circuit = "divider"\nidle_rows = "grounded"\ndrive_ohm = 20\nload_ohm = 200\nadc_bits = 12\n'
+        counts = self.written("counts.toml", array + divider + "adc_reference_v = 5\nsupply_v = 5\n")
+        record = ["record", "--out", self.work / "log.mcap", "--array", counts, "--from"]
+        for unit, words in (("kPa", 'circuit = "pressure"'), ("newtons", 'circuit = "force"'), ("volts", "times 819")):
+            layout = self.written(f"{unit}.toml", f'{keys}"{unit}"\n')
+            self.refuse([*record, f"file:{log}?layout={layout}"], [f"readings are {unit}", words])
+        self.completed(*record, f"file:{log}?layout={self.written('c.toml', keys + chr(34) + 'counts' + chr(34))}")
+
     def test_what_does_not_fit_is_one_line(self):
         layout = self.written("mat.toml", '[layout]\nrows = 2\ncols = 2\nline = "{row}: {values}"\n')
         wrong = self.written("wrong.toml", '[layout]\nrows = 2\ncols = 2\nline = "{row}: {vales}"\n')

@@ -76,11 +76,6 @@ TEST(TextLayout, a_line_is_a_frame_whatever_separates_its_values) {
   }
 }
 
-TEST(TextLayout, rows_and_taxels_may_be_counted_from_1_on) {
-  EXPECT_EQ(readings_of("line = \"{row-1}: {values}\"\n", "2: 3 4\n1: 1 2\n0: 9 9\n1: 5 6\n2: 7 8\n"), kOneToEight);
-  EXPECT_EQ(readings_of("line = \"{first-1} {value}\"\n", "1 1\n2 2\n3 3\n4 4\n1 5\n2 6\n3 7\n4 8\n"), kOneToEight);
-}
-
 TEST(PacketLayout, has_at_most_64_arrays) {
   std::string toml = "[layout]\npacket = [\"AA\", \"values u8\"]\n";
   for (int k = 0; k < 65; ++k) toml += "[[layout.array]]\nname = \"a" + std::to_string(k) + "\"\nrows = 1\ncols = 1\n";
@@ -96,6 +91,17 @@ TEST(TextLayout, rows_come_in_any_order_by_their_numbers) {
   EXPECT_EQ(readings_of("line = \"{row},{values}\"\n", "1,3,4\n0,1,2\n1,7,8\n0,5,6\n"), kOneToEight);
 }
 
+TEST(TextLayout, lines_may_count_from_one_and_others_are_told) {
+  EXPECT_EQ(readings_of("line = \"{row},{values}\"\nlines_from = 1\n", "2,3,4\n1,1,2\n1,5,6\n2,7,8\n"), kOneToEight);
+  const auto decoder = make_decoder(layout_of(std::string(kTwoByTwo) + "line = \"{row},{values}\"\n"), 0, false);
+  EXPECT_TRUE(frames_of(*decoder, bytes_of("1,1,2\n2,3,4\n1,1,2\n2,3,4\n")).empty());
+  EXPECT_EQ(decoder->advice(), "row 2 is outside of 2x2, whose lines count from 0");
+  const auto larger =
+      make_decoder(layout_of(std::string("[layout]\nrows = 3\ncols = 2\nline = \"{row},{values}\"\n")), 0, false);
+  EXPECT_TRUE(frames_of(*larger, bytes_of("0,1,2\n1,3,4\n0,1,2\n1,3,4\n")).empty());
+  EXPECT_EQ(larger->advice(), "no frame is complete: at most 4 of 6 readings came");
+}
+
 TEST(TextLayout, rows_without_a_number_end_with_a_line_of_their_own) {
   const std::string keys = "line = \"{values}\"\nframe_end = ";
   EXPECT_EQ(readings_of(keys + "\"\"\n", "1 2\n3 4\n\n5 6\n7 8\n\n"), kOneToEight);
@@ -105,6 +111,15 @@ TEST(TextLayout, rows_without_a_number_end_with_a_line_of_their_own) {
 TEST(TextLayout, taxels_make_a_frame_when_all_have_come) {
   EXPECT_EQ(readings_of("line = \"{row};{col};{value}\"\n", "0;0;1\n0;1;2\n1;1;4\n1;0;3\n0;0;5\n0;1;6\n1;0;7\n1;1;8\n"),
             kOneToEight);
+}
+
+TEST(TextLayout, the_last_line_of_a_file_needs_no_end_and_that_of_a_device_does) {
+  const auto layout = layout_of(std::string(kTwoByTwo) + "line = \"{values}\"\n");
+  const Bytes bytes = bytes_of("1 2 3 4\n5 6 7 8");
+  const auto file = make_decoder(layout, 0, true);
+  EXPECT_EQ(readings_of(frames_of(*file, bytes)), kOneToEight);
+  EXPECT_EQ(file->frame_end(), bytes.size());
+  EXPECT_EQ(frames_of(*make_decoder(layout, 0, false), bytes).size(), 1U);
 }
 
 TEST(TextLayout, hexadecimal_numbers_may_have_their_prefix) {
@@ -121,11 +136,21 @@ TEST(TextLayout, numbers_may_be_signed_broken_hexadecimal_or_of_one_width) {
             (Readings{{10, 4095, 16, 3}}));
 }
 
+TEST(TextLayout, a_byte_order_mark_is_no_part_of_the_first_line) {
+  EXPECT_EQ(readings_of("line = \"{values}\"\n",
+                        "\xEF\xBB\xBF"
+                        "1 2 3 4\n5 6 7 8\n"),
+            kOneToEight);
+}
+
 TEST(TextLayout, missing_readings_are_not_numbers) {
-  const Readings readings = readings_of("line = \"{values}\"\nabsent = 0\nscale = -1.0\noffset = 10.0\n", "1,,nan,0\n");
-  ASSERT_EQ(readings.size(), 1U);
+  const Readings readings =
+      readings_of("line = \"{values}\"\nabsent = 0\nscale = -1.0\noffset = 10.0\n", "1,,nan,0\n1,null,None,--\n");
+  ASSERT_EQ(readings.size(), 2U);
   EXPECT_EQ(readings[0][0], 9.0F);
-  EXPECT_TRUE(std::all_of(readings[0].begin() + 1, readings[0].end(), [](float x) { return std::isnan(x); }));
+  for (const std::vector<float>& frame : readings) {
+    EXPECT_TRUE(std::all_of(frame.begin() + 1, frame.end(), [](float x) { return std::isnan(x); }));
+  }
 }
 
 TEST(TextLayout, what_surrounds_the_readings_goes_into_the_frame) {

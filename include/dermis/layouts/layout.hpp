@@ -53,7 +53,6 @@ struct TextField {
   std::string literal{};  ///< Where it is one. Blanks in it stand for any blanks.
   std::size_t array = 0;  ///< values: place in Layout::arrays.
   double unit = 1.0;      ///< Factor on its number.
-  std::uint64_t from = 0;  ///< row, col, first: the number of the first one.
 };
 
 /// Lines of text. A line that fits none of the patterns holds no readings.
@@ -67,7 +66,8 @@ struct TextLayout {
   std::string frame_begin{};  ///< A line that begins with it begins a frame, and may go on as a row; empty: none.
   /// Ends a frame where rows carry no number: a line that begins with it, or for "" an empty one.
   std::optional<std::string> frame_end{};
-  std::size_t width = 0;  ///< Characters of a reading, which then need no separator; 0: any.
+  std::size_t lines_from = 0;  ///< Number of the first row, column or taxel.
+  std::size_t width = 0;       ///< Characters of a reading, which then need no separator; 0: any.
   char decimal_point = '.';
   bool is_hexadecimal = false;
 };
@@ -154,9 +154,9 @@ struct Layout {
 /// differ in size and have the same mark.
 [[nodiscard]] std::unique_ptr<Decoder> make_decoder(const std::vector<std::shared_ptr<const Layout>>& layouts);
 
-/// Decodes the frames of one array of the layout. With `waits_for_late_frames`, frames are put in order where they come
-/// up to a second late, and each waits for it; otherwise they come as they are sent. Thread-compatible.
+/// Decodes the frames of one array of the layout. Those of a whole file are put in order where they come up to a second
+/// late, for which each waits, and its last line needs no end. Late frames of a device are dropped. Thread-compatible.
 [[nodiscard]] std::unique_ptr<Decoder> make_decoder(std::shared_ptr<const Layout> layout, std::size_t array,
-                                                    bool waits_for_late_frames);
+                                                    bool is_whole_file);
 
 }  // namespace dermis::layouts
