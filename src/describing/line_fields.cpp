@@ -133,6 +133,8 @@ class Interpreter {
     if (base_.spans.empty() || base_.fields.size() != columns_.size()) return {};
     const bool is_taxel = base_.spans.front().end - base_.spans.front().begin == 1;
     const std::size_t count = counting_.size();
+    const auto turns = std::count(base_.fields.begin(), base_.fields.end(), "turn");
+    if (turns > 1) return {};  // rather readings that never change
     if (count == 0) {
       found_.push_back(base_);
     } else if (is_taxel) {
