@@ -296,7 +296,7 @@ Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std:
   ArrayDescription known = array;
   std::optional<std::string> flickering = leave_out_flickering(frames, loads, known);
   LabelCheck labels = check_labels(known, frames, loads, settle_time);
-  if (labels.exchange) return bad_input(*labels.exchange);
+  if (labels.turn) return bad_input(*labels.turn);
   if (flickering) labels.remarks.insert(labels.remarks.begin(), *std::move(flickering));
   std::vector<Load> kept;
   if (!labels.pressed_frames.empty()) {
