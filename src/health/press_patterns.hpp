@@ -13,7 +13,7 @@
 
 namespace dermis::health {
 
-/// What presses show in raw counts, whether they raise or lower them: equal lines and trails of the scan.
+/// Faults that presses show in raw counts, whether they raise or lower them: equal lines and trails of the scan.
 class PressPatterns {
  public:
   /// `array` must outlive it.

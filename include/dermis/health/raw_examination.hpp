@@ -14,12 +14,12 @@
 
 namespace dermis::health {
 
-/// What raw counts say of an array of which no model is known.
+/// The verdict of raw counts on an array of which no model is known.
 struct RawDiagnosis {
   std::size_t frames = 0;
   double seconds = 0.0;                  ///< From the first to the last frame [s].
-  float least_counts = 0.0F;             ///< Of all readings; 0 before the first one.
-  float most_counts = 0.0F;              ///< The same.
+  float least_counts = 0.0F;             ///< The lowest reading; 0 before the first frame.
+  float most_counts = 0.0F;              ///< The highest one.
   std::vector<std::string> findings;     ///< On the whole array, each with its likely cause and the mend.
   std::vector<std::string> stuck_lines;  ///< The same on lines at a rail.
   std::optional<std::string> remark;     ///< That all readings are 0, which may be a fault or not.
@@ -27,8 +27,8 @@ struct RawDiagnosis {
   [[nodiscard]] std::vector<std::string> problems() const;  ///< The findings, then the stuck lines.
 };
 
-/// Looks for mistakes of the electronics in raw counts alone. It finds lines that read the same because an address line
-/// does not switch, readings that keep a share of the one before, readings of two values only, lines at a rail, and
+/// Looks for mistakes of the electronics in raw counts alone. Lines may read the same because an address line does not
+/// switch, or readings keep a share of the one before. It also finds readings of two values only, lines at a rail, and
 /// arrays without power. Memory does not grow with the frames. Not thread-safe.
 class RawExamination {
  public:
@@ -41,7 +41,7 @@ class RawExamination {
   /// A frame of that shape; its readings may be anything.
   void add(const RawFrame& raw);
 
-  /// Of all frames so far.
+  /// The verdict of all frames so far.
   [[nodiscard]] RawDiagnosis diagnosis() const;
 
  private:
