@@ -131,7 +131,12 @@ std::string found_faults_after_calibration(const HealthyArray& healthy, const de
     refusal = calibration.error().message;
     return {};
   }
-  auto pipeline = dermis::pipeline::Pipeline::create(calibration->model).value();
+  auto created = dermis::pipeline::Pipeline::create(calibration->model);
+  if (!created) {
+    refusal = created.error().message;
+    return {};
+  }
+  auto& pipeline = *created;
   dermis::ForceFrame force;
   std::string text;
   for (const dermis::RawFrame& raw : dermis::support::stream_of(healthy, frames)) {
