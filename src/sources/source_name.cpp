@@ -13,10 +13,14 @@ namespace {
 
 using acquisition::Transport;
 
-/// With a rate or an order of lines, and without a protocol, a file may be more than the bytes of a device.
+/// With a rate, an order of lines, or the shape of what only a file holds, and without a protocol, a file may be more
+/// than the bytes of a device.
 bool is_file_of_frames(const acquisition::SourceUri& uri) {
-  return uri.transport == Transport::file && (uri.rate_hz || !uri.order.is_plain()) && uri.protocol.name == "auto" &&
-         uri.protocol.layout.empty() && recordings::frame_format(recordings::recording_place(uri.path).path);
+  if (uri.transport != Transport::file || uri.protocol.name != "auto" || !uri.protocol.layout.empty()) return false;
+  const Result<recordings::FrameFormat> format = recordings::frame_format(recordings::recording_place(uri.path).path);
+  if (!format) return false;
+  const bool needs_shape = recordings::may_have_times(*format) || *format == recordings::FrameFormat::novel_asc;
+  return uri.rate_hz || !uri.order.is_plain() || (uri.protocol.shape && needs_shape);
 }
 
 SourceKind kind_of(const acquisition::SourceUri& uri) {
