@@ -27,24 +27,22 @@ constexpr std::uint32_t kLongestName = 256;
 constexpr std::uint32_t kMostDimensions = 8;
 constexpr std::uint64_t kHeader5 = 128;
 
-/// The types of numbers in files of version 5, by their code.
-enum Type : std::uint32_t {
-  kInt8 = 1,
-  kUint8 = 2,
-  kInt16 = 3,
-  kUint16 = 4,
-  kInt32 = 5,
-  kUint32 = 6,
-  kSingle = 7,
-  kDouble = 9,
-  kInt64 = 12,
-  kUint64 = 13,
-  kMatrix = 14,
-  kCompressed = 15,
-};
+// The types of elements in files of version 5, by their codes.
+constexpr std::uint32_t kInt8 = 1;
+constexpr std::uint32_t kUint8 = 2;
+constexpr std::uint32_t kInt16 = 3;
+constexpr std::uint32_t kUint16 = 4;
+constexpr std::uint32_t kInt32 = 5;
+constexpr std::uint32_t kUint32 = 6;
+constexpr std::uint32_t kSingle = 7;
+constexpr std::uint32_t kDouble = 9;
+constexpr std::uint32_t kInt64 = 12;
+constexpr std::uint32_t kUint64 = 13;
+constexpr std::uint32_t kMatrix = 14;
+constexpr std::uint32_t kCompressed = 15;
 
-/// Those of version 4, in the order of their codes.
-constexpr std::array<Type, 6> kTypes4 = {kDouble, kSingle, kInt32, kInt16, kUint16, kUint8};
+/// Types of version 4, in the order of their codes.
+constexpr std::array<std::uint32_t, 6> kTypes4 = {kDouble, kSingle, kInt32, kInt16, kUint16, kUint8};
 
 /// 0: no number.
 std::size_t bytes_of(std::uint32_t type) {

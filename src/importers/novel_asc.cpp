@@ -36,7 +36,7 @@ class NovelAsc final : public FrameSource {
   Result<bool> next(RawFrame& frame) override {
     std::string_view line;
     do {
-      const Result<bool> more = lines_.next(line);
+      Result<bool> more = lines_.next(line);
       if (!more || !*more) return more;
     } while (files::trimmed(line).empty());
     if (lines_.was_cut()) {

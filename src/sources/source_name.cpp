@@ -13,8 +13,8 @@ namespace {
 
 using acquisition::Transport;
 
-/// With a rate, an order of lines, or the shape of what only a file holds, and without a protocol, a file may be more
-/// than the bytes of a device.
+/// Without a protocol, a file may be more than the bytes of a device: with a rate or an order of lines, or with a shape
+/// where its system does not tell one.
 bool is_file_of_frames(const acquisition::SourceUri& uri) {
   if (uri.transport != Transport::file || uri.protocol.name != "auto" || !uri.protocol.layout.empty()) return false;
   const Result<recordings::FrameFormat> format = recordings::frame_format(recordings::recording_place(uri.path).path);
