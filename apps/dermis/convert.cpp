@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,10 +10,10 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "dermis/acquisition/device_source.hpp"
 #include "dermis/files/array_toml.hpp"
 #include "dermis/recordings/conversion.hpp"
 #include "dermis/recordings/recording.hpp"
+#include "described_file.hpp"
 #include "interruption.hpp"
 #include "lost_input.hpp"
 #include "shape_options.hpp"
@@ -52,20 +51,6 @@ Status check(const ConvertOptions& options) {
   return check_rate(options);
 }
 
-/// A file of bytes as its layout describes them: "feet.bin", or "feet.bin#left" for one of its arrays.
-acquisition::SourceUri described_file(const ConvertOptions& options, const std::optional<FrameShape>& shape) {
-  acquisition::SourceUri uri;
-  uri.text = options.in;
-  const std::size_t mark = std::filesystem::exists(options.in) ? std::string::npos : options.in.rfind('#');
-  uri.path = options.in.substr(0, mark);
-  if (mark != std::string::npos) uri.protocol.array = options.in.substr(mark + 1);
-  uri.rate_hz = options.rate_hz;
-  uri.protocol.shape = shape;
-  uri.protocol.layout = options.layout;
-  uri.protocol.waits_for_late_frames = true;
-  return uri;
-}
-
 /// The shape that the frames must have, where one is given.
 Result<std::optional<FrameShape>> wanted_shape(const ConvertOptions& options,
                                                const std::optional<ArrayDescription>& array) {
@@ -85,10 +70,9 @@ Result<std::optional<ArrayDescription>> read_array(const ConvertOptions& options
   return std::optional(std::move(*array));
 }
 
-Result<std::vector<std::string>> convert_described(const ConvertOptions& options,
+Result<std::vector<std::string>> convert_described(const DescribedFile& file, const ConvertOptions& options,
                                                    const recordings::ConversionOptions& how) {
-  const Result<std::unique_ptr<FrameSource>> source =
-      acquisition::open_device(described_file(options, how.input.shape), {.notice = print_notice});
+  const Result<std::unique_ptr<FrameSource>> source = file.open();
   if (!source) return source.error();
   Result<std::vector<std::string>> left_out =
       recordings::convert_frames(**source, !(*source)->is_live(), options.out, how);
@@ -100,17 +84,19 @@ Result<std::vector<std::string>> convert_described(const ConvertOptions& options
 }
 
 Status convert(const ConvertOptions& options) {
-  const bool is_described = !options.layout.empty();
+  DescribedFile file{.name = options.in, .layout = options.layout, .rate_hz = options.rate_hz};
+  const bool is_described = file.is_described();
   if (Status checked = is_described ? check_rate(options) : check(options); !checked) return checked;
   const Result<std::optional<ArrayDescription>> array = read_array(options);
   if (!array) return array.error();
   const Result<std::optional<FrameShape>> shape = wanted_shape(options, *array);
   if (!shape) return shape.error();
+  file.shape = *shape;
   const recordings::ConversionOptions how = {
       .input = {.shape = *shape, .rate_hz = options.rate_hz, .notice = print_notice, .loss = note_loss},
       .array = *array ? &**array : nullptr};
   const Result<std::vector<std::string>> left_out =
-      is_described ? convert_described(options, how) : recordings::convert_frames(options.in, options.out, how);
+      is_described ? convert_described(file, options, how) : recordings::convert_frames(options.in, options.out, how);
   if (!left_out) return left_out.error();
   if (!left_out->empty()) print_notice(fmt::format("{}: left out: {}", options.out, fmt::join(*left_out, ", ")));
   return Done{};

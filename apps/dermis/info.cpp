@@ -19,6 +19,7 @@
 #include "dermis/recordings/frame_file_info.hpp"
 #include "dermis/recordings/frame_files.hpp"
 #include "dermis/report/model_facts.hpp"
+#include "described_file.hpp"
 #include "shape_options.hpp"
 
 namespace dermis::app {
@@ -28,6 +29,7 @@ using recordings::FrameFileInfo;
 
 struct InfoOptions {
   std::string file;
+  std::string layout;
   ShapeOptions shape;
   bool json = false;
 };
@@ -70,9 +72,9 @@ void print_json(const Json& json) {
   fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
-void print_json(const std::string& file, const FrameFileInfo& info) {
+void print_json(const std::string& file, const std::string& format, const FrameFileInfo& info) {
   Json json = {{"file", file},
-               {"format", recordings::to_string(info.format)},
+               {"format", format},
                {"size_bytes", info.bytes},
                {"frames", info.frames},
                {"duration_s", or_null(info.duration_s)},
@@ -119,9 +121,9 @@ std::string array_text(const recordings::RecordedArrayInfo& array) {
   return text;
 }
 
-void print_text(const FrameFileInfo& info) {
-  print_line("format", recordings::to_string(info.format) + (info.compression.empty() ? "" : ", " + info.compression));
-  print_line("size", fmt::format("{} bytes", info.bytes));
+void print_text(const std::string& format, const FrameFileInfo& info) {
+  print_line("format", format + (info.compression.empty() ? "" : ", " + info.compression));
+  if (info.bytes > 0) print_line("size", fmt::format("{} bytes", info.bytes));
   print_line("frames", std::to_string(info.frames));
   if (info.shape) print_line("taxels", fmt::format("{}x{}", info.shape->rows, info.shape->cols));
   print_line("duration", info.duration_s ? fmt::format("{:.3f} s", *info.duration_s) : "not known: no times");
@@ -142,6 +144,10 @@ void print_text(const FrameFileInfo& info) {
   for (const recordings::RecordingTopic& topic : info.topics) {
     fmt::print("{:<14}{}  {}  {} messages\n", "topic", topic.name, topic.type, topic.messages);
   }
+}
+
+void print(const InfoOptions& options, const std::string& format, const FrameFileInfo& info) {
+  options.json ? print_json(options.file, format, info) : print_text(format, info);
 }
 
 /// A model or an array.toml, and what to call it.
@@ -189,22 +195,30 @@ void print_described(const InfoOptions& options, const Described& described) {
   for (const auto& [name, text] : described.calibration) fmt::print(kWide, name, text);
 }
 
+/// Of bytes that a layout describes.
+Status print_info(const InfoOptions& options, const DescribedFile& file) {
+  const Result<std::unique_ptr<FrameSource>> source = file.open();
+  if (!source) return source.error();
+  const Result<FrameFileInfo> info = recordings::frame_source_info(**source);
+  if (!info) return info.error();
+  print(options, "bytes of a layout", *info);
+  return Done{};
+}
+
 Status print_info(const InfoOptions& options) {
+  const Result<std::optional<FrameShape>> shape = options.shape.shape();
+  if (!shape) return shape.error();
+  const DescribedFile file{.name = options.file, .layout = options.layout, .shape = *shape};
+  if (file.is_described()) return print_info(options, file);
   const Result<std::optional<Described>> described = read_described(options.file);
   if (!described) return described.error();
   if (*described) {
     print_described(options, **described);
     return Done{};
   }
-  const Result<std::optional<FrameShape>> shape = options.shape.shape();
-  if (!shape) return shape.error();
   const Result<FrameFileInfo> info = recordings::frame_file_info(options.file, *shape);
   if (!info) return info.error();
-  if (options.json) {
-    print_json(options.file, *info);
-  } else {
-    print_text(*info);
-  }
+  print(options, recordings::to_string(info->format), *info);
   if (info->frames == 0) {
     return bad_input(options.file + ": has no frame" + (info->unread.empty() ? "" : ": " + info->unread));
   }
@@ -217,8 +231,9 @@ Status print_info(const InfoOptions& options) {
 
 void add_info(Command& command) {
   auto options = std::make_shared<InfoOptions>();
-  command.input_file("file", options->file, "A file of frames (docs/file-formats.md), a model file, or array.toml")
+  command.input("file", options->file, "A file of frames (docs/file-formats.md), a model file, or array.toml")
       .required();
+  command.input_file("--layout", options->layout, "layout.toml, which describes the bytes of a file (docs/layouts.md)");
   options->shape.add(command);
   command.flag("--json", options->json, "As JSON");
   command.action([options] { return print_info(*options); });

@@ -91,6 +91,8 @@ std::string summary(std::uint64_t frames, const SourceStatistics& source) {
   const double jitter_ms = 1e3 * std::chrono::duration<double>(source.jitter).count();
   if (jitter_ms > 0.0) text += fmt::format(" \u00b1 {:.2g} ms", jitter_ms);
   text += fmt::format(", {} lost, {} damaged", source.lost_frames, source.damaged_frames);
+  if (source.late_frames > 0) text += fmt::format(", {} late", source.late_frames);
+  if (source.repeated_frames > 0) text += fmt::format(", {} repeated", source.repeated_frames);
   if (source.clock_drift_ppm) text += fmt::format(", clock {:+.0f} ppm", *source.clock_drift_ppm);
   if (source.reconnections > 0) text += fmt::format(", reconnected {} times", source.reconnections);
   return text;

@@ -11,12 +11,15 @@
 
 #include "acquisition/frame_numbers.hpp"
 #include "acquisition/protocols.hpp"
-#include "acquisition/window_decoder.hpp"
 #include "acquisition/wire_values.hpp"
 #include "dermis/core/array_description.hpp"
+#include "dermis/layouts/window_decoder.hpp"
 
 namespace dermis::acquisition {
 namespace {
+
+using layouts::Verdict;
+using layouts::WindowDecoder;
 
 using Bytes = std::span<const std::uint8_t>;
 

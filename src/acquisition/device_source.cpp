@@ -7,8 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "acquisition/described_rate.hpp"
 #include "acquisition/device_connection.hpp"
 #include "acquisition/frame_clock.hpp"
+#include "acquisition/shared_stream.hpp"
 #include "acquisition/undecoded_bytes.hpp"
 #include "dermis/acquisition/byte_stream.hpp"
 #include "dermis/acquisition/protocol.hpp"
@@ -27,12 +29,19 @@ constexpr Nanos kPause = 100ms;  // then the decoder gets a pause
 constexpr Nanos kSilence = 2s;   // then the user gets a notice
 constexpr Nanos kRepeatRequest = 1s;
 
+/// What a layout says of the times of frames.
+struct DescribedTimes {
+  bool are_in_file = false;  ///< The file holds the times of its frames.
+  std::optional<double> rate_hz{};
+};
+
 class DeviceSource final : public FrameSource {
  public:
   DeviceSource(SourceUri uri, const DeviceOptions& options, std::unique_ptr<ByteStream> stream,
-               std::unique_ptr<Decoder> decoder, bool has_times)
+               std::unique_ptr<Decoder> decoder, const DescribedTimes& times)
       : uri_(std::move(uri)),
-        has_times_(has_times),
+        has_times_(times.are_in_file),
+        rate_(times.rate_hz),
         options_(options),
         connection_(uri_, std::move(stream), [this](const std::string& text) { notify(text); }),
         decoder_(std::move(decoder)),
@@ -74,6 +83,8 @@ class DeviceSource final : public FrameSource {
     statistics.frames = frames_;
     statistics.lost_frames = counts.lost_frames;
     statistics.damaged_frames = counts.damaged_frames;
+    statistics.late_frames = counts.late_frames;
+    statistics.repeated_frames = counts.repeated_frames;
     statistics.skipped_bytes = counts.skipped_bytes;
     statistics.reconnections = connection_.reconnections();
     clock_.describe(statistics);
@@ -86,6 +97,7 @@ class DeviceSource final : public FrameSource {
   [[nodiscard]] Result<bool> finished() const {
     const bool never_comes_back = uri_.transport == Transport::file || uri_.transport == Transport::standard_input;
     const std::string advice = decoder_->advice();
+    if (!rate_.was_due()) tell_rate();
     if (frames_ > 0 && !advice.empty()) return bad_input("'" + uri_.text + "': " + advice);
     if (frames_ > 0 || !never_comes_back) return false;
     if (clock_.received_bytes() == 0) return bad_input("'" + uri_.text + "': there is not a single byte");
@@ -113,8 +125,7 @@ class DeviceSource final : public FrameSource {
   void request() {
     const std::string_view text = decoder_->request();
     if (text.empty()) return;
-    request_.assign(text.begin(), text.end());
-    connection_.write(request_);
+    connection_.write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
     last_request_ = now().steady;
   }
 
@@ -128,6 +139,8 @@ class DeviceSource final : public FrameSource {
     if (uri_.rate_hz) frame.time = time_in_file();
     if (has_times_ && frame.acquisition.device_time) frame.time = *frame.acquisition.device_time;
     if (frames_++ == 0) tell_detected_protocol();
+    rate_.add(frame.time);
+    if (rate_.is_due()) tell_rate();
     undecoded_.clear();
     if (!decoder_->request().empty()) request();
     return true;
@@ -140,6 +153,11 @@ class DeviceSource final : public FrameSource {
   void tell_detected_protocol() const {
     const std::string_view protocol = decoder_->detected_protocol();
     if (!protocol.empty()) notify("these bytes are " + std::string(protocol) + ", " + shape_text(*decoder_->shape()));
+  }
+
+  void tell_rate() const {
+    const std::string difference = rate_.difference();
+    if (!difference.empty()) notify("'" + uri_.text + "': " + difference);
   }
 
   /// The device has answered, but not with a frame: it waits to be asked again.
@@ -186,11 +204,11 @@ class DeviceSource final : public FrameSource {
 
   SourceUri uri_;
   bool has_times_;  ///< The file holds the times of its frames.
+  DescribedRate rate_;
   DeviceOptions options_;
   DeviceConnection connection_;
   std::unique_ptr<Decoder> decoder_;
   std::vector<std::uint8_t> buffer_;
-  std::vector<std::uint8_t> request_;
   FrameClock clock_;
   UndecodedBytes undecoded_;
   std::uint64_t frames_ = 0;
@@ -201,14 +219,15 @@ class DeviceSource final : public FrameSource {
   bool silence_noticed_ = false;
 };
 
-/// Whether a file has times of its own, as its layout says; otherwise the rate of the layout is used.
-Result<bool> read_times(SourceUri& uri) {
-  if (uri.protocol.layout.empty() || uri.transport != Transport::file) return false;
-  const Result<layouts::Layout> layout = layouts::read_layout(uri.protocol.layout);
+/// Of a file without times, the rate of the layout is that of the frames.
+Result<DescribedTimes> read_times(SourceUri& uri) {
+  if (!uri.protocol.has_layout()) return DescribedTimes{};
+  const Result<layouts::Layout> layout = read_layout(uri.protocol);
   if (!layout) return layout.error();
+  if (uri.transport != Transport::file) return DescribedTimes{false, layout->rate_hz};
   if (layout->has_times() && uri.rate_hz) return bad_input("rate: the layout has times; leave rate out");
-  if (!uri.rate_hz) uri.rate_hz = layout->rate_hz;
-  return layout->has_times();
+  if (!layout->has_times() && !uri.rate_hz) uri.rate_hz = layout->rate_hz;
+  return DescribedTimes{layout->has_times(), layout->has_times() ? layout->rate_hz : std::nullopt};
 }
 
 }  // namespace
@@ -222,16 +241,16 @@ Result<std::unique_ptr<FrameSource>> open_device(SourceUri uri, const DeviceOpti
                      shape_text(*sent.shape));
   }
   if (!protocol.shape) protocol.shape = sent.shape;
-  const Result<bool> has_times = read_times(uri);
-  if (!has_times) return bad_input("'" + uri.text + "': " + has_times.error().message);
+  const Result<DescribedTimes> times = read_times(uri);
+  if (!times) return bad_input("'" + uri.text + "': " + times.error().message);
   Result<std::unique_ptr<Decoder>> decoder = make_decoder(protocol);
   if (!decoder) return bad_input("'" + uri.text + "': " + decoder.error().message);
-  Result<std::unique_ptr<ByteStream>> stream = make_source_stream(uri);
+  const bool is_shared = !protocol.array.empty() && uri.transport != Transport::file;
+  Result<std::unique_ptr<ByteStream>> stream = is_shared ? make_shared_source_stream(uri) : make_source_stream(uri);
   if (!stream) return stream.error();
   const LineOrder order = uri.order;
   const std::string name = uri.text;
-  auto source =
-      std::make_unique<DeviceSource>(std::move(uri), sent, std::move(*stream), std::move(*decoder), *has_times);
+  auto source = std::make_unique<DeviceSource>(std::move(uri), sent, std::move(*stream), std::move(*decoder), *times);
   if (const Status opened = source->open(); !opened) return opened.error();
   return turned_source(std::move(source), order, name);
 }

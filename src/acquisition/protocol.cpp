@@ -22,10 +22,10 @@ constexpr std::array kProtocols = {
     ProtocolEntry{"3dvitac", std::nullopt, make_3dvitac_decoder, make_3dvitac_encoder},
     ProtocolEntry{"csv", std::nullopt, make_text_decoder<make_csv_decoder>, make_csv_encoder},
     ProtocolEntry{"dermis", std::nullopt, make_dermis_decoder, make_dermis_encoder},
-    ProtocolEntry{"flexitac", std::nullopt, make_flexitac_decoder, make_flexitac_encoder},
+    ProtocolEntry{"flexitac", std::nullopt, make_described_decoder, make_described_encoder},
     ProtocolEntry{"json", std::nullopt, make_text_decoder<make_json_decoder>, make_json_encoder},
-    ProtocolEntry{"m1616", FrameShape{16, 16}, make_m1616_decoder, make_m1616_encoder},
-    ProtocolEntry{"pressure-mat", FrameShape{56, 28}, make_pressure_mat_decoder, make_pressure_mat_encoder},
+    ProtocolEntry{"m1616", FrameShape{16, 16}, make_described_decoder, make_described_encoder},
+    ProtocolEntry{"pressure-mat", FrameShape{56, 28}, make_described_decoder, make_described_encoder},
     ProtocolEntry{"stag", std::nullopt, make_stag_decoder, make_stag_encoder},
     ProtocolEntry{"tactileglove", std::nullopt, make_tactileglove_decoder, make_tactileglove_encoder},
     ProtocolEntry{"wiresens", std::nullopt, make_wiresens_decoder, make_wiresens_encoder},
@@ -69,7 +69,7 @@ Result<const ProtocolEntry*> find_for(const ProtocolOptions& options) {
 }
 
 Result<std::unique_ptr<Decoder>> make_layout_decoder(const ProtocolOptions& options) {
-  Result<layouts::Layout> layout = layouts::read_layout(options.layout);
+  Result<layouts::Layout> layout = read_layout(options);
   if (!layout) return layout.error();
   const Result<std::size_t> array = layout->find_array(options.array);
   if (!array) return bad_input(options.layout + ": " + array.error().message);
@@ -78,7 +78,7 @@ Result<std::unique_ptr<Decoder>> make_layout_decoder(const ProtocolOptions& opti
     return bad_input(to_string(*options.shape) + ": " + options.layout + " has " + to_string(shape));
   }
   return layouts::make_decoder(std::make_shared<const layouts::Layout>(*std::move(layout)), *array,
-                               options.waits_for_late_frames);
+                               options.is_whole_file);
 }
 
 }  // namespace
@@ -93,10 +93,20 @@ const std::vector<std::string>& protocol_names() {
 }
 
 Result<std::unique_ptr<Decoder>> make_decoder(const ProtocolOptions& options) {
-  if (!options.layout.empty()) return make_layout_decoder(options);
+  if (options.has_layout()) return make_layout_decoder(options);
   const Result<const ProtocolEntry*> protocol = find_for(options);
   if (!protocol) return protocol.error();
   return (*protocol)->make_decoder(options);
+}
+
+Result<layouts::Layout> read_layout(const ProtocolOptions& options) {
+  if (!options.layout.empty()) return layouts::read_layout(options.layout);
+  Result<layouts::Layout> layout = layouts::layout_from_toml(options.layout_keys, "");
+  if (layout) return layout;
+  const std::string& message = layout.error().message;
+  constexpr std::string_view kTable = "layout.";
+  const std::size_t key = message.find(kTable);
+  return bad_input(key == std::string::npos ? message : message.substr(key + kTable.size()));
 }
 
 Result<std::unique_ptr<Encoder>> make_encoder(const ProtocolOptions& options) {

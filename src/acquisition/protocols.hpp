@@ -10,8 +10,9 @@
 #include "dermis/core/result.hpp"
 #include "dermis/layouts/decoder.hpp"
 
-/// One pair of factories a protocol, listed in protocol.cpp; each in the file of its name. Shapes that are given are
-/// valid and those of the protocol where it has but one; encoders are given one.
+/// One pair of factories a protocol, listed in protocol.cpp; each in the file of its name, or in
+/// described_protocols.cpp. Shapes that are given are valid and those of the protocol where it has but one; encoders
+/// are given one.
 namespace dermis::acquisition {
 
 struct ProtocolEntry {
@@ -23,12 +24,8 @@ struct ProtocolEntry {
 
 Result<std::unique_ptr<Decoder>> make_dermis_decoder(const ProtocolOptions& options);
 Result<std::unique_ptr<Encoder>> make_dermis_encoder(const ProtocolOptions& options);
-Result<std::unique_ptr<Decoder>> make_flexitac_decoder(const ProtocolOptions& options);
-Result<std::unique_ptr<Encoder>> make_flexitac_encoder(const ProtocolOptions& options);
-Result<std::unique_ptr<Decoder>> make_m1616_decoder(const ProtocolOptions& options);
-Result<std::unique_ptr<Encoder>> make_m1616_encoder(const ProtocolOptions& options);
-Result<std::unique_ptr<Decoder>> make_pressure_mat_decoder(const ProtocolOptions& options);
-Result<std::unique_ptr<Encoder>> make_pressure_mat_encoder(const ProtocolOptions& options);
+Result<std::unique_ptr<Decoder>> make_described_decoder(const ProtocolOptions& options);
+Result<std::unique_ptr<Encoder>> make_described_encoder(const ProtocolOptions& options);
 Result<std::unique_ptr<Decoder>> make_wuji_decoder(const ProtocolOptions& options);
 Result<std::unique_ptr<Encoder>> make_wuji_encoder(const ProtocolOptions& options);
 

@@ -36,6 +36,12 @@ const std::set<std::string> kProtocolParameters = {
     "protocol",  "layout",    "array",     "rows",      "cols",         "nodes_per_packet", "delimited",
     "bit_shift", "transpose", "flip_rows", "flip_cols", "skip_columns", "row_order",        "col_order"};
 
+/// Keys of [layout] that hold text, and a number.
+const std::set<std::string> kLayoutTexts = {"line",          "line_end",  "separator", "comment",
+                                            "frame_begin",   "frame_end", "digits",    "escape",
+                                            "decimal_point", "unit",      "start",     "request"};
+const std::set<std::string> kLayoutNumbers = {"scale", "offset", "absent", "width", "lines_from"};
+
 const std::array<Scheme, 9>& schemes() {
   static const std::array<Scheme, 9> kAll = {{
       {"serial", Transport::serial, {"baud", "reconnect_s"}, true, true},
@@ -109,6 +115,29 @@ std::optional<Number> number(const std::string& text, Number least, Number most)
   if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
   if (!(value >= least && value <= most)) return std::nullopt;
   return value;
+}
+
+/// A text in TOML.
+std::string quoted(std::string_view text) {
+  constexpr std::string_view kHex = "0123456789ABCDEF";
+  std::string quoted = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool is_plain = byte >= 0x20 && byte != 0x7F && c != '"' && c != '\\';
+    quoted += is_plain ? std::string(1, c) : std::string("\\u00") + kHex[byte >> 4U] + kHex[byte & 15U];
+  }
+  return quoted + "\"";
+}
+
+/// "AA 55,values u8" -> ["AA 55", "values u8"]
+std::string quoted_list(std::string_view text) {
+  std::string list = "[";
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    list += (begin == 0 ? "" : ", ") + quoted(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return list + "]";
 }
 
 /// The usual baud of a protocol (PyFlexiTac, MatrixArray.ino, WiSensToolkit.cpp, TouchStreamer).
@@ -268,17 +297,40 @@ class Parser {
     }
   }
 
+  /// [layout] in TOML, of the parameters that are its keys; empty where there is none.
+  std::string layout_keys() {
+    std::string keys;
+    for (const auto& [name, value] : parameters_) {
+      if (kLayoutTexts.contains(name)) keys += name + " = " + quoted(value) + "\n";
+      if (name == "packet") keys += name + " = " + quoted_list(value) + "\n";
+      if (!kLayoutNumbers.contains(name)) continue;
+      if (!number<double>(value, -1e300, 1e300))
+        fail(std::string(name).append(": must be a number, not ").append(value));
+      keys.append(name).append(" = ").append(value).append("\n");
+    }
+    if (keys.empty()) return keys;
+    if (!parameters_.contains("line") && !parameters_.contains("packet")) {
+      fail(keys.substr(0, keys.find(' ')) + ": is of a layout; give line or packet, too");
+    }
+    if (!uri_.protocol.shape) fail("line, packet: give rows and cols, too");
+    const FrameShape shape = uri_.protocol.shape.value_or(FrameShape{1, 1});
+    return "[layout]\nrows = " + std::to_string(shape.rows) + "\ncols = " + std::to_string(shape.cols) + "\n" + keys;
+  }
+
   void read_protocol() {
     if (const auto found = parameters_.find("protocol"); found != parameters_.end()) {
       uri_.protocol.name = found->second;
     }
     if (const auto found = parameters_.find("layout"); found != parameters_.end()) uri_.protocol.layout = found->second;
     if (const auto found = parameters_.find("array"); found != parameters_.end()) uri_.protocol.array = found->second;
-    const bool has_layout = !uri_.protocol.layout.empty();
-    if (has_layout && parameters_.contains("protocol")) fail("layout: give it or protocol, not both");
-    if (!has_layout && parameters_.contains("array")) fail("array: is of a layout, which is not given");
-    uri_.protocol.waits_for_late_frames = uri_.transport == Transport::file;
+    uri_.protocol.is_whole_file = uri_.transport == Transport::file;
     uri_.protocol.shape = read_shape();
+    const bool has_file = !uri_.protocol.layout.empty();
+    uri_.protocol.layout_keys = layout_keys();
+    if (has_file && !uri_.protocol.layout_keys.empty()) fail("layout: give it or its keys, not both");
+    const bool has_layout = has_file || !uri_.protocol.layout_keys.empty();
+    if (has_layout && parameters_.contains("protocol")) fail("layout: give it or protocol, not both");
+    if (!has_file && parameters_.contains("array")) fail("array: is of a layout, which is not given");
     const auto nodes = read<std::size_t>("nodes_per_packet", 1, 32767, "1 to 32767");
     if (nodes) uri_.protocol.nodes_per_packet = *nodes;
     if (const auto shift = read<int>("bit_shift", 5, 6, "5 or 6")) uri_.protocol.bit_shift = *shift;
@@ -333,7 +385,11 @@ Result<SourceUri> parse(std::string_view text, bool Scheme::*direction) {
   }
   std::set<std::string> known = scheme->parameters;
   const bool is_decoded = direction == &Scheme::is_source && scheme->transport != Transport::simulation;
-  if (is_decoded) known.insert(kProtocolParameters.begin(), kProtocolParameters.end());
+  if (is_decoded) {
+    for (const auto& names : {kProtocolParameters, kLayoutTexts, kLayoutNumbers})
+      known.insert(names.begin(), names.end());
+    known.insert("packet");
+  }
   if (direction == &Scheme::is_target) known.erase("reconnect_s");
   return Parser(text, *scheme, known).parse();
 }

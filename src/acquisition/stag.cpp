@@ -8,11 +8,14 @@
 #include <cstring>
 
 #include "acquisition/protocols.hpp"
-#include "acquisition/window_decoder.hpp"
 #include "acquisition/wire_values.hpp"
+#include "dermis/layouts/window_decoder.hpp"
 
 namespace dermis::acquisition {
 namespace {
+
+using layouts::Verdict;
+using layouts::WindowDecoder;
 
 constexpr FrameShape kGlove = {32, 32};
 constexpr std::uint8_t kOffset = 11;

@@ -6,11 +6,14 @@
 #include <algorithm>
 
 #include "acquisition/protocols.hpp"
-#include "acquisition/window_decoder.hpp"
 #include "acquisition/wire_values.hpp"
+#include "dermis/layouts/window_decoder.hpp"
 
 namespace dermis::acquisition {
 namespace {
+
+using layouts::Verdict;
+using layouts::WindowDecoder;
 
 constexpr std::uint8_t kFirstIndex = 0x3C;
 constexpr std::size_t kMaxTaxels = 256 - kFirstIndex;

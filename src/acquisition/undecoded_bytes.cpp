@@ -58,9 +58,10 @@ Error UndecodedBytes::error(const SourceUri& uri) const {
 
 UndecodedReason why_undecoded(const SourceUri& uri, std::span<const std::uint8_t> bytes) {
   const ProtocolOptions& protocol = uri.protocol;
-  if (!protocol.layout.empty()) {
+  if (protocol.has_layout()) {
     const UndecodedReason advice = advice_of(protocol.name, protocol, bytes);
-    return {"'" + uri.text + "': these bytes do not fit " + protocol.layout + ": " + advice.why};
+    return {"'" + uri.text + "': these bytes do not fit " + (protocol.layout.empty() ? "its layout" : protocol.layout) +
+            ": " + advice.why};
   }
   const bool is_auto = protocol.name == "auto";
   const std::string looks_like = detect_protocol(bytes);

@@ -15,11 +15,14 @@
 #include "acquisition/crc_16.hpp"
 #include "acquisition/frame_numbers.hpp"
 #include "acquisition/protocols.hpp"
-#include "acquisition/window_decoder.hpp"
 #include "acquisition/wire_values.hpp"
+#include "dermis/layouts/window_decoder.hpp"
 
 namespace dermis::acquisition {
 namespace {
+
+using layouts::Verdict;
+using layouts::WindowDecoder;
 
 constexpr FrameShape kShape = {24, 32};
 constexpr std::size_t kTaxels = 768;

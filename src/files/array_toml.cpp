@@ -199,6 +199,7 @@ Result<ArrayDescription> read_array(ConfigFile& file) {
   read_absent(file, array);
   read_order(file, array.order);
   read_readout(file, array);
+  file.ignore("layout");
   if (const Status read = file.finish(); !read) return read.error();
   if (const Status valid = array.validate(); !valid) fail_invalid(file, valid.error().message);
   if (const Status valid = file.finish(); !valid) return valid.error();

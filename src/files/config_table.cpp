@@ -345,6 +345,10 @@ void ConfigFile::fail(std::string_view key, std::string_view message) {
   parsed_->keep(parsed_->find(key), key, message);
 }
 
+void ConfigFile::ignore(std::string_view key) {
+  parsed_->known_keys.emplace(key);
+}
+
 Status ConfigFile::finish() const {
   const std::optional<Error>& error = parsed_->first_error;
   if (error && !parsed_->first_error_is_missing_key) return *error;

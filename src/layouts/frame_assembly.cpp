@@ -3,29 +3,14 @@
 #include "layouts/frame_assembly.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace dermis::layouts {
-namespace {
-
-constexpr std::int64_t kMostLost = 1000;  // more missing frames are a restart of the device
-constexpr std::int64_t kMostLateNanos = 1'000'000'000;
-
-bool holds(const std::vector<std::uint64_t>& values, const std::optional<std::uint64_t>& flags) {
-  return flags && std::find(values.begin(), values.end(), *flags) != values.end();
-}
-
-}  // namespace
-
 FrameAssembly::FrameAssembly(const Layout& layout, std::size_t array, const Moduli& moduli)
-    : layout_(layout),
-      array_(array),
+    : array_(array),
       shape_(layout.arrays[array].shape),
-      has_plain_readings_(layout.scale == 1.0 && layout.offset == 0.0 && !layout.absent),
+      fields_(layout, moduli),
       readings_(shape_.taxel_count()),
-      is_filled_(shape_.taxel_count()),
-      frame_number_(moduli.frame),
-      time_(moduli.time_ns) {}
+      is_filled_(shape_.taxel_count()) {}
 
 bool FrameAssembly::add(const Piece& piece, std::span<const float> numbers, std::size_t bytes, RawFrame& frame) {
   if (piece.array != array_) return false;
@@ -36,6 +21,7 @@ bool FrameAssembly::add(const Piece& piece, std::span<const float> numbers, std:
     begin = begin_of(piece, numbers.size());
   }
   if (!begin) {
+    outside_ = piece;
     damage(bytes);
     return false;
   }
@@ -73,21 +59,17 @@ void FrameAssembly::begin_frame(const Piece& piece) {
 }
 
 void FrameAssembly::fill(std::size_t begin, std::span<const float> numbers) {
-  float* const readings = readings_.data() + begin;
-  std::copy(numbers.begin(), numbers.end(), readings);
+  const std::span<float> readings = std::span(readings_).subspan(begin, numbers.size());
+  std::copy_n(numbers.begin(), numbers.size(), readings.begin());
+  fields_.scale(readings);
   std::fill_n(is_filled_.data() + begin, numbers.size(), std::uint8_t{1});
   filled_ += numbers.size();
-  if (has_plain_readings_) return;
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const auto number = static_cast<double>(numbers[i]);
-    readings[i] = number == layout_.absent ? std::numeric_limits<float>::quiet_NaN()
-                                           : static_cast<float>(layout_.scale * number + layout_.offset);
-  }
 }
 
 /// Before the first frame, a part of one is the end of a frame whose beginning nobody saw.
 void FrameAssembly::end_frame() {
   if (filled_ == 0) return;
+  most_filled_ = std::max(most_filled_, filled_);
   filled_ = 0;
   if (counts_.frames > 0) ++counts_.damaged_frames;
   skip(bytes_);
@@ -100,32 +82,29 @@ void FrameAssembly::damage(std::size_t bytes) noexcept {
 
 bool FrameAssembly::deliver(RawFrame& frame) {
   filled_ = 0;
-  if (holds(layout_.flags.corrupt, first_.flags)) {
+  frame.counts.assign(readings_.begin(), readings_.end());
+  if (!fields_.write(first_, frame)) {
     damage(bytes_);
     return false;
   }
-  if (holds(layout_.flags.absent, first_.flags)) {
-    std::fill(readings_.begin(), readings_.end(), std::numeric_limits<float>::quiet_NaN());
-  }
-  frame.counts.assign(readings_.begin(), readings_.end());
-  describe(frame);
   ++counts_.frames;
   counts_.lost_frames += frame.acquisition.lost_before;
   return true;
 }
 
-void FrameAssembly::describe(RawFrame& frame) {
-  frame.temperature_celsius = first_.temperature_celsius;
-  frame.supply_v = first_.supply_v;
-  frame.acquisition = {};
-  if (first_.frame) {
-    const std::int64_t number = frame_number_.count(*first_.frame, 0);
-    const std::int64_t step = last_number_ ? number - *last_number_ : 1;
-    if (step > 1 && step <= kMostLost + 1) frame.acquisition.lost_before = static_cast<std::uint32_t>(step - 1);
-    frame.acquisition.sequence = static_cast<std::uint64_t>(number);
-    last_number_ = number;
+std::string FrameAssembly::advice() const {
+  const auto number = [](const char* name, const std::optional<std::uint64_t>& value) {
+    return value ? std::string(name) + std::to_string(*value) + " " : std::string();
+  };
+  const std::string shape = std::to_string(shape_.rows) + "x" + std::to_string(shape_.cols);
+  if (outside_) {
+    return number("row ", outside_->row) + number("col ", outside_->col) + number("first ", outside_->first) +
+           "is outside of " + shape + ", whose lines count from 0";
   }
-  if (first_.time_ns) frame.acquisition.device_time = Nanos(time_.count(*first_.time_ns, kMostLateNanos));
+  const std::size_t most = std::max(most_filled_, filled_);
+  if (most == 0) return {};
+  return "no frame is complete: at most " + std::to_string(most) + " of " + std::to_string(readings_.size()) +
+         " readings came";
 }
 
 }  // namespace dermis::layouts

@@ -6,33 +6,15 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "dermis/core/frames.hpp"
 #include "dermis/layouts/decoder.hpp"
 #include "dermis/layouts/layout.hpp"
-#include "layouts/unwrapped.hpp"
+#include "layouts/frame_fields.hpp"
 
 namespace dermis::layouts {
-
-/// What a line or a packet holds: a frame, a row, a taxel, or any run of taxels.
-struct Piece {
-  std::size_t array = 0;  ///< Place of the array whose readings these are.
-  std::optional<std::uint64_t> row{};
-  std::optional<std::uint64_t> col{};
-  std::optional<std::uint64_t> first{};
-  std::optional<std::uint64_t> frame{};
-  std::optional<std::uint64_t> flags{};
-  std::optional<std::uint64_t> time_ns{};
-  std::optional<double> temperature_celsius{};
-  std::optional<double> supply_v{};
-};
-
-/// Moduli of what a device counts; 0: it does not wrap.
-struct Moduli {
-  std::uint64_t frame = 0;
-  std::uint64_t time_ns = 0;
-};
 
 /// Makes frames of one array from pieces.
 class FrameAssembly {
@@ -50,6 +32,8 @@ class FrameAssembly {
   void damage(std::size_t bytes) noexcept;
 
   [[nodiscard]] const DecoderCounts& counts() const noexcept { return counts_; }
+  /// Says why no frame is complete, where pieces have come.
+  [[nodiscard]] std::string advice() const;
 
  private:
   [[nodiscard]] std::optional<std::size_t> begin_of(const Piece& piece, std::size_t count) const noexcept;
@@ -57,22 +41,18 @@ class FrameAssembly {
   void begin_frame(const Piece& piece);
   void fill(std::size_t begin, std::span<const float> numbers);
   [[nodiscard]] bool deliver(RawFrame& frame);
-  void describe(RawFrame& frame);
 
-  const Layout& layout_;
   std::size_t array_;
   FrameShape shape_;
-  bool has_plain_readings_;
+  FrameFields fields_;
 
   std::vector<float> readings_;
   std::vector<std::uint8_t> is_filled_;
   std::size_t filled_ = 0;
   std::size_t bytes_ = 0;
-  Piece first_;  ///< Of the frame that is being read.
-
-  Unwrapped frame_number_;
-  Unwrapped time_;
-  std::optional<std::int64_t> last_number_;
+  std::size_t most_filled_ = 0;   ///< Of all frames that were not complete.
+  std::optional<Piece> outside_;  ///< The last that the array does not have.
+  Piece first_;                   ///< Of the frame that is being read.
   DecoderCounts counts_;
 };
 

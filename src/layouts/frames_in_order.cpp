@@ -13,12 +13,33 @@ constexpr Nanos kLatest = std::chrono::seconds(1);
 constexpr std::size_t kMostWaitingReadings = std::size_t{1} << 24U;
 constexpr std::uint64_t kMostLost = 1000;
 
+/// A frame that is more than a second back follows a restart of the device, and is no late one.
+bool comes_late(const std::optional<Nanos>& time, const std::optional<Nanos>& before) noexcept {
+  return time && before && *before > *time && *before - *time <= kLatest;
+}
+
 }  // namespace
 
 bool FramesInOrder::next(RawFrame& frame) {
+  const bool is_found = find_next(frame);
+  counts_.damaged_frames = decoder_->counts().damaged_frames;
+  counts_.skipped_bytes = decoder_->counts().skipped_bytes;
+  return is_found;
+}
+
+bool FramesInOrder::find_next(RawFrame& frame) {
   while (decoder_->next(frame)) {
-    insert(frame);
-    if (release(frame)) return true;
+    if (repeats(frame)) {
+      ++counts_.repeated_frames;
+    } else if (late_ == Late::wait_for) {
+      insert(frame);
+      if (release(frame)) return true;
+    } else if (is_late(frame)) {
+      ++counts_.late_frames;
+    } else {
+      count(frame);
+      return true;
+    }
   }
   return release(frame);
 }
@@ -28,13 +49,27 @@ void FramesInOrder::finish() {
   has_ended_ = true;
 }
 
-/// A frame that is more than a second back follows a restart of the device, and is no late one.
+bool FramesInOrder::repeats(const RawFrame& frame) {
+  const Acquisition& now = frame.acquisition;
+  if (!now.sequence) return false;
+  const bool is_same = now.sequence == last_.sequence && now.device_time == last_.device_time;
+  const bool is_repeated = is_same && !last_counts_.empty() && frame.counts == last_counts_;
+  last_ = now;
+  last_counts_.assign(frame.counts.begin(), frame.counts.end());
+  return is_repeated;
+}
+
+bool FramesInOrder::is_late(const RawFrame& frame) const noexcept {
+  return comes_late(frame.acquisition.device_time, delivered_time_);
+}
+
 void FramesInOrder::insert(const RawFrame& frame) {
   auto place = waiting_.end();
-  while (place != waiting_.begin() && std::prev(place)->acquisition.device_time > frame.acquisition.device_time &&
-         *std::prev(place)->acquisition.device_time - *frame.acquisition.device_time <= kLatest) {
+  while (place != waiting_.begin() &&
+         comes_late(frame.acquisition.device_time, std::prev(place)->acquisition.device_time)) {
     --place;
   }
+  if (place != waiting_.end()) ++counts_.late_frames;
   waiting_.insert(place, frame);
 }
 
@@ -46,16 +81,20 @@ bool FramesInOrder::release(RawFrame& frame) {
   if (!is_due) return false;
   frame = std::move(waiting_.front());
   waiting_.pop_front();
-  const std::optional<std::uint64_t> number = frame.acquisition.sequence;
-  const std::uint64_t step = number && last_number_ && *number > *last_number_ ? *number - *last_number_ : 1;
-  frame.acquisition.lost_before = step <= kMostLost + 1 ? static_cast<std::uint32_t>(step - 1) : 0;
-  last_number_ = number;
-  const std::uint64_t lost = counts_.lost_frames + frame.acquisition.lost_before;
-  const std::uint64_t frames = counts_.frames + 1;
-  counts_ = decoder_->counts();
-  counts_.frames = frames;
-  counts_.lost_frames = lost;
+  count(frame);
   return true;
+}
+
+/// Counts the frame that is delivered, and those that are missing before it.
+void FramesInOrder::count(RawFrame& frame) {
+  Acquisition& now = frame.acquisition;
+  const bool goes_on = now.sequence && delivered_number_ && *now.sequence > *delivered_number_;
+  const std::uint64_t step = goes_on ? *now.sequence - *delivered_number_ : 1;
+  now.lost_before = step <= kMostLost + 1 ? static_cast<std::uint32_t>(step - 1) : 0;
+  delivered_number_ = now.sequence;
+  delivered_time_ = now.device_time;
+  ++counts_.frames;
+  counts_.lost_frames += now.lost_before;
 }
 
 }  // namespace dermis::layouts

@@ -8,16 +8,20 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "dermis/layouts/decoder.hpp"
 
 namespace dermis::layouts {
 
-/// Puts the frames of a decoder in order by the device's time, where they come up to a second late. All of them have
-/// one.
+/// Frames of a decoder, in order by the device's time. A frame with the number, time and readings of the one before is
+/// dropped.
 class FramesInOrder final : public Decoder {
  public:
-  explicit FramesInOrder(std::unique_ptr<Decoder> decoder) : decoder_(std::move(decoder)) {}
+  /// Frames that come up to a second late: are put in order, for which each frame waits, or are dropped.
+  enum class Late { wait_for, drop };
+
+  FramesInOrder(std::unique_ptr<Decoder> decoder, Late late) : decoder_(std::move(decoder)), late_(late) {}
 
   void push(std::span<const std::uint8_t> bytes) override { decoder_->push(bytes); }
   [[nodiscard]] bool next(RawFrame& frame) override;
@@ -26,15 +30,24 @@ class FramesInOrder final : public Decoder {
   [[nodiscard]] std::uint64_t frame_end() const noexcept override { return decoder_->frame_end(); }
   [[nodiscard]] std::optional<FrameShape> shape() const noexcept override { return decoder_->shape(); }
   [[nodiscard]] const DecoderCounts& counts() const noexcept override { return counts_; }
+  [[nodiscard]] std::string_view request() const noexcept override { return decoder_->request(); }
   [[nodiscard]] std::string advice() const override { return decoder_->advice(); }
 
  private:
+  [[nodiscard]] bool find_next(RawFrame& frame);
+  [[nodiscard]] bool repeats(const RawFrame& frame);
+  [[nodiscard]] bool is_late(const RawFrame& frame) const noexcept;
   void insert(const RawFrame& frame);
   [[nodiscard]] bool release(RawFrame& frame);
+  void count(RawFrame& frame);
 
   std::unique_ptr<Decoder> decoder_;
-  std::deque<RawFrame> waiting_;  ///< By time.
-  std::optional<std::uint64_t> last_number_;
+  Late late_;
+  std::deque<RawFrame> waiting_;    ///< By time.
+  Acquisition last_;                ///< Of the frame that came last,
+  std::vector<float> last_counts_;  ///< and its readings.
+  std::optional<Nanos> delivered_time_;
+  std::optional<std::uint64_t> delivered_number_;
   DecoderCounts counts_;
   bool has_ended_ = false;
 };

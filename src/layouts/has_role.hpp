@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <vector>
 
 #include "dermis/layouts/layout.hpp"
@@ -13,6 +14,19 @@ namespace dermis::layouts {
 template <typename Field>
 [[nodiscard]] bool has_role(const std::vector<Field>& fields, Role role) {
   return std::any_of(fields.begin(), fields.end(), [&](const Field& field) { return field.role == role; });
+}
+
+/// How many of the fields of a line or packet hold readings of that array. Each has an equal share.
+template <typename Field>
+[[nodiscard]] std::size_t shares_of(const std::vector<Field>& fields, std::size_t array) {
+  return static_cast<std::size_t>(std::count_if(fields.begin(), fields.end(), [&](const Field& field) {
+    return field.role == Role::values && field.array == array;
+  }));
+}
+
+/// The same of several lines.
+[[nodiscard]] inline bool has_role(const std::vector<TextLayout::Pattern>& lines, Role role) {
+  return std::any_of(lines.begin(), lines.end(), [&](const auto& line) { return has_role(line, role); });
 }
 
 }  // namespace dermis::layouts

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "layouts/constant_packets.hpp"
 #include "layouts/frames_in_order.hpp"
 #include "layouts/has_role.hpp"
 #include "layouts/packet_decoder.hpp"
@@ -13,8 +14,8 @@
 namespace dermis::layouts {
 namespace {
 
-template <typename Field>
-bool has_time(const std::vector<Field>& fields) {
+template <typename Fields>
+bool has_time(const Fields& fields) {
   return has_role(fields, Role::time) || has_role(fields, Role::clock) || has_role(fields, Role::datetime);
 }
 
@@ -22,7 +23,18 @@ bool has_time(const std::vector<Field>& fields) {
 
 bool Layout::has_times() const {
   const auto* const text = std::get_if<TextLayout>(&form);
-  return text != nullptr ? has_time(text->line) : has_time(std::get<PacketLayout>(form).packet);
+  return text != nullptr ? has_time(text->lines) : has_time(std::get<PacketLayout>(form).packet);
+}
+
+bool Layout::has_numbers() const {
+  const auto* const text = std::get_if<TextLayout>(&form);
+  return text != nullptr ? has_role(text->lines, Role::frame)
+                         : has_role(std::get<PacketLayout>(form).packet, Role::frame);
+}
+
+std::string_view Layout::request_after(bool is_sending) const noexcept {
+  if (!request.empty()) return request;
+  return is_sending ? std::string_view{} : std::string_view(start);
 }
 
 Result<std::size_t> Layout::find_array(const std::string& name) const {
@@ -36,17 +48,26 @@ Result<std::size_t> Layout::find_array(const std::string& name) const {
   return bad_input("the layout has no array '" + name + "'" + (names.empty() ? "" : "; it has " + names));
 }
 
-std::unique_ptr<Decoder> make_decoder(std::shared_ptr<const Layout> layout, std::size_t array,
-                                      bool waits_for_late_frames) {
-  const bool is_ordered = waits_for_late_frames && layout->has_times();
+std::unique_ptr<Decoder> make_decoder(const std::vector<std::shared_ptr<const Layout>>& layouts) {
+  return std::make_unique<ConstantPackets>(layouts, 0, ConstantPackets::FirstMark::may_be_readings);
+}
+
+std::unique_ptr<Decoder> make_decoder(std::shared_ptr<const Layout> layout, std::size_t array, bool is_whole_file) {
+  const bool has_times = layout->has_times();
+  const bool is_ordered = has_times || layout->has_numbers();
   std::unique_ptr<Decoder> decoder;
   if (std::holds_alternative<TextLayout>(layout->form)) {
-    decoder = std::make_unique<TextDecoder>(std::move(layout), array);
+    decoder = std::make_unique<TextDecoder>(std::move(layout), array, is_whole_file);
+  } else if (constant_size(*layout)) {
+    decoder = std::make_unique<ConstantPackets>(std::vector{std::move(layout)}, array,
+                                                ConstantPackets::FirstMark::begins_frame);
   } else {
     decoder = std::make_unique<PacketDecoder>(std::move(layout), array);
   }
   if (!is_ordered) return decoder;
-  return std::make_unique<FramesInOrder>(std::move(decoder));
+  const bool waits = is_whole_file && has_times;
+  return std::make_unique<FramesInOrder>(std::move(decoder),
+                                         waits ? FramesInOrder::Late::wait_for : FramesInOrder::Late::drop);
 }
 
 }  // namespace dermis::layouts

@@ -8,6 +8,7 @@
 #include "dermis/core/array_description.hpp"
 #include "dermis/files/config_table.hpp"
 #include "dermis/layouts/layout.hpp"
+#include "layouts/constant_packets.hpp"
 #include "layouts/has_role.hpp"
 #include "layouts/line_pattern.hpp"
 #include "layouts/packet_entry.hpp"
@@ -20,6 +21,7 @@ using files::ConfigFile;
 constexpr std::size_t kMostArrays = 64;
 constexpr std::size_t kMostTaxels = std::size_t{1} << 20U;
 constexpr std::size_t kMostFields = 256;
+constexpr std::size_t kMostPatterns = 64;
 constexpr std::size_t kMostLiteral = 256;
 
 class LayoutReader {
@@ -38,6 +40,7 @@ class LayoutReader {
       read_packet();
     }
     read_readings();
+    for (const char* const table : {"array", "readout"}) file_.ignore(table);
     if (Status finished = file_.finish(); !finished) return finished.error();
     return std::move(layout_);
   }
@@ -60,7 +63,8 @@ class LayoutReader {
   void read_arrays() {
     const std::size_t count = file_.table_count(key("array"));
     if (count > kMostArrays) return fail("array", "there are more than 64");
-    if (count == 0) read_shape("layout.", layout_.arrays.emplace_back().shape);
+    const bool is_in_array = file_.contains("array.rows") && !file_.contains(key("rows"));
+    if (count == 0) read_shape(is_in_array ? "array." : "layout.", layout_.arrays.emplace_back().shape);
     for (std::size_t k = 0; k < count; ++k) read_array(key("array[" + std::to_string(k) + "]."));
     if (layout_.arrays.empty()) layout_.arrays.push_back({"", {1, 1}});
     std::size_t taxels = 0;
@@ -88,13 +92,24 @@ class LayoutReader {
 
   void read_text() {
     TextLayout text;
-    std::string pattern;
-    file_.text(key("line"), pattern);
-    Result<std::vector<TextField>> line = parse_line_pattern(pattern, layout_.arrays);
-    if (!line) {
-      fail("line", line.error().message);
+    std::vector<std::string> patterns;
+    if (file_.holds_text(key("line"))) {
+      file_.text(key("line"), patterns.emplace_back());
     } else {
-      text.line = *std::move(line);
+      file_.texts(key("line"), patterns);
+    }
+    if (patterns.size() > kMostPatterns) fail("line", "has more than 64 patterns");
+    for (std::size_t k = 0; k < std::min(patterns.size(), kMostPatterns); ++k) {
+      Result<TextLayout::Pattern> line = parse_line_pattern(patterns[k], layout_.arrays);
+      const std::string which = patterns.size() > 1 ? "pattern " + std::to_string(k + 1) + ": " : "";
+      if (!line) fail("line", which + line.error().message);
+      if (line) text.lines.push_back(*std::move(line));
+    }
+    if (patterns.empty() || (!text.lines.empty() && !has_role(text.lines, Role::values))) {
+      fail("line", "has no readings: write {values}, or the name of an array, where they stand");
+    }
+    for (const TextLayout::Pattern& line : text.lines) {
+      check_shares("line", line, !has_role(line, Role::col) && has_role(text.lines, Role::row));
     }
     file_.text(key("line_end"), text.line_end);
     const std::string_view numbers = "0123456789abcdefABCDEF+-.,";
@@ -103,7 +118,10 @@ class LayoutReader {
     }
     file_.text(key("separator"), text.separator);
     file_.text(key("comment"), text.comment);
+    file_.text(key("frame_begin"), text.frame_begin);
     if (file_.contains(key("frame_end"))) file_.text(key("frame_end"), text.frame_end.emplace());
+    file_.count(key("lines_from"), text.lines_from);
+    if (text.lines_from > kMaxLines) fail("lines_from", "must be at most 1024");
     file_.count(key("width"), text.width);
     if (text.width > 9) fail("width", "must be at most 9 characters");
     std::string point = ".";
@@ -114,6 +132,19 @@ class LayoutReader {
     file_.choice(key("digits"), {"decimal", "hexadecimal"}, digits);
     text.is_hexadecimal = digits == 1;
     layout_.form = std::move(text);
+  }
+
+  /// Fields of one array share its readings.
+  template <typename Field>
+  void check_shares(const char* name, const std::vector<Field>& fields, bool holds_row) {
+    if (has_role(fields, Role::col) || has_role(fields, Role::first)) return;
+    for (std::size_t k = 0; k < layout_.arrays.size(); ++k) {
+      const FrameShape& shape = layout_.arrays[k].shape;
+      const std::size_t shares = shares_of(fields, k);
+      if (shares == 0 || (holds_row ? shape.cols : shape.taxel_count()) % shares == 0) continue;
+      fail(name,
+           std::to_string(shares) + " fields of readings cannot share those of a " + (holds_row ? "row" : "frame"));
+    }
   }
 
   void read_packet() {
@@ -155,10 +186,11 @@ class LayoutReader {
 
   void check(const PacketLayout& packet) {
     const std::vector<PacketField>& fields = packet.packet;
-    const bool has_mark = !fields.empty() && fields.front().role == Role::literal;
-    if (packet.escape == PacketLayout::Escape::none && !has_mark) {
-      fail("packet", "must begin with bytes that mark it, as \"FF FF\", or have an escape");
-    }
+    check_mark(packet);
+    const bool has_counts = has_role(fields, Role::count) || std::ranges::any_of(fields, [](const PacketField& field) {
+                              return field.role == Role::values && field.count > 0;
+                            });
+    if (!has_counts) check_shares("packet", fields, has_role(fields, Role::row));
     if (!has_role(fields, Role::values)) fail("packet", "has no readings, as \"values u16le\"");
     for (const PacketField& field : fields) {
       if (field.literal.size() > kMostLiteral) fail("packet", "a field has more than 256 bytes");
@@ -170,11 +202,22 @@ class LayoutReader {
     if (has_role(fields, Role::array) && !has_ids) fail("array", "each array needs an id, which the field array holds");
   }
 
+  void check_mark(const PacketLayout& packet) {
+    if (packet.packet.empty() || packet.escape != PacketLayout::Escape::none) return;
+    if (packet.packet.front().role == Role::literal) return;
+    const bool ends_with_mark = packet.packet.back().role == Role::literal;
+    if (ends_with_mark && constant_size({layout_.arrays, packet})) return;
+    fail("packet", ends_with_mark ? "its size differs, so it must begin with bytes that mark it, or have an escape"
+                                  : "must begin or end with bytes that mark it, as \"FF FF\", or have an escape");
+  }
+
   void read_readings() {
     file_.number(key("scale"), layout_.scale);
     file_.number(key("offset"), layout_.offset);
     if (layout_.scale == 0.0) fail("scale", "must not be 0");
     file_.number(key("absent"), layout_.absent);
+    file_.text(key("start"), layout_.start);
+    file_.text(key("request"), layout_.request);
     read_flags("absent", layout_.flags.absent);
     read_flags("late", layout_.flags.late);
     read_flags("corrupt", layout_.flags.corrupt);

@@ -10,21 +10,18 @@ namespace {
 constexpr std::size_t kLongestPattern = 4096;
 
 Status check_order(const std::vector<TextField>& fields) {
-  std::size_t values = 0;
   for (std::size_t k = 0; k < fields.size(); ++k) {
     const bool is_followed_by_field = k + 1 < fields.size() && fields[k + 1].role != Role::literal;
     if (fields[k].role != Role::literal && is_followed_by_field) {
       return bad_input("two fields need something between them, such as a comma");
     }
-    if (fields[k].role == Role::values) ++values;
   }
-  if (values == 0) return bad_input("has no readings: write {values}, or the name of an array, where they stand");
   return Done{};
 }
 
 }  // namespace
 
-Result<std::vector<TextField>> parse_line_pattern(std::string_view pattern, const std::vector<LayoutArray>& arrays) {
+Result<TextLayout::Pattern> parse_line_pattern(std::string_view pattern, const std::vector<LayoutArray>& arrays) {
   if (pattern.size() > kLongestPattern) return bad_input("has more than 4096 characters");
   std::vector<TextField> fields;
   const auto add_text = [&](char c) {

@@ -12,7 +12,7 @@
 namespace dermis::layouts {
 
 /// The fields of "{row},{values}". Errors are those of the pattern.
-[[nodiscard]] Result<std::vector<TextField>> parse_line_pattern(std::string_view pattern,
-                                                                const std::vector<LayoutArray>& arrays);
+[[nodiscard]] Result<TextLayout::Pattern> parse_line_pattern(std::string_view pattern,
+                                                             const std::vector<LayoutArray>& arrays);
 
 }  // namespace dermis::layouts

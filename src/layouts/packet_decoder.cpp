@@ -3,7 +3,6 @@
 #include "layouts/packet_decoder.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -15,20 +14,6 @@ namespace {
 
 constexpr std::size_t kBytesOfReading = 8;
 constexpr std::size_t kOtherBytes = 4096;
-
-std::uint64_t range_of(const PacketField& field) {
-  return field.type.bits < 64 && field.type.kind == WireType::Kind::whole ? std::uint64_t{1} << field.type.bits : 0;
-}
-
-Moduli moduli_of(const PacketLayout& layout) {
-  Moduli moduli;
-  for (const PacketField& field : layout.packet) {
-    if (field.role == Role::frame) moduli.frame = range_of(field);
-    const double nanos = std::round(1e9 * field.unit * static_cast<double>(range_of(field)));
-    if (field.role == Role::time && nanos < 9e18) moduli.time_ns = static_cast<std::uint64_t>(nanos);
-  }
-  return moduli;
-}
 
 std::size_t longest_packet(const Layout& layout) {
   std::size_t taxels = 0;
@@ -42,7 +27,6 @@ PacketDecoder::PacketDecoder(std::shared_ptr<const Layout> layout, std::size_t a
     : layout_(std::move(layout)),
       form_(std::get<PacketLayout>(layout_->form)),
       array_(array),
-      has_checksum_(has_role(form_.packet, Role::checksum)),
       longest_packet_(longest_packet(*layout_)),
       match_(*layout_, array),
       assembly_(*layout_, array, moduli_of(form_)) {}
@@ -62,6 +46,7 @@ bool PacketDecoder::next(RawFrame& frame) {
   if (std::exchange(has_ended_, false)) {
     skip(window_.bytes().size());
     assembly_.end_frame();
+    is_sending_ = false;
   }
   return false;
 }
@@ -70,7 +55,7 @@ PacketDecoder::Found PacketDecoder::next_packet(RawFrame& frame) {
   const std::span<const std::uint8_t> bytes = window_.bytes();
   if (bytes.empty()) return Found::nothing;
   if (const std::size_t distance = distance_to_mark(bytes); distance > 0) return skip(distance);
-  switch (match_.read(bytes, piece_)) {
+  switch (match_.read(bytes, piece_, numbers_)) {
     case PacketMatch::Outcome::unfinished: return has_ended_ ? skip(1) : Found::nothing;
     case PacketMatch::Outcome::damaged:
       misfit_ = match_.misfit();
@@ -79,7 +64,7 @@ PacketDecoder::Found PacketDecoder::next_packet(RawFrame& frame) {
     case PacketMatch::Outcome::foreign: misfit_ = match_.misfit(); return skip(1);
     case PacketMatch::Outcome::whole: break;
   }
-  if (has_checksum_) return take(match_.size(), frame);
+  if (match_.has_checksum()) return take(match_.size(), frame);
   const std::span<const std::uint8_t> rest = bytes.subspan(match_.size());
   const bool is_decided = rest.size() >= form_.packet.front().literal.size() || is_idle_ || has_ended_;
   if (!is_decided) return Found::nothing;
@@ -107,8 +92,9 @@ PacketDecoder::Found PacketDecoder::skip(std::size_t bytes) {
 
 PacketDecoder::Found PacketDecoder::take(std::size_t bytes, RawFrame& frame) {
   window_.drop(bytes);
-  const bool is_frame = assembly_.add(piece_, match_.numbers(), bytes, frame);
+  const bool is_frame = assembly_.add(piece_, numbers_, bytes, frame);
   if (is_frame) frame_end_ = window_.position();
+  is_sending_ = is_sending_ || is_frame;
   return is_frame ? Found::frame : Found::packet;
 }
 
@@ -121,7 +107,8 @@ PacketDecoder::Found PacketDecoder::next_escaped(RawFrame& frame) {
   const auto size = static_cast<std::size_t>(static_cast<const std::uint8_t*>(end) - bytes.data());
   if (size == 0) return skip(1);
   const bool is_packet = undo_escapes(form_, bytes.first(size), plain_) &&
-                         match_.read(plain_, piece_) == PacketMatch::Outcome::whole && match_.size() == plain_.size();
+                         match_.read(plain_, piece_, numbers_) == PacketMatch::Outcome::whole &&
+                         match_.size() == plain_.size();
   if (is_packet) return take(size + 1, frame);
   misfit_ = match_.misfit();
   if (counts().frames > 0) assembly_.damage(0);
@@ -129,7 +116,9 @@ PacketDecoder::Found PacketDecoder::next_escaped(RawFrame& frame) {
 }
 
 std::string PacketDecoder::advice() const {
-  return counts().frames == 0 ? misfit_ : std::string();
+  if (counts().frames > 0) return {};
+  const std::string incomplete = assembly_.advice();
+  return misfit_ + (misfit_.empty() || incomplete.empty() ? "" : "; ") + incomplete;
 }
 
 }  // namespace dermis::layouts

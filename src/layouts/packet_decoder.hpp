@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "dermis/layouts/byte_window.hpp"
@@ -30,6 +31,7 @@ class PacketDecoder final : public Decoder {
   [[nodiscard]] std::uint64_t frame_end() const noexcept override { return frame_end_; }
   [[nodiscard]] std::optional<FrameShape> shape() const noexcept override { return layout_->arrays[array_].shape; }
   [[nodiscard]] const DecoderCounts& counts() const noexcept override { return assembly_.counts(); }
+  [[nodiscard]] std::string_view request() const noexcept override { return layout_->request_after(is_sending_); }
   [[nodiscard]] std::string advice() const override;
 
  private:
@@ -46,16 +48,17 @@ class PacketDecoder final : public Decoder {
   std::shared_ptr<const Layout> layout_;
   const PacketLayout& form_;
   std::size_t array_;
-  bool has_checksum_;
   std::size_t longest_packet_;  ///< That is escaped.
   ByteWindow window_;
   PacketMatch match_;
   FrameAssembly assembly_;
   Piece piece_;
+  std::vector<float> numbers_;       ///< Of the last packet.
   std::vector<std::uint8_t> plain_;  ///< A packet whose escapes are undone.
   std::uint64_t frame_end_ = 0;
   std::string misfit_;  ///< Of the last packet before the first frame that did not fit.
   bool has_ended_ = false;
+  bool is_sending_ = false;
   bool is_idle_ = false;
 };
 

@@ -26,6 +26,17 @@ std::vector<std::string_view> tokens_of(std::string_view text) {
   return tokens;
 }
 
+/// "values u16 le x4" -> "values u16le x4"
+std::string with_order_at_type(const std::vector<std::string_view>& tokens) {
+  std::string text;
+  for (const std::string_view token : tokens) {
+    const bool is_order = token == "le" || token == "be";
+    if (!text.empty() && !is_order) text += ' ';
+    text += token;
+  }
+  return text;
+}
+
 template <typename Number, typename... Base>
 std::optional<Number> number_in(std::string_view text, Base... base) {
   Number value{};
@@ -43,7 +54,7 @@ std::optional<bool> order_in(std::string_view& type) {
 Error bad_type(std::string_view text) {
   return bad_input(
       "'" + std::string(text) +
-      "' is no type: it is u8, i8, u10, u12, u16, i16, u24, u32, i32, f32 or f64, then le where the low byte "
+      "' is no type: it is u8, i8, u10, u12, u16, i16, u24, u32, i32, u64, f32 or f64, then le where the low byte "
       "comes first or be where the high byte does");
 }
 
@@ -54,7 +65,7 @@ Result<WireType> type_in(std::string_view text) {
   if (!bits || rest.empty()) return bad_type(text);
   const std::string_view kinds = "uif";
   const std::size_t kind = kinds.find(rest.front());
-  constexpr std::array kWhole = {8U, 10U, 12U, 16U, 24U, 32U};
+  constexpr std::array kWhole = {8U, 10U, 12U, 16U, 24U, 32U, 64U};
   const bool is_real = kind == 2 && (*bits == 32 || *bits == 64);
   const bool is_whole = kind < 2 && std::find(kWhole.begin(), kWhole.end(), *bits) != kWhole.end();
   if ((!is_real && !is_whole) || (*bits > 8 && !is_big_endian)) return bad_type(text);
@@ -137,9 +148,19 @@ Result<PacketField> parse_checksum(const std::vector<std::string_view>& tokens) 
   return field;
 }
 
-/// "x48" readings, "*0.01", "+273.15"
+Status read_mask(std::string_view digits, WireType& type) {
+  const std::optional<std::uint64_t> mask = number_in<std::uint64_t>(digits, 16);
+  const bool fits = mask && *mask > 0 && (type.bits == 64 || *mask >> type.bits == 0);
+  if (!fits || type.kind != WireType::Kind::whole) {
+    return bad_input("mask= must be hexadecimal digits of bits that a number without a sign has");
+  }
+  return type.mask = *mask, Done{};
+}
+
+/// "x48" readings, "mask=0FFF", "*0.01", "+273.15"
 Status read_option(std::string_view token, PacketField& field) {
   const std::string_view rest = token.substr(1);
+  if (token.starts_with("mask=")) return read_mask(token.substr(5), field.type);
   if (token.front() == 'x' && field.role == Role::values) {
     const std::optional<std::size_t> count = number_in<std::size_t>(rest);
     if (!count || *count == 0 || *count > std::size_t{1} << 20U) return bad_input("x must be 1 to 1048576 readings");
@@ -148,7 +169,7 @@ Status read_option(std::string_view token, PacketField& field) {
   const bool is_factor = token.front() == '*';
   const std::optional<double> value = number_in<double>(token.front() == '-' ? token : rest);
   if ((!is_factor && token.front() != '+' && token.front() != '-') || !value || !(*value > -1e12 && *value < 1e12)) {
-    return bad_input("'" + std::string(token) + "' is neither *FACTOR nor +OFFSET" +
+    return bad_input("'" + std::string(token) + "' is neither *FACTOR nor +OFFSET nor mask=BITS" +
                      (field.role == Role::values ? ", nor x and a number of readings" : ""));
   }
   if (field.role == Role::values)
@@ -180,7 +201,8 @@ std::optional<std::vector<std::uint8_t>> parse_bytes(std::string_view text) {
 
 Result<PacketField> parse_packet_entry(std::string_view entry, const std::vector<LayoutArray>& arrays) {
   if (auto bytes = parse_bytes(entry)) return PacketField{.role = Role::literal, .literal = *std::move(bytes)};
-  const std::vector<std::string_view> tokens = tokens_of(entry);
+  const std::string text = with_order_at_type(tokens_of(entry));
+  const std::vector<std::string_view> tokens = tokens_of(text);
   if (tokens.empty()) return bad_input("is empty: it is bytes as FF 0A, or a field and its type");
   const Result<NamedField> named = field_named(tokens[0], FieldsOf::packet, arrays);
   if (!named) return named.error();

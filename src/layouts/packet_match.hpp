@@ -11,9 +11,15 @@
 
 #include "dermis/layouts/layout.hpp"
 #include "layouts/checksums.hpp"
-#include "layouts/frame_assembly.hpp"
+#include "layouts/frame_fields.hpp"
 
 namespace dermis::layouts {
+
+/// Bytes of so many numbers.
+[[nodiscard]] std::size_t bytes_of(const WireType& type, std::size_t count) noexcept;
+
+/// Where the fields of packets wrap.
+[[nodiscard]] Moduli moduli_of(const PacketLayout& layout);
 
 /// Reads the packets of a layout. Keeps the readings of one array of those that a packet has.
 class PacketMatch {
@@ -27,29 +33,31 @@ class PacketMatch {
 
   PacketMatch(const Layout& layout, std::size_t array);
 
-  /// Reads the packet that the bytes begin with.
-  [[nodiscard]] Outcome read(std::span<const std::uint8_t> bytes, Piece& piece);
+  /// Reads the packet that the bytes begin with. `numbers` become the readings of the array that is wanted.
+  [[nodiscard]] Outcome read(std::span<const std::uint8_t> bytes, Piece& piece, std::vector<float>& numbers);
 
+  [[nodiscard]] bool has_checksum() const noexcept { return has_checksum_; }
   [[nodiscard]] std::size_t size() const noexcept { return at_; }
-  [[nodiscard]] std::span<const float> numbers() const noexcept { return {numbers_.data(), count_}; }
   /// "packet[3], a checksum, is 5F where 33 is expected", of the last one that did not fit.
   [[nodiscard]] std::string misfit() const;
 
  private:
-  [[nodiscard]] Outcome read_field(std::size_t place, std::span<const std::uint8_t> bytes, Piece& piece);
+  [[nodiscard]] Outcome read_field(std::size_t place, std::span<const std::uint8_t> bytes, Piece& piece,
+                                   std::vector<float>& numbers);
   [[nodiscard]] Outcome read_literal(const PacketField& field, std::span<const std::uint8_t> bytes);
-  [[nodiscard]] Outcome read_values(const PacketField& field, std::span<const std::uint8_t> bytes, const Piece& piece);
+  [[nodiscard]] Outcome read_values(const PacketField& field, std::span<const std::uint8_t> bytes, const Piece& piece,
+                                    std::vector<float>& numbers);
   [[nodiscard]] bool use(const PacketField& field, double number, Piece& piece);
-  [[nodiscard]] std::size_t count_of(const PacketField& field, const FrameShape& shape,
-                                     const Piece& piece) const noexcept;
+  [[nodiscard]] std::size_t count_of(const PacketField& field, std::size_t array, const Piece& piece) const noexcept;
 
   const Layout& layout_;
   const std::vector<PacketField>& packet_;
   std::size_t array_;
-  bool names_array_;                   ///< A field says whose readings a packet has.
+  bool names_array_;  ///< A field says whose readings a packet has.
+  bool has_checksum_;
+  std::vector<std::size_t> shares_;    ///< Fields of each array, which share its readings.
   std::vector<ChecksumOf> checksums_;  ///< [fields]
-  std::vector<float> numbers_;
-  std::size_t count_ = 0;  ///< Of them.
+  std::size_t count_ = 0;              ///< Readings so far.
   std::size_t at_ = 0;
   std::optional<std::uint64_t> given_count_;
   std::optional<std::uint64_t> end_;  ///< As a field `length` says.

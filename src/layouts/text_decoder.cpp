@@ -22,12 +22,10 @@ std::size_t longest_line(const Layout& layout) {
 }
 
 Moduli moduli_of(const TextLayout& text) {
-  const bool has_clock =
-      std::any_of(text.line.begin(), text.line.end(), [](const TextField& field) { return field.role == Role::clock; });
-  return {0, has_clock ? kNanosOfDay : 0};
+  return {0, has_role(text.lines, Role::clock) ? kNanosOfDay : 0};
 }
 
-bool begins_with(std::span<const std::uint8_t> line, const std::string& text) noexcept {
+bool begins_with(std::span<const std::uint8_t> line, std::string_view text) noexcept {
   return line.size() >= text.size() && std::equal(text.begin(), text.end(), line.begin(), [](char a, std::uint8_t b) {
            return static_cast<std::uint8_t>(a) == b;
          });
@@ -35,40 +33,54 @@ bool begins_with(std::span<const std::uint8_t> line, const std::string& text) no
 
 }  // namespace
 
-TextDecoder::TextDecoder(std::shared_ptr<const Layout> layout, std::size_t array)
+TextDecoder::TextDecoder(std::shared_ptr<const Layout> layout, std::size_t array, bool ends_last_line)
     : layout_(std::move(layout)),
       text_(std::get<TextLayout>(layout_->form)),
       array_(array),
       end_byte_(text_.line_end.empty() ? '\n' : static_cast<std::uint8_t>(text_.line_end.back())),
+      ends_last_line_(ends_last_line),
       lines_(longest_line(*layout_), end_byte_),
       match_(*layout_, array),
       assembly_(*layout_, array, moduli_of(text_)) {}
 
 bool TextDecoder::next(RawFrame& frame) {
+  if (read_lines(frame)) return true;
+  if (!has_ended_) return false;
+  if (ends_last_line_ && lines_.has_open_line()) {
+    const std::uint64_t end = lines_.end();
+    lines_.push({&end_byte_, 1});
+    const bool is_frame = read_lines(frame);
+    frame_end_ = std::min(frame_end_, end);
+    if (is_frame) return true;
+  }
+  has_ended_ = is_sending_ = false;
+  assembly_.skip(lines_.forget_all());
+  assembly_.end_frame();
+  return false;
+}
+
+bool TextDecoder::read_lines(RawFrame& frame) {
   for (;;) {
     const std::span<const std::uint8_t> line = lines_.next();
-    if (line.empty()) break;
+    if (line.empty()) return false;
     ++line_number_;
     const bool is_frame = read(line, frame);
     frame_end_ = is_frame ? lines_.position() : frame_end_;
     lines_.forget();
+    is_sending_ = is_sending_ || is_frame;
     if (is_frame) return true;
   }
-  if (std::exchange(has_ended_, false)) {
-    assembly_.skip(lines_.forget_all());
-    assembly_.end_frame();
-  }
-  return false;
 }
 
 bool TextDecoder::read(std::span<const std::uint8_t> line, RawFrame& frame) {
   const std::span<const std::uint8_t> text = without_end(line);
   const bool has_end = line.back() == end_byte_;
-  if (has_end && !is_comment(text)) {
-    if (match_.read(text, piece_)) return assembly_.add(piece_, match_.numbers(), line.size(), frame);
-    if (ends_frame(text)) {
-      assembly_.end_frame();
-    } else if (counts().frames == 0) {
+  if (has_end && ends_frame(text)) {
+    assembly_.end_frame();
+  } else if (has_end && !is_comment(text)) {
+    if (!text_.frame_begin.empty() && begins_with(text, text_.frame_begin)) assembly_.end_frame();
+    if (match_.read(text, piece_)) return add(line.size(), frame);
+    if (counts().frames == 0) {
       misfit_ = "line " + std::to_string(line_number_) + " does not fit layout.line " + match_.misfit();
     }
   }
@@ -76,9 +88,20 @@ bool TextDecoder::read(std::span<const std::uint8_t> line, RawFrame& frame) {
   return false;
 }
 
+/// The line fits. A head of a frame ends the frame before it.
+bool TextDecoder::add(std::size_t bytes, RawFrame& frame) {
+  if (!match_.is_head()) return assembly_.add(piece_, match_.numbers(), bytes, frame);
+  if (match_.begins_frame() && piece_.array == array_) assembly_.end_frame();
+  assembly_.skip(bytes);
+  return false;
+}
+
+/// Without a byte order mark, too.
 std::span<const std::uint8_t> TextDecoder::without_end(std::span<const std::uint8_t> line) const noexcept {
+  const bool is_first = line_number_ == 1;
+  if (is_first && begins_with(line, "\xEF\xBB\xBF")) line = line.subspan(3);
   std::size_t size = line.size();
-  if (line.back() == end_byte_) --size;
+  if (!line.empty() && line.back() == end_byte_) --size;
   if (text_.line_end.empty()) {
     if (size > 0 && line[size - 1] == '\r') --size;
     return line.first(size);
@@ -99,7 +122,9 @@ bool TextDecoder::ends_frame(std::span<const std::uint8_t> line) const noexcept 
 }
 
 std::string TextDecoder::advice() const {
-  return counts().frames == 0 ? misfit_ : std::string();
+  if (counts().frames > 0) return {};
+  const std::string incomplete = assembly_.advice();
+  return misfit_ + (misfit_.empty() || incomplete.empty() ? "" : "; ") + incomplete;
 }
 
 }  // namespace dermis::layouts

@@ -51,6 +51,22 @@ void add(const RawFrame& frame, FrameFileInfo& info) {
   range = {std::min(range->first, celsius), std::max(range->second, celsius)};
 }
 
+/// Returns the time of the first frame.
+Result<Nanos> add_all(FrameSource& source, bool is_timed, FrameFileInfo& info) {
+  RawFrame frame;
+  Nanos first{};
+  while (true) {
+    const Result<bool> more = source.next(frame);
+    if (!more) return more.error();
+    if (!*more) break;
+    if (info.frames == 0) first = frame.time;
+    add(frame, info);
+  }
+  info.shape = source.shape();
+  if (is_timed) info.duration_s = std::chrono::duration<double>(info.frames > 0 ? frame.time - first : Nanos{}).count();
+  return first;
+}
+
 Result<FrameFileInfo> info_of_frames(const std::string& path, FrameFormat format,
                                      const std::optional<FrameShape>& shape) {
   const bool is_timed = has_times(format) || (may_have_times(format) && open_frames(path, {.shape = shape}));
@@ -63,17 +79,7 @@ Result<FrameFileInfo> info_of_frames(const std::string& path, FrameFormat format
   Result<FrameNotes> notes = read_frame_notes(path);
   if (!notes) return notes.error();
   info.notes = std::move(*notes);
-  info.shape = (*source)->shape();
-  RawFrame frame;
-  Nanos first{};
-  while (true) {
-    const Result<bool> more = (*source)->next(frame);
-    if (!more) return more.error();
-    if (!*more) break;
-    if (info.frames == 0) first = frame.time;
-    add(frame, info);
-  }
-  if (is_timed) info.duration_s = std::chrono::duration<double>(info.frames > 0 ? frame.time - first : Nanos{}).count();
+  if (const Result<Nanos> first = add_all(**source, is_timed, info); !first) return first.error();
   if (format == FrameFormat::hdf5 || format == FrameFormat::mcap) info.lost = (*source)->statistics().lost_frames;
   return info;
 }
@@ -113,6 +119,16 @@ Result<FrameFileInfo> frame_file_info(const std::string& path, const std::option
   std::error_code is_no_file;
   const std::uintmax_t bytes = std::filesystem::file_size(recording_place(path).path, is_no_file);
   if (!is_no_file) info->bytes = bytes;
+  return info;
+}
+
+Result<FrameFileInfo> frame_source_info(FrameSource& source) {
+  FrameFileInfo info;
+  const bool is_timed = !source.is_live();
+  const Result<Nanos> first = add_all(source, is_timed, info);
+  if (!first) return first.error();
+  info.start_utc = is_timed && *first >= kEarliestClock ? std::optional(*first) : std::nullopt;
+  info.lost = source.statistics().lost_frames;
   return info;
 }
 

@@ -16,7 +16,7 @@ using acquisition::Transport;
 /// Without a protocol, a file may be more than the bytes of a device: with a rate or an order of lines, or with a shape
 /// where its system does not tell one.
 bool is_file_of_frames(const acquisition::SourceUri& uri) {
-  if (uri.transport != Transport::file || uri.protocol.name != "auto" || !uri.protocol.layout.empty()) return false;
+  if (uri.transport != Transport::file || uri.protocol.name != "auto" || uri.protocol.has_layout()) return false;
   const Result<recordings::FrameFormat> format = recordings::frame_format(recordings::recording_place(uri.path).path);
   if (!format) return false;
   const bool needs_shape = recordings::may_have_times(*format) || *format == recordings::FrameFormat::novel_asc;
@@ -61,7 +61,7 @@ bool SourceName::needs_rate() const noexcept {
 }
 
 bool SourceName::has_times_of_its_own() const noexcept {
-  return uri && uri->transport == Transport::file && (uri->rate_hz || !uri->protocol.layout.empty());
+  return uri && uri->transport == Transport::file && (uri->rate_hz || uri->protocol.has_layout());
 }
 
 }  // namespace dermis::sources

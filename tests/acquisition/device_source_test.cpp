@@ -357,6 +357,47 @@ TEST(DeviceSource, refuses_shapes_that_disagree) {
   expect_words(refusal("serial:///dev/null?protocol=morse"), {"morse"});
 }
 
+/// A layout in a file: two arrays in turn, each of two readings behind its letter.
+class LayoutFile {
+ public:
+  LayoutFile() : path_(testing::TempDir() + "dermis_layout_" + std::to_string(::getpid()) + ".toml") {
+    std::ofstream(path_) << "[layout]\nline = [\"L {left}\", \"R {right}\"]\n"
+                            "[[layout.array]]\nname = \"left\"\nrows = 1\ncols = 2\n"
+                            "[[layout.array]]\nname = \"right\"\nrows = 1\ncols = 2\n";
+  }
+  LayoutFile(const LayoutFile&) = delete;
+  LayoutFile& operator=(const LayoutFile&) = delete;
+  ~LayoutFile() { ::unlink(path_.c_str()); }
+  [[nodiscard]] std::string array(const std::string& name) const { return "layout=" + path_ + "&array=" + name; }
+
+ private:
+  std::string path_;
+};
+
+TEST(DeviceSource, several_arrays_of_one_device_share_its_connection) {
+  const LayoutFile layout;
+  const auto device = target("pty:");
+  const auto left = open("serial://" + device->name() + "?" + layout.array("left"));
+  const auto right = open("serial://" + device->name() + "?" + layout.array("right"));
+  std::string text;
+  for (int k = 0; k < 200; ++k) {
+    text += "L " + std::to_string(k) + " 1\nR " + std::to_string(k) + " 2\n";
+  }
+  std::thread sender([&] { send(*device, {text.begin(), text.end()}); });
+  const auto expect_all = [](FrameSource& source, float last) {
+    for (int k = 0; k < 200; ++k) {
+      RawFrame frame;
+      const Result<bool> more = source.next(frame);
+      ASSERT_TRUE(more) << more.error().message;
+      ASSERT_EQ(frame.counts, (std::vector<float>{static_cast<float>(k), last}));
+    }
+  };
+  std::thread reader([&] { expect_all(*left, 1); });
+  expect_all(*right, 2);
+  reader.join();
+  sender.join();
+}
+
 TEST(DeviceSource, allocates_nothing_once_it_runs) {
   if (!support::kAllocationsAreCounted) GTEST_SKIP() << "the sanitizer owns malloc";
   const std::vector<RawFrame> frames = random_frames(600, 9);

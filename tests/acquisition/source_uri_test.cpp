@@ -113,6 +113,21 @@ TEST(SourceUri, names_what_is_wrong_and_the_mend) {
   expect_words(message(std::string(5000, 'a')), {"4096"});
 }
 
+TEST(SourceUri, takes_the_keys_of_a_layout) {
+  const SourceUri uri =
+      parsed("serial:///dev/ttyUSB0?rows=2&cols=3&line=%7Bframe%7D%22 {values}&line_end=%0D&scale=0.5");
+  EXPECT_EQ(uri.protocol.layout_keys,
+            "[layout]\nrows = 2\ncols = 3\nline = \"{frame}\\u0022 {values}\"\nline_end = \"\\u000D\"\nscale = 0.5\n");
+  EXPECT_TRUE(make_decoder(uri.protocol));
+  const SourceUri packet = parsed("udp://0.0.0.0:9000?rows=2&cols=3&packet=AA 55,frame u8,values u16le");
+  EXPECT_TRUE(make_decoder(packet.protocol));
+  EXPECT_EQ(message("file:x?scale=2&rows=1&cols=1"),
+            "'file:x?scale=2&rows=1&cols=1': scale: is of a layout; give line or packet, too");
+  EXPECT_EQ(message("file:x?line={values}"), "'file:x?line={values}': line, packet: give rows and cols, too");
+  EXPECT_EQ(message("file:x?line={values}&rows=1&cols=1&layout=x.toml"),
+            "'file:x?line={values}&rows=1&cols=1&layout=x.toml': layout: give it or its keys, not both");
+}
+
 TEST(SourceUri, takes_which_way_round_the_lines_are_sent) {
   const SourceUri uri = parsed("serial:///dev/x?transpose=1&flip_rows=1&flip_cols=0&skip_columns=2&row_order=0,2,1");
   EXPECT_TRUE(uri.order.transpose);

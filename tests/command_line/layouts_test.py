@@ -74,6 +74,31 @@ class Layouts(support.SmallArray):
             rows = [line.split(",")[0] for line in (self.work / name).read_text().splitlines()[1:]]
             self.assertEqual([round(float(row) - float(rows[0]), 6) for row in rows], [0.0, 0.01, 0.03], name)
 
+    def test_every_command_reads_a_file_with_its_layout(self):
+        layout = self.written("log.toml", '[layout]\nrows = 1\ncols = 2\nline = "{time_ms},{values}"\n')
+        log = self.written("LOG.TXT", "".join(f"{10 * k},{k},7\n" for k in range(30)))
+        by_name, by_keys = f"file:{log}?layout={layout}", f"file:{log}?rows=1&cols=2&line={{time_ms}},{{values}}"
+        for source in (by_name, by_keys):
+            said = support.dermis("info", source)
+            self.assertIn("frames        30", said.stdout)
+            self.assertIn("100.000 Hz", said.stdout)
+            self.completed("convert", source, self.work / "out.npy", "--force")
+            self.assertEqual(numpy.load(self.work / "out.npy").shape, (30, 1, 2))
+            self.completed("image", "--in", source, "--out", self.work / "out.png", "--force")
+        said = support.dermis("info", "--layout", layout, log)
+        self.assertIn("frames        30", said.stdout)
+
+    def test_rates_that_are_not_as_described_and_late_frames_are_told(self):
+        layout = self.written(
+            "log.toml", '[layout]\nrows = 1\ncols = 2\nline = "{time_ms},{frame},{values}"\nrate = 100\n'
+        )
+        times = [9 * k for k in range(40)]
+        times[20], times[21] = times[21], times[20]
+        log = self.written("log.txt", "".join(f"{time},{time // 9},{time},7\n" for time in times))
+        said = support.dermis("record", "--from", f"file:{log}?layout={layout}", "--out", self.work / "log.mcap")
+        self.assertIn("111 frames a second where 100 are described", said.stderr)
+        self.assertIn("0 lost, 0 damaged, 1 late", said.stderr)
+
     def test_what_does_not_fit_is_one_line(self):
         layout = self.written("mat.toml", '[layout]\nrows = 2\ncols = 2\nline = "{row}: {values}"\n')
         wrong = self.written("wrong.toml", '[layout]\nrows = 2\ncols = 2\nline = "{row}: {vales}"\n')

@@ -80,6 +80,17 @@ TEST(TextLayout, rows_come_in_any_order_by_their_numbers) {
   EXPECT_EQ(readings_of("line = \"{row},{values}\"\n", "1,3,4\n0,1,2\n1,7,8\n0,5,6\n"), kOneToEight);
 }
 
+TEST(TextLayout, lines_may_count_from_one_and_others_are_told) {
+  EXPECT_EQ(readings_of("line = \"{row},{values}\"\nlines_from = 1\n", "2,3,4\n1,1,2\n1,5,6\n2,7,8\n"), kOneToEight);
+  const auto decoder = make_decoder(layout_of(std::string(kTwoByTwo) + "line = \"{row},{values}\"\n"), 0, false);
+  EXPECT_TRUE(frames_of(*decoder, bytes_of("1,1,2\n2,3,4\n1,1,2\n2,3,4\n")).empty());
+  EXPECT_EQ(decoder->advice(), "row 2 is outside of 2x2, whose lines count from 0");
+  const auto larger =
+      make_decoder(layout_of(std::string("[layout]\nrows = 3\ncols = 2\nline = \"{row},{values}\"\n")), 0, false);
+  EXPECT_TRUE(frames_of(*larger, bytes_of("0,1,2\n1,3,4\n0,1,2\n1,3,4\n")).empty());
+  EXPECT_EQ(larger->advice(), "no frame is complete: at most 4 of 6 readings came");
+}
+
 TEST(TextLayout, rows_without_a_number_end_with_a_line_of_their_own) {
   const std::string keys = "line = \"{values}\"\nframe_end = ";
   EXPECT_EQ(readings_of(keys + "\"\"\n", "1 2\n3 4\n\n5 6\n7 8\n\n"), kOneToEight);
@@ -88,6 +99,20 @@ TEST(TextLayout, rows_without_a_number_end_with_a_line_of_their_own) {
 
 TEST(TextLayout, taxels_make_a_frame_when_all_have_come) {
   EXPECT_EQ(readings_of("line = \"{row};{col};{value}\"\n", "0;0;1\n0;1;2\n1;1;4\n1;0;3\n0;0;5\n0;1;6\n1;0;7\n1;1;8\n"),
+            kOneToEight);
+}
+
+TEST(TextLayout, the_last_line_of_a_file_needs_no_end_and_that_of_a_device_does) {
+  const auto layout = layout_of(std::string(kTwoByTwo) + "line = \"{values}\"\n");
+  const Bytes bytes = bytes_of("1 2 3 4\n5 6 7 8");
+  const auto file = make_decoder(layout, 0, true);
+  EXPECT_EQ(readings_of(frames_of(*file, bytes)), kOneToEight);
+  EXPECT_EQ(file->frame_end(), bytes.size());
+  EXPECT_EQ(frames_of(*make_decoder(layout, 0, false), bytes).size(), 1U);
+}
+
+TEST(TextLayout, hexadecimal_numbers_may_have_their_prefix) {
+  EXPECT_EQ(readings_of("line = \"{values}\"\ndigits = \"hexadecimal\"\n", "0x1,0x2,0x3,0x4\n05 06 7 8\n"),
             kOneToEight);
 }
 
@@ -100,11 +125,21 @@ TEST(TextLayout, numbers_may_be_signed_broken_hexadecimal_or_of_one_width) {
             (Readings{{10, 4095, 16, 3}}));
 }
 
+TEST(TextLayout, a_byte_order_mark_is_no_part_of_the_first_line) {
+  EXPECT_EQ(readings_of("line = \"{values}\"\n",
+                        "\xEF\xBB\xBF"
+                        "1 2 3 4\n5 6 7 8\n"),
+            kOneToEight);
+}
+
 TEST(TextLayout, missing_readings_are_not_numbers) {
-  const Readings readings = readings_of("line = \"{values}\"\nabsent = 0\nscale = -1.0\noffset = 10.0\n", "1,,nan,0\n");
-  ASSERT_EQ(readings.size(), 1U);
+  const Readings readings =
+      readings_of("line = \"{values}\"\nabsent = 0\nscale = -1.0\noffset = 10.0\n", "1,,nan,0\n1,null,None,--\n");
+  ASSERT_EQ(readings.size(), 2U);
   EXPECT_EQ(readings[0][0], 9.0F);
-  EXPECT_TRUE(std::all_of(readings[0].begin() + 1, readings[0].end(), [](float x) { return std::isnan(x); }));
+  for (const std::vector<float>& frame : readings) {
+    EXPECT_TRUE(std::all_of(frame.begin() + 1, frame.end(), [](float x) { return std::isnan(x); }));
+  }
 }
 
 TEST(TextLayout, what_surrounds_the_readings_goes_into_the_frame) {
@@ -139,6 +174,27 @@ TEST(TextLayout, late_frames_are_put_in_order) {
   for (const RawFrame& frame : frames) EXPECT_EQ(frame.acquisition.lost_before, 0U);
 }
 
+TEST(TextLayout, late_frames_are_counted_and_a_live_reader_drops_them) {
+  const auto layout = layout_of(std::string(kTwoByTwo) + "line = \"{time_ms} {frame} {values}\"\n");
+  const Bytes bytes = bytes_of("0 0 0 0 0 0\n40 2 5 6 7 8\n20 1 1 2 3 4\n60 3 1 1 1 1\n5000 4 2 2 2 2\n10 5 3 3 3 3\n");
+  const auto live = make_decoder(layout, 0, false);
+  EXPECT_EQ(readings_of(frames_of(*live, bytes)),
+            (Readings{{0, 0, 0, 0}, {5, 6, 7, 8}, {1, 1, 1, 1}, {2, 2, 2, 2}, {3, 3, 3, 3}}))
+      << "more than a second back is a restart";
+  EXPECT_EQ(live->counts(), (DecoderCounts{.frames = 5, .lost_frames = 1, .late_frames = 1}));
+  const auto waiting = make_decoder(layout, 0, true);
+  EXPECT_EQ(frames_of(*waiting, bytes).size(), 6U);
+  EXPECT_EQ(waiting->counts(), (DecoderCounts{.frames = 6, .late_frames = 1}));
+}
+
+TEST(TextLayout, a_frame_that_is_sent_again_is_dropped_and_one_that_only_looks_so_is_not) {
+  const auto layout = layout_of(std::string(kTwoByTwo) + "line = \"{frame}: {values}\"\n");
+  const auto decoder = make_decoder(layout, 0, false);
+  EXPECT_EQ(readings_of(frames_of(*decoder, bytes_of("1: 1 2 3 4\n1: 1 2 3 4\n2: 1 2 3 4\n2: 5 6 7 8\n"))),
+            (Readings{{1, 2, 3, 4}, {1, 2, 3, 4}, {5, 6, 7, 8}}));
+  EXPECT_EQ(decoder->counts().repeated_frames, 1U);
+}
+
 TEST(TextLayout, frames_that_the_device_calls_corrupt_are_dropped_and_absent_ones_have_no_readings) {
   const std::string toml =
       std::string(kTwoByTwo) + "line = \"{values} {flags}\"\nflags.corrupt = [4, 6]\nflags.absent = [2]\n";
@@ -147,6 +203,80 @@ TEST(TextLayout, frames_that_the_device_calls_corrupt_are_dropped_and_absent_one
   ASSERT_EQ(frames.size(), 3U);
   EXPECT_TRUE(std::isnan(frames[1].counts[0]));
   EXPECT_EQ(decoder->counts().damaged_frames, 1U);
+}
+
+TEST(TextLayout, a_head_says_whose_and_when_the_lines_behind_it_are) {
+  const std::string keys = "line = [\"Frame {frame} at {time_ms} ms\", \"T={temperature}\", \"{values}\"]\n";
+  const std::vector<RawFrame> frames =
+      frames_of(kTwoByTwo + keys,
+                bytes_of("Frame 7 at 20 ms\n1 2\nT=21.5\n3 4\nFrame 9 at 40 ms\n5 6 7 8\nFrame 10 at 60 ms\n9 9\n"));
+  EXPECT_EQ(readings_of(frames), kOneToEight);
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_EQ(frames[1].acquisition.sequence, 9U);
+  EXPECT_EQ(frames[1].acquisition.lost_before, 1U);
+  EXPECT_EQ(frames[1].acquisition.device_time, std::chrono::milliseconds(40));
+  EXPECT_EQ(frames[0].temperature_celsius, std::nullopt);
+  EXPECT_EQ(frames[1].temperature_celsius, 21.5);
+}
+
+TEST(TextLayout, a_head_cuts_the_frame_that_lacks_rows) {
+  EXPECT_EQ(readings_of("line = [\"FRAME\", \"{values}\"]\n", "FRAME\n1 2\n3 4\nFRAME\n9 9\nFRAME\n5 6\n7 8\n"),
+            kOneToEight);
+}
+
+TEST(TextLayout, arrays_have_lines_or_heads_of_their_own) {
+  const std::string arrays =
+      "[[layout.array]]\nname = \"left\"\nrows = 2\ncols = 2\n[[layout.array]]\nname = \"right\"\nrows = 1\ncols = 2\n";
+  const std::string own = "[layout]\nline = [\"L {left}\", \"R {right}\"]\n" + arrays;
+  const Bytes lines = bytes_of("L 1 2 3 4\nR 7 7\nL 5 6 7 8\nR 8 8\n");
+  EXPECT_EQ(readings_of(frames_of(own, lines, 0)), kOneToEight);
+  EXPECT_EQ(readings_of(frames_of(own, lines, 1)), (Readings{{7, 7}, {8, 8}}));
+  const std::string heads = "[layout]\nline = [\"sensor {array}\", \"{values}\"]\n" + arrays;
+  const Bytes rows = bytes_of("sensor left\n1 2\n3 4\nsensor right\n7 7\nsensor left\n5 6\n7 8\n");
+  EXPECT_EQ(readings_of(frames_of(heads, rows, 0)), kOneToEight);
+  EXPECT_EQ(readings_of(frames_of(heads, rows, 1)), (Readings{{7, 7}}));
+}
+
+TEST(TextLayout, fields_of_readings_share_those_of_a_line) {
+  EXPECT_EQ(readings_of("line = \"R0: {values} | R1: {values}\"\n", "R0: 1 2 | R1: 3 4\nR0: 5 6 | R1: 7 8\n"),
+            kOneToEight);
+  EXPECT_EQ(readings_of("line = \"{row},{value},{skip},{value}\"\n", "0,1,x,2\n1,3,x,4\n0,5,x,6\n1,7,x,8\n"),
+            kOneToEight);
+  EXPECT_EQ(error_of(std::string(kTwoByTwo) + "line = \"{value} a {value} b {value}\"\n"),
+            "it.toml:4: layout.line: 3 fields of readings cannot share those of a frame");
+}
+
+TEST(TextLayout, a_line_may_show_that_a_frame_begins) {
+  EXPECT_EQ(
+      readings_of("line = \"{values}\"\nframe_begin = \"[[\"\n", " [9 9]]\n[[1 2]\n [3 4]]\n[[9 9]\n[[5 6]\n [7 8]]\n"),
+      kOneToEight);
+}
+
+TEST(TextLayout, seconds_and_smaller_units_add_up) {
+  const std::string heads = "line = [\"sec: {time_s}\", \"nsec: {time_ns}\", \"{values}\"]\n";
+  const auto frames = frames_of(kTwoByTwo + heads, bytes_of("sec: 2\nnsec: 7\n1 2 3 4\nsec: 3\nnsec: 8\n5 6 7 8\n"));
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_EQ(frames[0].acquisition.device_time, std::chrono::nanoseconds(2'000'000'007));
+  EXPECT_EQ(frames[1].acquisition.device_time, std::chrono::nanoseconds(3'000'000'008));
+  const auto zoned = frames_of(std::string(kTwoByTwo) + "line = \"{datetime},{values}\"\n",
+                               bytes_of("1970-01-01T02:30:05+02:30,1,2,3,4\n"));
+  ASSERT_EQ(zoned.size(), 1U);
+  EXPECT_EQ(zoned[0].acquisition.device_time, std::chrono::seconds(5));
+}
+
+TEST(TextLayout, a_device_is_asked_before_each_frame_or_until_it_sends) {
+  const auto layout = [](const char* key) { return layout_of(kTwoByTwo + std::string("line = \"{values}\"\n") + key); };
+  const auto started = make_decoder(layout("start = \"go\""), 0, false);
+  const auto asked = make_decoder(layout("request = \"a\""), 0, false);
+  EXPECT_EQ(started->request(), "go");
+  EXPECT_EQ(asked->request(), "a");
+  for (Decoder* const decoder : {started.get(), asked.get()}) {
+    RawFrame frame;
+    decoder->push(bytes_of("1 2 3 4\n"));
+    ASSERT_TRUE(decoder->next(frame));
+  }
+  EXPECT_EQ(started->request(), "");
+  EXPECT_EQ(asked->request(), "a");
 }
 
 TEST(TextLayout, what_does_not_fit_is_no_reading) {
@@ -191,6 +321,39 @@ TEST(PacketLayout, numbers_stand_in_either_order_and_any_width) {
 }
 
 /// Published check values over "123456789".
+TEST(PacketLayout, packets_of_one_size_may_end_with_their_mark_and_hold_it) {
+  const Bytes at_end = {1, 2, 3, 4, 0xFF, 0xFE, 5, 6, 0xFF, 0xFE, 0xFF, 0xFE, 1, 2, 3, 4, 0xFF, 0xFE};
+  EXPECT_EQ(readings_of("packet = [\"values u8\", \"FF FE\"]\n", at_end),
+            (Readings{{1, 2, 3, 4}, {5, 6, 255, 254}, {1, 2, 3, 4}}));
+  Bytes at_begin;
+  Readings expected;
+  for (int k = 0; k < 20; ++k) {
+    const Bytes readings = {static_cast<std::uint8_t>(k), 255, 255, 255};
+    at_begin.insert(at_begin.end(), {0xFF, 0xFF});
+    at_begin.insert(at_begin.end(), readings.begin(), readings.end());
+    expected.emplace_back(readings.begin(), readings.end());
+  }
+  EXPECT_EQ(readings_of("packet = [\"FF FF\", \"values u8\"]\n", at_begin), expected);
+}
+
+TEST(PacketLayout, bytes_that_never_change_show_where_a_packet_begins) {
+  Bytes bytes;
+  for (int k = 0; k < 8; ++k) bytes.insert(bytes.end(), {0x40, 0x40, 0x40, 0x40, 0x40, 0x0D});
+  EXPECT_EQ(readings_of("packet = [\"40\", \"values u8\", \"0D\"]\n", bytes), Readings(8, {64, 64, 64, 64}));
+}
+
+TEST(PacketLayout, readings_may_stand_apart_and_beside_other_bits) {
+  const Bytes apart = {0xA5, 1, 2, 0, 3, 4, 0xA5, 5, 6, 0, 7, 8};
+  EXPECT_EQ(readings_of("packet = [\"A5\", \"values u8\", \"00\", \"values u8\"]\n", apart), kOneToEight);
+  EXPECT_EQ(readings_of("packet = [\"A5\", \"values u8 x2\", \"skip 1\", \"values u8 x2\"]\n", apart), kOneToEight);
+  const Bytes channels = {0xA5, 0x00, 1, 0x11, 2, 0x20, 3, 0x3F, 0xFF};
+  EXPECT_EQ(readings_of("packet = [\"A5\", \"values u16be mask=0FFF\"]\n", channels), (Readings{{1, 258, 3, 4095}}));
+  EXPECT_EQ(readings_of("packet = [\"A5\", \"values u16be mask=F000\"]\n", channels), (Readings{{0, 1, 2, 3}}));
+  EXPECT_EQ(
+      error_of(std::string(kTwoByTwo) + "packet = [\"A5\", \"values u8 mask=100\"]\n"),
+      "it.toml:4: layout.packet: field 2: mask= must be hexadecimal digits of bits that a number without a sign has");
+}
+
 TEST(PacketLayout, checksums_have_the_check_values_of_their_catalogue) {
   const struct {
     const char* checksum;
@@ -268,6 +431,14 @@ TEST(PacketLayout, damaged_bytes_cost_no_more_than_their_frames) {
   }
 }
 
+TEST(LayoutToml, stands_beside_the_array_that_it_is_of) {
+  const Result<Layout> layout = layout_from_toml(
+      "[array]\nname = \"mat\"\nrows = 2\ncols = 3\n[readout]\nadc_bits = 12\n[layout]\nline = \"{values}\"\n",
+      "it.toml");
+  ASSERT_TRUE(layout) << layout.error().message;
+  EXPECT_EQ(layout->arrays.front().shape, (FrameShape{2, 3}));
+}
+
 TEST(LayoutToml, errors_name_the_line_the_key_and_the_mend) {
   const std::string two = kTwoByTwo;
   EXPECT_EQ(error_of(two), "it.toml: layout.line: give either line, for text, or packet, for bytes");
@@ -277,10 +448,10 @@ TEST(LayoutToml, errors_name_the_line_the_key_and_the_mend) {
             "it.toml:4: layout.line: two fields need something between them, such as a comma");
   EXPECT_EQ(
       error_of(two + "packet = [\"FF\", \"values u16\"]\n"),
-      "it.toml:4: layout.packet: field 2: 'u16' is no type: it is u8, i8, u10, u12, u16, i16, u24, u32, i32, f32 or "
-      "f64, then le where the low byte comes first or be where the high byte does");
+      "it.toml:4: layout.packet: field 2: 'u16' is no type: it is u8, i8, u10, u12, u16, i16, u24, u32, i32, u64, "
+      "f32 or f64, then le where the low byte comes first or be where the high byte does");
   EXPECT_EQ(error_of(two + "packet = [\"values u8\"]\n"),
-            "it.toml:4: layout.packet: must begin with bytes that mark it, as \"FF FF\", or have an escape");
+            "it.toml:4: layout.packet: must begin or end with bytes that mark it, as \"FF FF\", or have an escape");
   EXPECT_EQ(error_of("[layout]\nrows = 2\nline = \"{values}\"\n"),
             "it.toml: layout.cols: is missing; it has no default");
   EXPECT_NE(error_of(two + "line = \"{values}\"\nseperator = \";\"\n").find("did you mean 'layout.separator'?"),

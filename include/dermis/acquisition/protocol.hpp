@@ -16,6 +16,10 @@
 #include "dermis/core/result.hpp"
 #include "dermis/layouts/decoder.hpp"
 
+namespace dermis::layouts {
+struct Layout;
+}  // namespace dermis::layouts
+
 namespace dermis::acquisition {
 
 using layouts::Decoder;
@@ -28,10 +32,13 @@ struct ProtocolOptions {
   std::size_t nodes_per_packet = 120;  ///< wiresens: readings in a packet, 1 ... 32767.
   bool delimited = true;               ///< wiresens: "wr" ends a packet (serial); false: bare packets (TCP, UDP).
   int bit_shift = 5;                   ///< stag: bits of the low byte of a reading, 5 or 6.
-  std::string layout{};  ///< Path of a description of the bytes (layouts/layout.hpp), which replaces `name`.
-  std::string array{};   ///< layout: the array whose frames are wanted; empty: the only one.
-  bool waits_for_late_frames = false;  ///< layout: frames with times are put in order.
-  bool datagrams = false;              ///< Frames may come late or twice (UDP); those with a number are then dropped.
+  std::string layout{};        ///< Path of a description of the bytes (layouts/layout.hpp), which replaces `name`.
+  std::string layout_keys{};   ///< Text of such a description, in place of its path.
+  std::string array{};         ///< layout: the array whose frames are wanted; empty: the only one.
+  bool is_whole_file = false;  ///< layout: the bytes are a file (layouts/layout.hpp).
+  bool datagrams = false;      ///< Frames may come late or twice (UDP); those with a number are then dropped.
+
+  [[nodiscard]] bool has_layout() const noexcept { return !layout.empty() || !layout_keys.empty(); }
 };
 
 /// "flexitac", "3dvitac", ..., and "auto" at the end.
@@ -43,6 +50,9 @@ struct ProtocolOptions {
 
 /// The same; `shape` is required, and "auto" cannot be encoded.
 [[nodiscard]] Result<std::unique_ptr<Encoder>> make_encoder(const ProtocolOptions& options);
+
+/// The layout of options that have one.
+[[nodiscard]] Result<layouts::Layout> read_layout(const ProtocolOptions& options);
 
 /// Name of the protocol whose decoder finds the most frames in the bytes; empty if none finds any.
 [[nodiscard]] std::string detect_protocol(std::span<const std::uint8_t> bytes);

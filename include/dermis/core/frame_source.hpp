@@ -26,6 +26,8 @@ struct SourceStatistics {
   std::uint64_t frames = 0;               ///< Delivered.
   std::uint64_t lost_frames = 0;          ///< Never seen: gaps in the numbers of the device.
   std::uint64_t damaged_frames = 0;       ///< Seen and dropped: checksum, length or content cannot be right.
+  std::uint64_t late_frames = 0;          ///< Came after later ones, by the device's clock: put in order or dropped.
+  std::uint64_t repeated_frames = 0;      ///< With the number, time and readings of the one before: dropped.
   std::uint64_t skipped_bytes = 0;        ///< Bytes that belong to no delivered frame.
   std::uint64_t reconnections = 0;        ///< Times the device came back after it was unplugged or closed.
   double rate_hz = 0.0;                   ///< Delivered frames per second of arrival, over the last seconds.

@@ -60,6 +60,8 @@ class ConfigFile {
   void texts(std::string_view key, std::vector<std::string>& values);
   /// One of `names`; `index` is set to its place.
   void choice(std::string_view key, const std::vector<std::string>& names, std::size_t& index);
+  /// What the key holds is read by others.
+  void ignore(std::string_view key);
   /// The key must be present.
   void require(std::string_view key);
   /// Records an error at the line of `key` (or of the file, if it is absent), unless there is one already.

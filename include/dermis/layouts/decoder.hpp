@@ -16,10 +16,12 @@ namespace dermis::layouts {
 
 /// Result of the bytes so far.
 struct DecoderCounts {
-  std::uint64_t frames = 0;          ///< Delivered.
-  std::uint64_t lost_frames = 0;     ///< Gaps in the numbers of the device.
-  std::uint64_t damaged_frames = 0;  ///< Recognised and dropped: checksum, length or content cannot be right.
-  std::uint64_t skipped_bytes = 0;   ///< Bytes that belong to no delivered frame, those of damaged frames included.
+  std::uint64_t frames = 0;           ///< Delivered.
+  std::uint64_t lost_frames = 0;      ///< Gaps in the numbers of the device.
+  std::uint64_t damaged_frames = 0;   ///< Recognised and dropped: checksum, length or content cannot be right.
+  std::uint64_t late_frames = 0;      ///< Came after later ones, by the device's clock: put in order or dropped.
+  std::uint64_t repeated_frames = 0;  ///< With the number, time and readings of the one before: dropped.
+  std::uint64_t skipped_bytes = 0;    ///< Bytes that belong to no delivered frame, those of damaged frames included.
 
   bool operator==(const DecoderCounts&) const = default;
 };

@@ -55,15 +55,19 @@ struct TextField {
   double unit = 1.0;      ///< Factor on its number.
 };
 
-/// Lines of text. A line that does not fit holds no readings.
+/// Lines of text. A line that fits none of the patterns holds no readings.
 struct TextLayout {
-  std::vector<TextField> line;
-  std::string line_end{};   ///< Empty: LF, or CR LF.
-  std::string separator{};  ///< Between readings; empty: blanks, and one comma or semicolon.
-  std::string comment{};    ///< Lines that begin with it are skipped; empty: none are.
+  using Pattern = std::vector<TextField>;
+  /// The first that a line fits holds. One without readings is the head of the frame, or of its part, that follows.
+  std::vector<Pattern> lines;
+  std::string line_end{};     ///< Empty: LF, or CR LF.
+  std::string separator{};    ///< Between readings; empty: blanks, and one comma or semicolon.
+  std::string comment{};      ///< Lines that begin with it are skipped; empty: none are.
+  std::string frame_begin{};  ///< A line that begins with it begins a frame; empty: none does.
   /// Ends a frame where rows carry no number: a line that begins with it, or for "" an empty one.
   std::optional<std::string> frame_end{};
-  std::size_t width = 0;  ///< Characters of a reading, which then need no separator; 0: any.
+  std::size_t lines_from = 0;  ///< Number of the first row, column or taxel.
+  std::size_t width = 0;       ///< Characters of a reading, which then need no separator; 0: any.
   char decimal_point = '.';
   bool is_hexadecimal = false;
 };
@@ -72,8 +76,9 @@ struct TextLayout {
 struct WireType {
   enum class Kind { whole, negative, real };  ///< Without a sign, with one, or IEEE 754.
   Kind kind = Kind::whole;
-  unsigned bits = 8;  ///< 8 ... 32, 64 of a real; 10 and 12 are packed without gaps.
+  unsigned bits = 8;  ///< 8 ... 32, 64; 10 and 12 are packed without gaps.
   bool is_big_endian = false;
+  std::uint64_t mask = 0;  ///< Bits of the number that count, of a number without a sign; 0: all.
 };
 
 /// A checksum over the bytes of a packet from `from` on to where it stands.
@@ -94,9 +99,10 @@ struct PacketField {
   std::vector<std::uint8_t> literal{};  ///< Where it is one.
   WireType type{};
   std::size_t array = 0;  ///< values: place in Layout::arrays.
-  std::size_t count = 0;  ///< values: how many, 0: as many as the array has, or as a field `count` says; skip: bytes.
-  double unit = 1.0;      ///< Factor on its number.
-  double offset = 0.0;    ///< Added then.
+  /// values: how many; 0: its share of what the array has, or as a field `count` says. skip: bytes.
+  std::size_t count = 0;
+  double unit = 1.0;    ///< Factor on its number.
+  double offset = 0.0;  ///< Added then.
   Checksum checksum{};
 };
 
@@ -128,7 +134,13 @@ struct Layout {
   std::string unit = "counts";      ///< Of a reading: counts, volts, ohms, kPa or newtons.
   std::optional<double> rate_hz{};  ///< Frames a second; times of a file without times.
 
+  std::string start{};    ///< Sent to the device until its first frame comes; empty: it starts on its own.
+  std::string request{};  ///< Sent to the device before each frame; empty: frames come on their own.
+
   [[nodiscard]] bool has_times() const;
+  [[nodiscard]] bool has_numbers() const;
+  /// What the device needs next. `is_sending`: a frame has come since it was connected.
+  [[nodiscard]] std::string_view request_after(bool is_sending) const noexcept;
   /// Place of the array of that name; an empty name is that of the only one. Fails with the names.
   [[nodiscard]] Result<std::size_t> find_array(const std::string& name) const;
 };
@@ -138,9 +150,13 @@ struct Layout {
 /// The same from memory; `name` stands for the path in messages.
 [[nodiscard]] Result<Layout> layout_from_toml(std::string_view text, const std::string& name);
 
-/// Decodes the frames of one array of the layout. With `waits_for_late_frames`, frames are put in order where they come
-/// up to a second late, and each waits for it; otherwise they come as they are sent. Thread-compatible.
+/// Decodes the packets of a device that has one of these layouts: packets of a constant size, without a checksum, that
+/// differ in size and have the same mark.
+[[nodiscard]] std::unique_ptr<Decoder> make_decoder(const std::vector<std::shared_ptr<const Layout>>& layouts);
+
+/// Decodes the frames of one array of the layout. Those of a whole file are put in order where they come up to a second
+/// late, for which each waits, and its last line needs no end. Late frames of a device are dropped. Thread-compatible.
 [[nodiscard]] std::unique_ptr<Decoder> make_decoder(std::shared_ptr<const Layout> layout, std::size_t array,
-                                                    bool waits_for_late_frames);
+                                                    bool is_whole_file);
 
 }  // namespace dermis::layouts

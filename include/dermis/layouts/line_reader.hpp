@@ -38,6 +38,9 @@ class LineReader {
   /// Number of bytes that were read and not forgotten.
   [[nodiscard]] std::size_t kept() const noexcept { return read_; }
 
+  /// A line has begun, and its end has not come.
+  [[nodiscard]] bool has_open_line() const noexcept { return window_.bytes().size() > read_; }
+
   /// Forgets what was read.
   void forget() noexcept {
     window_.drop(read_);
@@ -54,6 +57,9 @@ class LineReader {
 
   /// Goes back to the first line that was not forgotten.
   void rewind() noexcept { read_ = searched_ = 0; }
+
+  /// Number of bytes pushed.
+  [[nodiscard]] std::uint64_t end() const noexcept { return window_.position() + window_.bytes().size(); }
 
   /// Number of bytes pushed up to the end of the line that was read last.
   [[nodiscard]] std::uint64_t position() const noexcept { return window_.position() + read_; }

@@ -43,4 +43,7 @@ struct FrameFileInfo {
 [[nodiscard]] Result<FrameFileInfo> frame_file_info(const std::string& path,
                                                     const std::optional<FrameShape>& shape = std::nullopt);
 
+/// The same of bytes that a layout describes; `format`, `bytes` and `notes` stay as they are.
+[[nodiscard]] Result<FrameFileInfo> frame_source_info(FrameSource& source);
+
 }  // namespace dermis::recordings

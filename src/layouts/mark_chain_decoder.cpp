@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "acquisition/mark_chain_decoder.hpp"
+#include "layouts/mark_chain_decoder.hpp"
 
 #include <algorithm>
 #include <utility>
 
-namespace dermis::acquisition {
+namespace dermis::layouts {
 namespace {
 
 // A mark of two bytes is found by chance at one in 65536 positions. The two around a frame: once in 10^7 searches of a
@@ -19,8 +19,11 @@ constexpr std::size_t kSmallStep = 4;  ///< Most bytes that damage adds or drops
 
 }  // namespace
 
-MarkChainDecoder::MarkChainDecoder(Bytes mark, MarkAt place, std::vector<std::size_t> frame_sizes)
-    : mark_(mark), taken_(place == MarkAt::end ? mark.size() : 0), frame_sizes_(std::move(frame_sizes)) {
+MarkChainDecoder::MarkChainDecoder(Bytes mark, MarkAt place, std::vector<std::size_t> frame_sizes, FirstMark first)
+    : mark_(mark),
+      taken_(place == MarkAt::end ? mark.size() : 0),
+      first_mark_(first),
+      frame_sizes_(std::move(frame_sizes)) {
   const std::size_t longest = *std::max_element(frame_sizes_.begin(), frame_sizes_.end());
   last_payload_.reserve(longest);
   marks_in_phase_.reserve(longest);
@@ -36,6 +39,7 @@ void MarkChainDecoder::begin_again() {
   in_step_ = taken_ > 0;
   was_in_step_ = false;
   after_mark_ = false;
+  is_at_begin_ = first_mark_ == FirstMark::begins_frame;
   frames_compared_ = marks_needed();
 }
 
@@ -81,13 +85,14 @@ Verdict MarkChainDecoder::follow(Bytes bytes, bool ended, RawFrame& frame) {
 Verdict MarkChainDecoder::deliver(Bytes bytes, RawFrame& frame) {
   const std::size_t size = frame_sizes_.front();
   const Bytes payload = bytes.subspan(mark_.size() - taken_, size - mark_.size());
-  read(payload, frame);
+  if (!read(bytes.first(size), frame)) return pass(bytes, Verdict::Kind::damaged, size);
   last_payload_.assign(payload.begin(), payload.end());
   return pass(bytes, Verdict::Kind::frame, size);
 }
 
 Verdict MarkChainDecoder::pass(Bytes bytes, Verdict::Kind kind, std::size_t size) {
   after_mark_ = mark_at(bytes, size);
+  is_at_begin_ = is_at_begin_ && size == 0;
   return {kind, size};
 }
 
@@ -141,9 +146,11 @@ void MarkChainDecoder::find_chains(Bytes bytes, std::size_t frame_size) {
   for (std::size_t phase = 0; phase < frame_size && phase + mark_.size() <= end; ++phase) {
     const std::size_t possible = 1 + (end - mark_.size() - phase) / frame_size;
     const std::size_t missing = possible - marks_in_phase_[phase];
-    const bool is_whole = missing == 0 && possible >= fewest && phase + frame_size <= end;
     const bool may_be_whole = missing == 0 || (missing == 1 && possible >= kMarksForKnownSize);
     if (!may_be_whole) continue;
+    const bool has_frame = phase + frame_size <= compared.size();
+    if (has_frame && !fits(compared.subspan(phase, frame_size))) continue;
+    const bool is_whole = missing == 0 && possible >= fewest && phase + frame_size <= end;
     if (chain_count_ < chains_.size()) chains_[chain_count_] = {phase, frame_size, is_whole};
     ++chain_count_;
   }
@@ -154,6 +161,7 @@ std::span<const MarkChainDecoder::Chain> MarkChainDecoder::chains() const noexce
 }
 
 const MarkChainDecoder::Chain* MarkChainDecoder::true_chain() const noexcept {
+  if (is_at_begin_ && chain_count_ > 0 && chains_[0].start == 0 && chains_[0].is_whole) return &chains_[0];
   if (chain_count_ > chains_.size()) return nullptr;
   if (last_payload_.empty()) return chain_count_ == 1 && chains_[0].is_whole ? &chains_[0] : nullptr;
   const Chain* original = nullptr;
@@ -183,4 +191,4 @@ bool MarkChainDecoder::is_imitation(const Chain& chain) const noexcept {
   return false;
 }
 
-}  // namespace dermis::acquisition
+}  // namespace dermis::layouts

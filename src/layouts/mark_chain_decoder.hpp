@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
-#include "acquisition/window_decoder.hpp"
+#include "dermis/layouts/window_decoder.hpp"
 
-namespace dermis::acquisition {
+namespace dermis::layouts {
 
 /// Frames of constant size that begin or end with a constant mark, without length or checksum, and whose readings may
 /// look like the mark. A mark differs from such readings because others stand at multiples of the frame size from it.
@@ -25,15 +25,21 @@ namespace dermis::acquisition {
 class MarkChainDecoder : public WindowDecoder {
  protected:
   enum class MarkAt { begin, end };
+  /// Whether a stream whose first bytes are a mark begins with a frame, or may begin anywhere.
+  enum class FirstMark { begins_frame, may_be_readings };
 
   /// `mark` must outlive the decoder; `frame_sizes` are those that the device may have, mark included; one with `end`.
-  MarkChainDecoder(std::span<const std::uint8_t> mark, MarkAt place, std::vector<std::size_t> frame_sizes);
+  MarkChainDecoder(std::span<const std::uint8_t> mark, MarkAt place, std::vector<std::size_t> frame_sizes,
+                   FirstMark first);
 
   /// Mark included; empty until it is known.
   [[nodiscard]] std::optional<std::size_t> frame_size() const noexcept;
 
-  /// Reads a frame without its mark.
-  virtual void read(std::span<const std::uint8_t> payload, RawFrame& frame) = 0;
+  /// Whether bytes of the size of a packet may be one, but for the mark.
+  [[nodiscard]] virtual bool fits(std::span<const std::uint8_t> packet) = 0;
+
+  /// Reads a packet, its mark included; false where it is damaged.
+  [[nodiscard]] virtual bool read(std::span<const std::uint8_t> packet, RawFrame& frame) = 0;
 
   void begin_again() override;
 
@@ -65,11 +71,13 @@ class MarkChainDecoder : public WindowDecoder {
   [[nodiscard]] const Chain* true_chain() const noexcept;
 
   Bytes mark_;
-  std::size_t taken_;                     ///< Length of the mark before the window, 0 with marks at the begin.
+  std::size_t taken_;  ///< Length of the mark before the window, 0 with marks at the begin.
+  FirstMark first_mark_;
   std::vector<std::size_t> frame_sizes_;  ///< One, once it is known.
   bool in_step_ = false;                  ///< A frame begins at the front of the window.
   bool was_in_step_ = false;              ///< One would, had no bytes been lost or added since the last.
   bool after_mark_ = false;               ///< The bytes taken before the window ended with a mark.
+  bool is_at_begin_ = true;               ///< Nothing of the stream was taken, and it may begin with a frame.
   std::size_t frames_compared_ = 0;       ///< Over how many frames chains are followed at present.
   std::vector<std::uint8_t> last_payload_;
   std::vector<std::uint8_t> marks_in_phase_;  ///< Number of marks at each position modulo the frame size.
@@ -77,4 +85,4 @@ class MarkChainDecoder : public WindowDecoder {
   std::size_t chain_count_ = 0;               ///< May exceed those that are kept.
 };
 
-}  // namespace dermis::acquisition
+}  // namespace dermis::layouts

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "acquisition/window_decoder.hpp"
+#include "dermis/layouts/window_decoder.hpp"
 
 #include <cassert>
 #include <utility>
 
-namespace dermis::acquisition {
+namespace dermis::layouts {
 namespace {
 
 /// Times are the caller's.
@@ -52,4 +52,4 @@ void WindowDecoder::skip(std::size_t size) {
   counts_.skipped_bytes += size;
 }
 
-}  // namespace dermis::acquisition
+}  // namespace dermis::layouts

@@ -9,7 +9,7 @@
 #include "dermis/layouts/byte_window.hpp"
 #include "dermis/layouts/decoder.hpp"
 
-namespace dermis::acquisition {
+namespace dermis::layouts {
 
 /// The verdict on the first bytes of a window.
 struct Verdict {
@@ -25,7 +25,7 @@ struct Verdict {
 
 /// A decoder that judges the bytes at the front of a window until it needs more. Derived classes recognise and read;
 /// this one keeps the bytes and counts.
-class WindowDecoder : public layouts::Decoder {
+class WindowDecoder : public Decoder {
  public:
   void push(std::span<const std::uint8_t> bytes) final {
     idle_ = false;
@@ -35,7 +35,7 @@ class WindowDecoder : public layouts::Decoder {
   void idle() final { idle_ = true; }
   void finish() final { ended_ = true; }
   [[nodiscard]] std::uint64_t frame_end() const noexcept final { return frame_end_; }
-  [[nodiscard]] const layouts::DecoderCounts& counts() const noexcept final { return counts_; }
+  [[nodiscard]] const DecoderCounts& counts() const noexcept final { return counts_; }
 
  protected:
   /// Judges the first of `bytes`. The verdict must not depend on how many bytes follow those that it needs: else frames
@@ -52,11 +52,11 @@ class WindowDecoder : public layouts::Decoder {
  private:
   void skip(std::size_t size);
 
-  layouts::ByteWindow window_;
-  layouts::DecoderCounts counts_;
+  ByteWindow window_;
+  DecoderCounts counts_;
   std::uint64_t frame_end_ = 0;
   bool ended_ = false;
   bool idle_ = false;
 };
 
-}  // namespace dermis::acquisition
+}  // namespace dermis::layouts

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "described_file.hpp"
+
+#include <filesystem>
+
+#include "dermis/acquisition/device_source.hpp"
+#include "lost_input.hpp"
+#include "status_line.hpp"
+
+namespace dermis::app {
+namespace {
+
+acquisition::SourceUri uri_of_path(const std::string& name) {
+  acquisition::SourceUri uri;
+  uri.text = name;
+  const std::size_t mark = std::filesystem::exists(name) ? std::string::npos : name.rfind('#');
+  uri.path = name.substr(0, mark);
+  if (mark != std::string::npos) uri.protocol.array = name.substr(mark + 1);
+  uri.protocol.is_whole_file = true;
+  return uri;
+}
+
+}  // namespace
+
+bool DescribedFile::is_described() const {
+  return !layout.empty() || acquisition::is_source_uri(name);
+}
+
+Result<std::unique_ptr<FrameSource>> DescribedFile::open() const {
+  const bool is_uri = acquisition::is_source_uri(name);
+  Result<acquisition::SourceUri> uri = is_uri ? acquisition::parse_source_uri(name) : uri_of_path(name);
+  if (!uri) return uri.error();
+  if (uri->transport != acquisition::Transport::file) return bad_input("'" + name + "': name a file, as file:PATH");
+  if (is_uri && !layout.empty()) return bad_input("--layout: '" + name + "' is a URI; write layout= in it");
+  if (!layout.empty()) uri->protocol.layout = layout;
+  if (rate_hz) uri->rate_hz = rate_hz;
+  if (shape) uri->protocol.shape = shape;
+  return acquisition::open_device(*std::move(uri), {.notice = print_notice});
+}
+
+}  // namespace dermis::app
