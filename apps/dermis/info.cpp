@@ -21,6 +21,7 @@
 #include "dermis/report/model_facts.hpp"
 #include "described_file.hpp"
 #include "shape_options.hpp"
+#include "unread_bytes.hpp"
 
 namespace dermis::app {
 namespace {
@@ -72,7 +73,8 @@ void print_json(const Json& json) {
   fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
-void print_json(const std::string& file, const std::string& format, const FrameFileInfo& info) {
+void print_json(const std::string& file, const std::string& format, const FrameFileInfo& info,
+                const std::string& look) {
   Json json = {{"file", file},
                {"format", format},
                {"size_bytes", info.bytes},
@@ -85,6 +87,7 @@ void print_json(const std::string& file, const std::string& format, const FrameF
                {"lost", or_null(info.lost)},
                {"complete", info.complete},
                {"unread", or_null(info.unread)},
+               {"or", or_null(look)},
                {"temperature_celsius", or_null(info.temperature_celsius)},
                {"name", or_null(info.notes.name)},
                {"array_toml", or_null(info.notes.array_toml)},
@@ -146,8 +149,12 @@ void print_text(const std::string& format, const FrameFileInfo& info) {
   }
 }
 
-void print(const InfoOptions& options, const std::string& format, const FrameFileInfo& info) {
-  options.json ? print_json(options.file, format, info) : print_text(format, info);
+/// `look`: what the bytes may be, too; empty where nothing is seen in them.
+void print(const InfoOptions& options, const std::string& format, const FrameFileInfo& info,
+           const std::string& look = {}) {
+  if (options.json) return print_json(options.file, format, info, look);
+  print_text(format, info);
+  print_line("or", look);
 }
 
 /// A model or an array.toml, and what to call it.
@@ -195,6 +202,18 @@ void print_described(const InfoOptions& options, const Described& described) {
   for (const auto& [name, text] : described.calibration) fmt::print(kWide, name, text);
 }
 
+Error with_look(Error error, const std::string& file) {
+  const std::string look = look_of_unread_file(file);
+  if (!look.empty()) error.message += ". " + look;
+  return error;
+}
+
+/// Numbers without a head are one frame, or many.
+std::string other_look(const std::string& file, const FrameFileInfo& info) {
+  const bool is_one = info.format == recordings::FrameFormat::text_matrix && info.frames == 1;
+  return is_one ? look_of_unread_file(file) : std::string();
+}
+
 /// Of bytes that a layout describes.
 Status print_info(const InfoOptions& options, const DescribedFile& file) {
   const Result<std::unique_ptr<FrameSource>> source = file.open();
@@ -217,8 +236,8 @@ Status print_info(const InfoOptions& options) {
     return Done{};
   }
   const Result<FrameFileInfo> info = recordings::frame_file_info(options.file, *shape);
-  if (!info) return info.error();
-  print(options, recordings::to_string(info->format), *info);
+  if (!info) return with_look(info.error(), options.file);
+  print(options, recordings::to_string(info->format), *info, other_look(options.file, *info));
   if (info->frames == 0) {
     return bad_input(options.file + ": has no frame" + (info->unread.empty() ? "" : ": " + info->unread));
   }

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "commands.hpp"
@@ -15,6 +16,7 @@
 #include "source_options.hpp"
 #include "status_line.hpp"
 #include "stop_flag.hpp"
+#include "unread_bytes.hpp"
 
 namespace dermis::app {
 namespace {
@@ -60,6 +62,15 @@ std::string with_queue(const acquisition::RecorderProgress& progress) {
   return text;
 }
 
+/// Why nothing is recorded, and what the bytes look like.
+Error without_frames(const std::string& from, const Status& recorded, std::span<const std::uint8_t> bytes) {
+  Error error = recorded ? failed("'" + from + "': not a single frame came: nothing is recorded") : recorded.error();
+  const std::string look = look_of_unread(bytes, from);
+  if (look.empty()) return error;
+  error.message += recorded ? ". " + look : more_by_describe(from);
+  return error;
+}
+
 Status record(const RecordOptions& options) {
   std::atomic<bool>& stop = stop_flag();
   acquisition::RecorderOptions recorder;
@@ -78,6 +89,8 @@ Status record(const RecordOptions& options) {
   LiveLine line;
   sources::SourceOptions source_is = source_options(array);
   source_is.simulated = [&](double share) { line.show(fmt::format("simulating the scene: {:.0f} %", 100.0 * share)); };
+  FirstBytes first;
+  source_is.received = [&](std::span<const std::uint8_t> bytes) { first.add(bytes); };
   Result<std::unique_ptr<FrameSource>> source = sources::open_source(options.from, source_is);
   if (!source) return source.error();
   output.notes = sources::notes_of_source(**source, options.from);
@@ -100,9 +113,7 @@ Status record(const RecordOptions& options) {
     }
     print_notice(sum);
   }
-  if (recorded && last.frames == 0)
-    return failed("'" + options.from + "': not a single frame came: nothing is recorded");
-  return recorded;
+  return last.frames > 0 ? recorded : without_frames(options.from, recorded, first.bytes());
 }
 
 }  // namespace

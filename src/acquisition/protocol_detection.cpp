@@ -8,6 +8,7 @@
 
 #include "acquisition/protocols.hpp"
 #include "acquisition/wiresens_packets.hpp"
+#include "dermis/describing/look.hpp"
 
 namespace dermis::acquisition {
 namespace {
@@ -92,14 +93,24 @@ class ProtocolDetector {
     }
   }
 
-  /// The one that the bytes come from; null where none convinces.
-  [[nodiscard]] const Candidate* best() const {
+  /// The one that the bytes come from; null where none convinces, or where they are rather numbers of another layout.
+  [[nodiscard]] const Candidate* best(std::span<const std::uint8_t> bytes) {
     const auto found =
         std::find_if(candidates_.begin(), candidates_.end(), [](const Candidate& one) { return one.convinces(); });
-    return found == candidates_.end() ? nullptr : &*found;
+    if (found == candidates_.end() || bytes.size() < next_doubt_) return nullptr;
+    if (!is_doubted(*found, bytes)) return &*found;
+    next_doubt_ = 2 * bytes.size();
+    return nullptr;
   }
 
  private:
+  /// The protocols of text take any numbers.
+  [[nodiscard]] bool is_doubted(const Candidate& candidate, std::span<const std::uint8_t> bytes) const {
+    const std::optional<FrameShape> shape = candidate.decoder->shape();
+    if (!shape || known_.shape || (candidate.name != "csv" && candidate.name != "json")) return false;
+    return describing::tell_otherwise(bytes, *shape, {});
+  }
+
   void add(const Trait& trait, ProtocolOptions options) {
     options.name = trait.name;
     Result<std::unique_ptr<Decoder>> decoder = make_decoder(options);
@@ -127,6 +138,7 @@ class ProtocolDetector {
   bool name_only_;
   std::vector<Candidate> candidates_;
   std::size_t next_wiresens_trial_ = kFirstWiresensTrial;
+  std::size_t next_doubt_ = 0;  // bytes, after which a protocol that was doubted is looked at again
   RawFrame frame_;
 };
 
@@ -204,7 +216,7 @@ class AutoDecoder final : public Decoder {
   }
 
   bool choose() {
-    const Candidate* const best = detector_->best();
+    const Candidate* const best = detector_->best(std::span(kept_).first(examined_));
     if (best == nullptr) return false;
     name_ = best->name;
     ProtocolOptions options = best->options;
@@ -265,7 +277,7 @@ std::string detect_protocol(std::span<const std::uint8_t> bytes) {
     detector.look_at(first.first(at + step), step);
   }
   detector.finish(first);
-  const Candidate* const best = detector.best();
+  const Candidate* const best = detector.best(first);
   return best == nullptr ? std::string() : std::string(best->name);
 }
 

@@ -7,9 +7,9 @@
 #include <memory>
 #include <string>
 
-#include "acquisition/look_of_bytes.hpp"
 #include "dermis/acquisition/device_source.hpp"
 #include "dermis/acquisition/protocol.hpp"
+#include "dermis/describing/look.hpp"
 
 namespace dermis::acquisition {
 namespace {
@@ -18,6 +18,12 @@ constexpr Nanos kTooLong = std::chrono::seconds(5);
 constexpr std::size_t kMostKept = std::size_t{256} << 10U;
 constexpr std::size_t kUnknownFrameBytes = 4096;
 constexpr std::size_t kMostBytesPerTaxel = 6;  // "65535 "
+
+describing::Known known_of(const ProtocolOptions& protocol) {
+  describing::Known known;
+  if (protocol.shape) known = {.rows = protocol.shape->rows, .cols = protocol.shape->cols};
+  return known;
+}
 
 /// The reason that the decoder of that name gives for the bytes.
 UndecodedReason advice_of(const std::string& name, ProtocolOptions options, std::span<const std::uint8_t> bytes) {
@@ -77,7 +83,7 @@ UndecodedReason why_undecoded(const SourceUri& uri, std::span<const std::uint8_t
   if (is_auto || looks_like.empty()) {
     const bool is_serial = uri.transport == Transport::serial;
     text += std::string(": check protocol=") + (is_serial ? " and baud=" + std::to_string(uri.baud) : "");
-    return {text + ". " + look_of_bytes(bytes)};
+    return {text + ". " + describing::look_of(bytes, known_of(protocol))};
   }
   if (looks_like != protocol.name) return {text + "; they look like " + looks_like + ": protocol=" + looks_like};
   return {text + "; they look like " + looks_like + " of another size: check rows and cols"};

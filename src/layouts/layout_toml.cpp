@@ -62,7 +62,10 @@ class LayoutReader {
 
   void read_arrays() {
     const std::size_t count = file_.table_count(key("array"));
-    if (count > kMostArrays) return fail("array", "there are more than 64");
+    if (count > kMostArrays) {
+      fail("array", "there are more than 64");
+      return layout_.arrays.push_back({"", {1, 1}});
+    }
     const bool is_in_array = file_.contains("array.rows") && !file_.contains(key("rows"));
     if (count == 0) read_shape(is_in_array ? "array." : "layout.", layout_.arrays.emplace_back().shape);
     for (std::size_t k = 0; k < count; ++k) read_array(key("array[" + std::to_string(k) + "]."));
@@ -120,8 +123,6 @@ class LayoutReader {
     file_.text(key("comment"), text.comment);
     file_.text(key("frame_begin"), text.frame_begin);
     if (file_.contains(key("frame_end"))) file_.text(key("frame_end"), text.frame_end.emplace());
-    file_.count(key("lines_from"), text.lines_from);
-    if (text.lines_from > kMaxLines) fail("lines_from", "must be at most 1024");
     file_.count(key("width"), text.width);
     if (text.width > 9) fail("width", "must be at most 9 characters");
     std::string point = ".";

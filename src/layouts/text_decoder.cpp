@@ -76,8 +76,10 @@ bool TextDecoder::read(std::span<const std::uint8_t> line, std::size_t bytes, Ra
   if (has_end && ends_frame(text)) {
     assembly_.end_frame();
   } else if (has_end && !is_comment(text)) {
-    if (!text_.frame_begin.empty() && begins_with(text, text_.frame_begin)) assembly_.end_frame();
+    const bool begins_frame = !text_.frame_begin.empty() && begins_with(text, text_.frame_begin);
+    if (begins_frame) assembly_.end_frame();
     if (match_.read(text, piece_)) return add(bytes, frame);
+    if (begins_frame && match_.read(text.subspan(text_.frame_begin.size()), piece_)) return add(bytes, frame);
     if (counts().frames == 0) {
       misfit_ = "line " + std::to_string(line_number_) + " does not fit layout.line " + match_.misfit();
     }

@@ -4,6 +4,7 @@
 // protocol=auto and detect_protocol().
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 #include "acquisition/decoding.hpp"
@@ -89,6 +90,50 @@ TEST(ProtocolDetection, does_not_depend_on_how_the_bytes_are_cut) {
       EXPECT_EQ(cut->counts(), whole->counts());
       EXPECT_EQ(cut->frame_end(), whole->frame_end());
     }
+  }
+}
+
+/// Readings of a press that wanders, so that frames and rows can be told apart.
+int reading(std::size_t frame, std::size_t row, std::size_t col) {
+  const double down = static_cast<double>(row) - 6.0 - 3.0 * std::sin(static_cast<double>(frame) / 5.0);
+  const double right = static_cast<double>(col) - 5.0;
+  return static_cast<int>(700.0 * std::exp(-(down * down + right * right) / 6.0)) +
+         static_cast<int>(7 * row + 3 * col + frame) % 5;
+}
+
+std::string row_of(std::size_t frame, std::size_t row, std::size_t cols) {
+  std::string text;
+  for (std::size_t col = 0; col < cols; ++col) text += (col > 0 ? "," : "") + std::to_string(reading(frame, row, col));
+  return text;
+}
+
+TEST(ProtocolDetection, numbers_of_another_layout_are_of_no_protocol) {
+  std::string messages;
+  std::string arrays;
+  std::string screens;
+  std::string triples;
+  for (std::size_t frame = 0; frame < 40; ++frame) {
+    screens += "\x1b[H";
+    std::string line;
+    for (std::size_t row = 0; row < 12; ++row) {
+      line += (row > 0 ? "," : "") + row_of(frame, row, 10);
+      screens += row_of(frame, row, 10) + "\r\n";
+      for (std::size_t col = 0; col < 10; ++col) {
+        triples +=
+            std::to_string(row) + "," + std::to_string(col) + "," + std::to_string(reading(frame, row, col)) + "\n";
+      }
+    }
+    messages += line + (frame % 5 == 4 ? "\nDEBUG adc ok\n" : "\n");
+    arrays += "{\"id\":" + std::to_string(1 + frame % 2) + ",\"values\":[" + line + "]}\n";
+    screens += "\r\n";
+    triples += "\n";
+  }
+  for (const std::string& text : {messages, arrays, screens, triples}) {
+    const Bytes bytes(text.begin(), text.end());
+    const auto decoder = decoder_for({});
+    EXPECT_TRUE(decode_all(*decoder, bytes).empty()) << text.substr(0, 80);
+    EXPECT_EQ(decoder->detected_protocol(), "");
+    EXPECT_EQ(detect_protocol(bytes), "");
   }
 }
 

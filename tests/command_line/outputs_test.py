@@ -15,6 +15,7 @@ COMMANDS = {
     "circuit forward": (("--array", "--conductance"), ("--out",)),
     "circuit invert": (("--array", "--readings"), ("--out", "--sigma")),
     "convert": (("in", "--array"), ("out",)),
+    "describe": (("source",), ("--out",)),
     "image": (("--in", "--model"), ("--out",)),
     "learn": (("--labels", "--in", "--model", "--splits", "--open"), ("--out", "--predictions", "--open-predictions")),
     "paper calibrate": (("--array", "--frames", "--loads"), ("--bank",)),

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "source_bytes.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <system_error>
+
+#include "dermis/acquisition/byte_stream.hpp"
+#include "dermis/acquisition/protocol.hpp"
+#include "dermis/describing/proposals.hpp"
+#include "dermis/files/file_kind.hpp"
+#include "dermis/files/input.hpp"
+#include "dermis/recordings/frame_file_info.hpp"
+#include "dermis/recordings/frame_files.hpp"
+#include "dermis/sources/source_name.hpp"
+#include "stop_flag.hpp"
+
+namespace dermis::app {
+namespace {
+
+using std::chrono::steady_clock;
+
+constexpr std::chrono::seconds kPatience{5};  // until a device answers
+constexpr std::chrono::seconds kListens{3};
+constexpr std::chrono::milliseconds kStep{100};
+constexpr std::size_t kEnough = 65536;
+
+Result<std::vector<std::uint8_t>> bytes_of_stream(acquisition::ByteStream& stream, const std::string& source) {
+  for (const auto end = steady_clock::now() + kPatience;;) {
+    const Result<bool> opened = stream.open(kStep);
+    if (!opened) return opened.error();
+    if (*opened) break;
+    if (steady_clock::now() > end || stop_flag()) return failed("'" + source + "': nobody has connected");
+  }
+  std::vector<std::uint8_t> bytes(kEnough);
+  std::size_t size = 0;
+  for (const auto end = steady_clock::now() + kListens; size < kEnough && steady_clock::now() < end && !stop_flag();) {
+    const auto came = stream.read(std::span(bytes).subspan(size), kStep);
+    size += came.bytes;
+    if (came.end != acquisition::ByteStream::End::none) break;
+  }
+  bytes.resize(size);
+  return bytes;
+}
+
+/// A format whose content proves it. Numbers alone are in any.
+std::optional<recordings::FrameFormat> proven_format(const std::string& path) {
+  const Result<recordings::FrameFormat> format = recordings::recognise_frames(path);
+  if (!format || *format == recordings::FrameFormat::text_matrix) return std::nullopt;
+  const auto info = recordings::frame_file_info(path, std::nullopt);
+  return info && info->frames > 0 ? std::optional(*format) : std::nullopt;
+}
+
+Result<SourceBytes> bytes_of_file(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) return files::open_input(path).error();
+  SourceBytes found;
+  if (const auto format = proven_format(path)) found.known = recordings::to_string(*format);
+  const std::string text = files::first_bytes_of(path, describing::kMostBytes);
+  found.bytes.assign(text.begin(), text.end());
+  return found;
+}
+
+Result<SourceBytes> bytes_of_device(const acquisition::SourceUri& uri) {
+  const Result<std::unique_ptr<acquisition::ByteStream>> stream = acquisition::make_source_stream(uri);
+  if (!stream) return stream.error();
+  Result<std::vector<std::uint8_t>> bytes = bytes_of_stream(**stream, uri.text);
+  if (!bytes) return bytes.error();
+  SourceBytes found{.bytes = *std::move(bytes), .is_stream = true};
+  found.known = acquisition::detect_protocol(found.bytes);
+  return found;
+}
+
+}  // namespace
+
+Result<SourceBytes> read_source_bytes(const std::string& source) {
+  const Result<sources::SourceName> name = sources::SourceName::parse(source);
+  if (!name) return name.error();
+  if (name->kind == sources::SourceKind::simulation) return bad_input("'" + source + "': a simulation needs no layout");
+  Result<SourceBytes> found = name->uri ? bytes_of_device(*name->uri) : bytes_of_file(source);
+  if (found && found->bytes.empty()) return bad_input("'" + source + "': not a single byte came");
+  return found;
+}
+
+}  // namespace dermis::app

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "dermis/core/result.hpp"
+
+namespace dermis::app {
+
+/// The first bytes of a source, as they come.
+struct SourceBytes {
+  std::vector<std::uint8_t> bytes;
+  std::string known{};  ///< What dermis reads them as already: the name of a protocol or of a format; empty: nothing.
+  bool is_stream = false;  ///< Of a device, or kept as a device sends them.
+};
+
+/// Of a device what comes within 3 s, at most 64 KiB; of a file the beginning. Fails where nothing comes.
+[[nodiscard]] Result<SourceBytes> read_source_bytes(const std::string& source);
+
+}  // namespace dermis::app

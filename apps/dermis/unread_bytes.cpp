@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "unread_bytes.hpp"
+
+#include <algorithm>
+
+#include "dermis/describing/look.hpp"
+#include "dermis/describing/proposals.hpp"
+#include "dermis/files/file_kind.hpp"
+#include "dermis/files/input.hpp"
+
+namespace dermis::app {
+
+std::string look_of_unread(std::span<const std::uint8_t> bytes, const std::string& source) {
+  const std::vector<describing::Proposal> proposals = describing::propose(bytes, {});
+  return proposals.empty() ? std::string() : describing::look_of(proposals.front()) + more_by_describe(source);
+}
+
+std::string look_of_unread_file(const std::string& path) {
+  const std::string text = files::first_bytes_of(path, describing::kMostBytes);
+  const std::string_view kind = files::kind_of(text);
+  if (!kind.empty() && kind != files::kTableKind) return {};
+  return look_of_unread({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, path);
+}
+
+std::string more_by_describe(const std::string& source) {
+  return "; 'dermis describe " + source + "' shows more";
+}
+
+void FirstBytes::add(std::span<const std::uint8_t> bytes) {
+  bytes = bytes.first(std::min(bytes.size(), kMost - bytes_.size()));
+  bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+}
+
+}  // namespace dermis::app

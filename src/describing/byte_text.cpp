@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "describing/byte_text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdio>
+
+namespace dermis::describing {
+
+bool is_text(std::span<const std::uint8_t> bytes) {
+  const auto count = std::count_if(bytes.begin(), bytes.end(), [](std::uint8_t byte) {
+    return (byte >= 0x20 && byte < 0x7F) || byte == '\t' || byte == '\r' || byte == '\n' || byte == 0x1B;
+  });
+  const auto nuls = std::count(bytes.begin(), bytes.end(), 0);
+  return 20 * (static_cast<std::size_t>(count) + std::min(static_cast<std::size_t>(nuls), bytes.size() / 8)) >=
+         17 * bytes.size();
+}
+
+std::string hexadecimal(std::span<const std::uint8_t> bytes) {
+  std::string text;
+  for (const std::uint8_t byte : bytes) {
+    std::array<char, 4> digits{};
+    std::snprintf(digits.data(), digits.size(), "%02X", unsigned{byte});
+    text += (text.empty() ? "" : " ") + std::string(digits.data());
+  }
+  return text;
+}
+
+std::string printable(std::string_view text) {
+  std::string result(text);
+  std::replace_if(
+      result.begin(), result.end(), [](char c) { return c < 0x20 || c > 0x7E; }, '?');
+  return result;
+}
+
+}  // namespace dermis::describing
