@@ -112,7 +112,7 @@ void add_convert(Command& command) {
   command.input("--array", options->array, "array.toml, to keep with the frames (.mcap, .h5)");
   command.input_file("--layout", options->layout, "layout.toml, which describes the bytes of a file (docs/layouts.md)");
   command.option("--rate", options->rate_hz,
-                 "Frames a second of a file without times (.npy, .npz, .txt, .png, .packed10) [Hz]");
+                 "Frames a second of a file without times (.npy, .npz, .mat, .txt, .png, .packed10) [Hz]");
   options->shape.add(command);
   command.action([options] {
     end_when_interrupted();

@@ -6,12 +6,19 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "commands.hpp"
+#include "dermis/calibration/turned_lines.hpp"
+#include "dermis/files/array_toml.hpp"
+#include "dermis/files/loads_csv.hpp"
 #include "dermis/health/examination.hpp"
+#include "dermis/health/raw_examination.hpp"
 #include "dermis/operation/operation.hpp"
+#include "dermis/sources/open_source.hpp"
 #include "process_all.hpp"
 #include "source_options.hpp"
+#include "stop_flag.hpp"
 
 namespace dermis::app {
 namespace {
@@ -22,6 +29,8 @@ using Json = nlohmann::ordered_json;
 
 struct DoctorOptions {
   std::string model;
+  std::string array;
+  std::string loads;
   std::string in;
   bool json = false;
 };
@@ -76,7 +85,92 @@ Result<Diagnosis> examine(Operation& operation) {
   return examination.diagnosis(operation.pipeline);
 }
 
+Status result_of(const std::vector<std::string>& findings, const char* what) {
+  if (findings.empty()) return Done{};
+  return failed(fmt::format("{}: {} finding{}", what, findings.size(), findings.size() == 1 ? "" : "s"));
+}
+
+void print_json(const health::RawDiagnosis& diagnosis) {
+  Json remarks = Json::array();
+  if (diagnosis.remark) remarks.push_back(*diagnosis.remark);
+  const Json json = {{"healthy", diagnosis.problems().empty()},
+                     {"frames", diagnosis.frames},
+                     {"seconds", diagnosis.seconds},
+                     {"least_counts", diagnosis.least_counts},
+                     {"most_counts", diagnosis.most_counts},
+                     {"problems", diagnosis.problems()},
+                     {"remarks", remarks}};
+  fmt::print("{}\n", json.dump(2));
+}
+
+/// A description that takes any count, where only the shape is known.
+ArrayDescription of_shape(FrameShape shape) {
+  ArrayDescription array;
+  array.rows = shape.rows;
+  array.cols = shape.cols;
+  array.readout.circuit = Circuit::none;
+  array.readout.adc_bits = 24;
+  return array;
+}
+
+struct ExaminedCounts {
+  FrameShape shape;
+  health::RawDiagnosis diagnosis;
+  std::vector<RawFrame> frames;  ///< Where they are kept.
+};
+
+Result<ExaminedCounts> examine_counts(const std::string& from, const ArrayDescription* array, bool keeps_frames) {
+  const auto source = sources::open_source(from, source_options(array));
+  if (!source) return source.error();
+  std::optional<health::RawExamination> examination;
+  ExaminedCounts examined;
+  RawFrame raw;
+  while (!stop_flag().load()) {
+    const Result<bool> more = (*source)->next(raw);
+    if (!more) return more.error();
+    if (!*more) break;
+    if (!examination) {
+      examined.shape = (*source)->shape().value();
+      examination.emplace(examined.shape, array != nullptr ? std::optional(array->readout) : std::nullopt);
+    }
+    examination->add(raw);
+    if (keeps_frames) examined.frames.push_back(raw);
+  }
+  if (!examination) return bad_input(from + ": has no frame");
+  examined.diagnosis = examination->diagnosis();
+  return examined;
+}
+
+/// Whether the taxels answer that were pressed.
+Status examine_places(const std::string& path, const ArrayDescription& array, ExaminedCounts& examined) {
+  const Result<std::vector<Load>> loads = files::read_loads(path, array, examined.frames.size());
+  if (!loads) return loads.error();
+  auto turned = calibration::find_turned_lines(array, examined.frames, *loads);
+  if (turned) examined.diagnosis.findings.push_back(*std::move(turned));
+  return Done{};
+}
+
+/// By the counts alone.
+Status doctor_without_model(const DoctorOptions& options) {
+  std::optional<ArrayDescription> array;
+  if (!options.array.empty()) {
+    Result<ArrayDescription> read = files::read_array(options.array);
+    if (!read) return read.error();
+    array = *std::move(read);
+  }
+  Result<ExaminedCounts> examined = examine_counts(options.in, array ? &*array : nullptr, !options.loads.empty());
+  if (!examined) return examined.error();
+  if (!options.loads.empty()) {
+    const ArrayDescription known = array.value_or(of_shape(examined->shape));
+    if (Status done = examine_places(options.loads, known, *examined); !done) return done;
+  }
+  const health::RawDiagnosis& diagnosis = examined->diagnosis;
+  options.json ? print_json(diagnosis) : fmt::print("{}", health::describe(diagnosis, examined->shape));
+  return result_of(diagnosis.problems(), "the readings are doubtful");
+}
+
 Status doctor(const DoctorOptions& options) {
+  if (options.model.empty()) return doctor_without_model(options);
   const Result<std::unique_ptr<Operation>> operation =
       operation::open_operation(options.model, options.in, source_options());
   if (!operation) return operation.error();
@@ -84,19 +178,22 @@ Status doctor(const DoctorOptions& options) {
   if (!diagnosis) return diagnosis.error();
   const pipeline::Model& model = (*operation)->model;
   options.json ? print_json(*diagnosis, model.array) : fmt::print("{}", health::describe(*diagnosis, model));
-  if (diagnosis->is_healthy()) return Done{};
-  const std::size_t findings = diagnosis->findings.size();
-  return failed(fmt::format("the array is not healthy: {} finding{}", findings, findings == 1 ? "" : "s"));
+  return result_of(diagnosis->findings, "the array is not healthy");
 }
 
 }  // namespace
 
 void add_doctor(Command& command) {
   auto options = std::make_shared<DoctorOptions>();
+  const Option model =
+      command.input_file("--model", options->model,
+                         "Model file of 'dermis calibrate', or array.toml where readings are forces; without one, the "
+                         "counts alone are examined");
+  command.input_file("--array", options->array, "array.toml, where there is no model").excludes(model);
   command
-      .input_file("--model", options->model,
-                  "Model file of 'dermis calibrate', or array.toml where readings are forces")
-      .required();
+      .input_file("--loads", options->loads,
+                  "loads.csv of a file, where there is no model: whether the taxels answer that it names")
+      .excludes(model);
   command.input("--in", options->in, "Raw counts: frames.csv, a recording, or the URI of a device").required();
   command.flag("--json", options->json, "Print the result as JSON");
   command.action([options] { return doctor(*options); });

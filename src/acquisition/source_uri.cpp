@@ -40,7 +40,7 @@ const std::set<std::string> kProtocolParameters = {
 const std::set<std::string> kLayoutTexts = {"line",          "line_end",  "separator", "comment",
                                             "frame_begin",   "frame_end", "digits",    "escape",
                                             "decimal_point", "unit",      "start",     "request"};
-const std::set<std::string> kLayoutNumbers = {"scale", "offset", "absent", "width", "lines_from"};
+const std::set<std::string> kLayoutNumbers = {"scale", "offset", "absent", "width"};
 
 const std::array<Scheme, 9>& schemes() {
   static const std::array<Scheme, 9> kAll = {{

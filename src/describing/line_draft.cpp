@@ -88,7 +88,6 @@ Draft begin_line_draft(const LinesAlike& text, const LineFields& fields, const K
   if (text.numerals.is_hexadecimal) draft.keys.emplace_back("digits", "\"hexadecimal\"");
   if (text.numerals.width > 0) draft.keys.emplace_back("width", std::to_string(text.numerals.width));
   if (!text.numerals.separator.empty()) draft.keys.emplace_back("separator", quoted(text.numerals.separator));
-  if (fields.are_lines_from_1) draft.keys.emplace_back("lines_from", "1");
   const std::string unit = unit_of_name(text.columns[fields.spans.front().begin].name);
   if (!unit.empty() && known.unit.empty()) draft.keys.emplace_back("unit", quoted(unit));
   draft.has_certain_unit = !unit.empty();

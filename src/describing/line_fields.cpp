@@ -169,8 +169,7 @@ class Interpreter {
 
   void add_taxels_in_turn() {
     LineFields fields = base_;
-    fields.fields[counting_[0]] = "first";
-    fields.are_lines_from_1 = columns_[counting_[0]].is_counted_from_1;
+    fields.fields[counting_[0]] = columns_[counting_[0]].is_counted_from_1 ? "first-1" : "first";
     const std::size_t count = numbers_of(0).size();
     fields.shape = FrameShape{1, count};
     fields.reasons.push_back("a number of each line counts " + std::to_string(count) + " taxels");
@@ -186,7 +185,7 @@ class Interpreter {
       if (what == "columns") shape.cols = numbers.size();
       if (what == "arrays") fields.ids.assign(numbers.begin(), numbers.end());
       fields.fields[counting_[k]] = counted[k];
-      if (what != "arrays" && columns_[counting_[k]].is_counted_from_1) fields.are_lines_from_1 = true;
+      if (what != "arrays" && columns_[counting_[k]].is_counted_from_1) fields.fields[counting_[k]] += "-1";
       fields.reasons.push_back("a number of each line counts " + std::to_string(numbers.size()) + " " + what);
     }
     if (fields.ids.size() > kMostArrays) return;

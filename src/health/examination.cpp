@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "dermis/health/ageing_monitor.hpp"
+#include "dermis/health/raw_examination.hpp"
 #include "dermis/pipeline/frame_troubles.hpp"
 #include "dermis/pipeline/standing_load.hpp"
 #include "dermis/preprocessing/missing_readings.hpp"
@@ -88,6 +89,7 @@ class Examination::Implementation {
         ageing_(model),
         standing_(model),
         troubles_(model.array, ""),
+        raw_({model.array.rows, model.array.cols}, model.array.readout),
         deviation_(model.array.taxel_count()) {}
 
   void add(const RawFrame& raw, const ForceFrame& force, const pipeline::Pipeline& pipeline) {
@@ -103,6 +105,7 @@ class Examination::Implementation {
     if (!first_time_) first_time_ = raw.time;
     last_time_ = raw.time;
     if (troubles_.is_silent(raw, force, pipeline)) return;  // no evidence on the sheet
+    if (model_.array.readout.quantity == Quantity::counts) raw_.add(raw);
     follow_temperature(pipeline.conditioned());
     follow_supply(raw);
     follow(pipeline.line_faults().faults(), frame, model_.array, counted_.faults);
@@ -140,6 +143,7 @@ class Examination::Implementation {
     if (const auto load = standing_.load()) {
       diagnosis.findings.push_back(pipeline::describe_never_released(*load, model_.array));
     }
+    for (const std::string& finding : raw_.diagnosis().findings) diagnosis.findings.push_back(finding);
     diagnosis.remarks = remarks_on(pipeline.line_faults().suspicions(), model_.array);
     if (const auto silent = troubles_.silent_frames()) diagnosis.findings.push_back(*silent);
     if (const auto silence = troubles_.silence()) diagnosis.remarks.push_back(*silence);
@@ -204,6 +208,7 @@ class Examination::Implementation {
   AgeingMonitor ageing_;
   pipeline::StandingLoadWatch standing_;
   pipeline::FrameTroubles troubles_;
+  RawExamination raw_;
   std::vector<double> deviation_;  // from the unloaded conductance, in standard deviations [taxels]
 };
 

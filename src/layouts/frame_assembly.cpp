@@ -99,7 +99,7 @@ std::string FrameAssembly::advice() const {
   const std::string shape = std::to_string(shape_.rows) + "x" + std::to_string(shape_.cols);
   if (outside_) {
     return number("row ", outside_->row) + number("col ", outside_->col) + number("first ", outside_->first) +
-           "is outside of " + shape + ", whose lines count from 0";
+           "is outside of " + shape + ": lines count from 0, or from 1 as {row-1}";
   }
   const std::size_t most = std::max(most_filled_, filled_);
   if (most == 0) return {};

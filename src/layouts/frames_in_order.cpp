@@ -76,9 +76,10 @@ void FramesInOrder::insert(const RawFrame& frame) {
 bool FramesInOrder::release(RawFrame& frame) {
   if (waiting_.empty()) return false;
   const bool are_too_many = waiting_.size() * frame.counts.size() > kMostWaitingReadings;
-  const Nanos waits = *waiting_.back().acquisition.device_time - *waiting_.front().acquisition.device_time;
-  const bool is_due = has_ended_ || are_too_many || waits > kLatest || waits < -kLatest;
-  if (!is_due) return false;
+  const std::optional<Nanos> first = waiting_.front().acquisition.device_time;
+  const std::optional<Nanos> last = waiting_.back().acquisition.device_time;
+  const bool waits = first && last && *last - *first <= kLatest && *first - *last <= kLatest;
+  if (waits && !has_ended_ && !are_too_many) return false;
   frame = std::move(waiting_.front());
   waiting_.pop_front();
   count(frame);

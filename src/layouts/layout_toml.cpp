@@ -123,8 +123,6 @@ class LayoutReader {
     file_.text(key("comment"), text.comment);
     file_.text(key("frame_begin"), text.frame_begin);
     if (file_.contains(key("frame_end"))) file_.text(key("frame_end"), text.frame_end.emplace());
-    file_.count(key("lines_from"), text.lines_from);
-    if (text.lines_from > kMaxLines) fail("lines_from", "must be at most 1024");
     file_.count(key("width"), text.width);
     if (text.width > 9) fail("width", "must be at most 9 characters");
     std::string point = ".";

@@ -115,9 +115,9 @@ bool LineMatch::read_field(const TextField& field, const TextField* next, Piece&
   double number = 0.0;
   switch (field.role) {
     case Role::skip: return skip_to(next);
-    case Role::row: return read_place(piece.row);
-    case Role::col: return read_place(piece.col);
-    case Role::first: return read_place(piece.first);
+    case Role::row: return read_counted(field, piece.row);
+    case Role::col: return read_counted(field, piece.col);
+    case Role::first: return read_counted(field, piece.first);
     case Role::frame: return read_whole(piece.frame);
     case Role::flags: return read_whole(piece.flags);
     case Role::array: return read_array(next, piece);
@@ -274,11 +274,11 @@ bool LineMatch::read_whole(std::optional<std::uint64_t>& value) noexcept {
   return true;
 }
 
-/// From 0 on.
-bool LineMatch::read_place(std::optional<std::uint64_t>& place) noexcept {
-  if (!read_whole(place)) return false;
-  if (*place < text_.lines_from) return fail("a number from lines_from on is expected");
-  *place -= text_.lines_from;
+/// Of rows, columns or taxels, which may be counted from 1 on.
+bool LineMatch::read_counted(const TextField& field, std::optional<std::uint64_t>& value) noexcept {
+  if (!read_whole(value)) return false;
+  if (*value < field.from) return fail("a number of 1 or more is expected");
+  *value -= field.from;
   return true;
 }
 

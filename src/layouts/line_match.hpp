@@ -55,7 +55,7 @@ class LineMatch {
   bool read_reading(float& value) noexcept;
   bool skip_absent() noexcept;
   bool read_whole(std::optional<std::uint64_t>& value) noexcept;
-  bool read_place(std::optional<std::uint64_t>& place) noexcept;
+  bool read_counted(const TextField& field, std::optional<std::uint64_t>& value) noexcept;
   bool read_number(double& value) noexcept;
   bool read_clock(std::uint64_t& nanos) noexcept;
   bool read_datetime(std::uint64_t& nanos) noexcept;

@@ -9,6 +9,17 @@ namespace {
 
 constexpr std::size_t kLongestPattern = 4096;
 
+/// "row", or "row-1" where rows are counted from 1 on.
+Result<TextField> field_in(std::string_view name, const std::vector<LayoutArray>& arrays) {
+  const Result<NamedField> field = field_named(name, FieldsOf::line, arrays);
+  if (field) return TextField{.role = field->role, .array = field->array, .unit = field->unit};
+  for (const Role role : {Role::row, Role::col, Role::first}) {
+    const bool is_it = name == (role == Role::row ? "row-1" : role == Role::col ? "col-1" : "first-1");
+    if (is_it) return TextField{.role = role, .from = 1};
+  }
+  return field.error();
+}
+
 Status check_order(const std::vector<TextField>& fields) {
   for (std::size_t k = 0; k < fields.size(); ++k) {
     const bool is_followed_by_field = k + 1 < fields.size() && fields[k + 1].role != Role::literal;
@@ -33,9 +44,9 @@ Result<TextLayout::Pattern> parse_line_pattern(std::string_view pattern, const s
     if (pattern[at] == '{' && !is_doubled) {
       const std::size_t end = pattern.find('}', at);
       if (end == std::string_view::npos) return bad_input("'{' has no '}'");
-      const Result<NamedField> field = field_named(pattern.substr(at + 1, end - at - 1), FieldsOf::line, arrays);
+      const Result<TextField> field = field_in(pattern.substr(at + 1, end - at - 1), arrays);
       if (!field) return field.error();
-      fields.push_back({.role = field->role, .array = field->array, .unit = field->unit});
+      fields.push_back(*field);
       at = end;
       continue;
     }

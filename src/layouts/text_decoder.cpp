@@ -44,14 +44,11 @@ TextDecoder::TextDecoder(std::shared_ptr<const Layout> layout, std::size_t array
       assembly_(*layout_, array, moduli_of(text_)) {}
 
 bool TextDecoder::next(RawFrame& frame) {
-  if (read_lines(frame)) return true;
+  if (read_lines(frame, 0)) return true;
   if (!has_ended_) return false;
   if (ends_last_line_ && lines_.has_open_line()) {
-    const std::uint64_t end = lines_.end();
     lines_.push({&end_byte_, 1});
-    const bool is_frame = read_lines(frame);
-    frame_end_ = std::min(frame_end_, end);
-    if (is_frame) return true;
+    if (read_lines(frame, 1)) return true;
   }
   has_ended_ = is_sending_ = false;
   assembly_.skip(lines_.forget_all());
@@ -59,20 +56,21 @@ bool TextDecoder::next(RawFrame& frame) {
   return false;
 }
 
-bool TextDecoder::read_lines(RawFrame& frame) {
+/// Up to the next frame. `added`: bytes of the end of the last line that are none of the file.
+bool TextDecoder::read_lines(RawFrame& frame, std::size_t added) {
   for (;;) {
     const std::span<const std::uint8_t> line = lines_.next();
     if (line.empty()) return false;
     ++line_number_;
-    const bool is_frame = read(line, frame);
-    frame_end_ = is_frame ? lines_.position() : frame_end_;
+    const bool is_frame = read(line, line.size() - added, frame);
+    frame_end_ = is_frame ? lines_.position() - added : frame_end_;
     lines_.forget();
     is_sending_ = is_sending_ || is_frame;
     if (is_frame) return true;
   }
 }
 
-bool TextDecoder::read(std::span<const std::uint8_t> line, RawFrame& frame) {
+bool TextDecoder::read(std::span<const std::uint8_t> line, std::size_t bytes, RawFrame& frame) {
   const std::span<const std::uint8_t> text = without_end(line);
   const bool has_end = line.back() == end_byte_;
   if (has_end && ends_frame(text)) {
@@ -80,13 +78,13 @@ bool TextDecoder::read(std::span<const std::uint8_t> line, RawFrame& frame) {
   } else if (has_end && !is_comment(text)) {
     const bool begins_frame = !text_.frame_begin.empty() && begins_with(text, text_.frame_begin);
     if (begins_frame) assembly_.end_frame();
-    if (match_.read(text, piece_)) return add(line.size(), frame);
-    if (begins_frame && match_.read(text.subspan(text_.frame_begin.size()), piece_)) return add(line.size(), frame);
+    if (match_.read(text, piece_)) return add(bytes, frame);
+    if (begins_frame && match_.read(text.subspan(text_.frame_begin.size()), piece_)) return add(bytes, frame);
     if (counts().frames == 0) {
       misfit_ = "line " + std::to_string(line_number_) + " does not fit layout.line " + match_.misfit();
     }
   }
-  assembly_.skip(line.size());
+  assembly_.skip(bytes);
   return false;
 }
 

@@ -33,11 +33,11 @@ class TextDecoder final : public Decoder {
   [[nodiscard]] std::string advice() const override;
 
  private:
-  [[nodiscard]] bool read_lines(RawFrame& frame);
+  [[nodiscard]] bool read_lines(RawFrame& frame, std::size_t added);
   [[nodiscard]] std::span<const std::uint8_t> without_end(std::span<const std::uint8_t> line) const noexcept;
   [[nodiscard]] bool is_comment(std::span<const std::uint8_t> line) const noexcept;
   [[nodiscard]] bool ends_frame(std::span<const std::uint8_t> line) const noexcept;
-  [[nodiscard]] bool read(std::span<const std::uint8_t> line, RawFrame& frame);
+  [[nodiscard]] bool read(std::span<const std::uint8_t> line, std::size_t bytes, RawFrame& frame);
   [[nodiscard]] bool add(std::size_t bytes, RawFrame& frame);
 
   std::shared_ptr<const Layout> layout_;

@@ -69,7 +69,7 @@ Result<Nanos> add_all(FrameSource& source, bool is_timed, FrameFileInfo& info) {
 
 Result<FrameFileInfo> info_of_frames(const std::string& path, FrameFormat format,
                                      const std::optional<FrameShape>& shape) {
-  const bool is_timed = has_times(format);
+  const bool is_timed = has_times(format) || (may_have_times(format) && open_frames(path, {.shape = shape}));
   FrameFileInfo info;
   const Result<std::unique_ptr<FrameSource>> source = open_frames(
       path, {.shape = shape, .rate_hz = is_timed ? std::nullopt : std::optional(1e3), .loss = [&](const std::string&) {

@@ -10,6 +10,8 @@
 #include "dermis/files/origin_toml.hpp"
 #include "dermis/files/taxel_text.hpp"
 #include "dermis/importers/dsa.hpp"
+#include "dermis/importers/matlab.hpp"
+#include "dermis/importers/novel_asc.hpp"
 #include "dermis/importers/novel_lst.hpp"
 #include "dermis/importers/npz.hpp"
 #include "dermis/importers/packed10.hpp"
@@ -18,6 +20,8 @@
 #include "dermis/importers/text_matrix.hpp"
 #include "dermis/importers/xsensor.hpp"
 #include "dermis/recordings/recording.hpp"
+#include "recordings/hdf5_dataset_frames.hpp"
+#include "recordings/matlab_hdf5.hpp"
 #include "recordings/wiresens_hdf5.hpp"
 
 namespace dermis::recordings {
@@ -85,27 +89,35 @@ Result<std::unique_ptr<FrameSource>> open_recording(const std::string& path, con
       std::make_unique<FrameFile>(path, *std::move(reader), is_complete ? nullptr : input.loss));
 }
 
+Result<std::unique_ptr<FrameSource>> open_hdf5_dataset(const std::string& path, const FrameFileInput& input) {
+  const RecordingPlace place = recording_place(path);
+  return as<FrameSource>(Hdf5DatasetReader::open(place.path, place.array, input.shape, input.rate_hz));
+}
+
 /// Files of other systems.
 Result<std::unique_ptr<FrameSource>> open_import(const std::string& path, FrameFormat format,
                                                  const FrameFileInput& input) {
   const RecordingPlace place = recording_place(path);
   const importers::ImportOptions options{input.shape, input.rate_hz, place.array, input.notice, input.loss};
+  if (format == FrameFormat::matlab && is_matlab_hdf5(place.path)) return open_matlab_hdf5(place.path, options);
   if (format == FrameFormat::png_stack) return importers::open_png_stack(place.path, options);
   Result<std::unique_ptr<std::istream>> in = files::open_input(place.path);
   if (!in) return in.error();
   switch (format) {
+    case FrameFormat::matlab: return importers::open_matlab(*std::move(in), place.path, options);
     case FrameFormat::npz: return importers::open_npz(*std::move(in), place.path, options);
     case FrameFormat::dsa: return importers::open_dsa(*std::move(in), place.path, options);
     case FrameFormat::tekscan: return importers::open_tekscan(*std::move(in), place.path, options);
     case FrameFormat::xsensor: return importers::open_xsensor(*std::move(in), place.path, options);
     case FrameFormat::packed10: return importers::open_packed10(*std::move(in), place.path, options);
+    case FrameFormat::novel_asc: return importers::open_novel_asc(*std::move(in), place.path, options);
     case FrameFormat::novel_lst: return importers::open_novel_lst(*std::move(in), place.path, options);
     default: return importers::open_text_matrix(*std::move(in), place.path, options);
   }
 }
 
 Status check_rate(const std::string& path, FrameFormat format, const std::optional<double>& rate_hz) {
-  if (has_times(format) || rate_hz) return Done{};
+  if (has_times(format) || may_have_times(format) || rate_hz) return Done{};
   const std::string nor = format == FrameFormat::text_matrix ? ", nor a header time_s,r0c0,..." : "";
   return bad_input(path + ": has no times" + nor + ": give a rate, when it is converted or as 'file:" + path +
                    "?rate=HZ'");
@@ -126,6 +138,7 @@ Result<std::unique_ptr<FrameSource>> open_format(const std::string& path, FrameF
                                                  const FrameFileInput& input) {
   switch (format) {
     case FrameFormat::hdf5: return as<FrameSource>(Hdf5FramesReader::open(path, input.shape));
+    case FrameFormat::hdf5_dataset: return open_hdf5_dataset(path, input);
     case FrameFormat::wiresens: return as<FrameSource>(WiresensHdf5Reader::open(path, input.shape));
     case FrameFormat::npy: return as<FrameSource>(files::NpyReader::open(path, {*input.rate_hz, input.shape}));
     case FrameFormat::csv: return as<FrameSource>(files::FramesCsvReader::open(path, input.shape, input.loss));

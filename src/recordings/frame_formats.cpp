@@ -35,6 +35,8 @@ constexpr std::array kEndings = {Ending{".wiresens.h5", FrameFormat::wiresens},
                                  Ending{".dsa3", FrameFormat::dsa},
                                  Ending{".asf", FrameFormat::tekscan},
                                  Ending{".lst", FrameFormat::novel_lst},
+                                 Ending{".asc", FrameFormat::novel_asc},
+                                 Ending{".mat", FrameFormat::matlab},
                                  Ending{".txt", FrameFormat::text_matrix},
                                  Ending{".png", FrameFormat::png_stack},
                                  Ending{".packed10", FrameFormat::packed10}};
@@ -54,7 +56,8 @@ Result<FrameFormat> hdf5_format(const std::string& path) {
   if (!file) return file.error();
   if (file->contains("counts")) return FrameFormat::hdf5;
   if (file->contains("pressure") && file->contains("frame_count")) return FrameFormat::wiresens;
-  return bad_input(path + ": has neither the dataset 'counts' (dermis) nor 'pressure' and 'frame_count' (WiReSens)");
+  return bad_input(path + ": has neither the dataset 'counts' (dermis) nor 'pressure' and 'frame_count' (WiReSens): " +
+                   "name one, as " + files::in_quotes(path + "#/observations/tactile") + file->datasets_text());
 }
 
 /// A folder that 'dermis simulate' has written.
@@ -98,6 +101,7 @@ std::string_view kind_of_format(FrameFormat format) {
     case FrameFormat::npz: return files::kZipKind;
     case FrameFormat::tekscan:
     case FrameFormat::novel_lst:
+    case FrameFormat::novel_asc:
     case FrameFormat::text_matrix: return files::kTableKind;
     default: return {};
   }
@@ -117,9 +121,12 @@ const char* to_string(FrameFormat format) {
     case FrameFormat::tekscan: return "Tekscan ASCII";
     case FrameFormat::xsensor: return "XSENSOR ASCII";
     case FrameFormat::novel_lst: return "novel listing";
+    case FrameFormat::novel_asc: return "novel ASCII";
+    case FrameFormat::matlab: return "MATLAB";
     case FrameFormat::text_matrix: return "text matrix";
     case FrameFormat::png_stack: return "PNG";
     case FrameFormat::packed10: return "packed 10 bits";
+    case FrameFormat::hdf5_dataset: return "HDF5 dataset";
   }
   return "";
 }
@@ -130,9 +137,15 @@ bool has_times(FrameFormat format) {
     case FrameFormat::npz:
     case FrameFormat::text_matrix:
     case FrameFormat::png_stack:
+    case FrameFormat::matlab:
+    case FrameFormat::hdf5_dataset:
     case FrameFormat::packed10: return false;
     default: return true;
   }
+}
+
+bool may_have_times(FrameFormat format) {
+  return format == FrameFormat::matlab || format == FrameFormat::hdf5_dataset;
 }
 
 Result<FrameFormat> frame_format(const std::string& path) {
@@ -144,7 +157,7 @@ Result<FrameFormat> frame_format(const std::string& path) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) return FrameFormat::png_stack;
   return bad_input(files::in_quotes(path) + ": the ending of its name tells no format of frames; known: " + kWritten +
-                   ", and to read .npz, .dsa, .dsa3, .asf, .lst, .txt, .png and .packed10");
+                   ", and to read .npz, .dsa, .dsa3, .asf, .lst, .asc, .mat, .txt, .png and .packed10");
 }
 
 Result<FrameFormat> output_format(const std::string& path) {
@@ -164,7 +177,9 @@ Result<FrameFormat> recognise_frames(const std::string& path) {
     if (const auto other = files::wrong_kind(first_bytes(place.path), kind))
       return bad_input(place.path + ": " + *other);
   }
-  if (*format == FrameFormat::hdf5 || *format == FrameFormat::wiresens) return hdf5_format(place.path);
+  if (*format == FrameFormat::hdf5 || *format == FrameFormat::wiresens) {
+    return place.array.empty() ? hdf5_format(place.path) : FrameFormat::hdf5_dataset;
+  }
   if (*format == FrameFormat::csv || *format == FrameFormat::text_matrix) return text_format(place.path, *format);
   return format;
 }

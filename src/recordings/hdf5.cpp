@@ -26,6 +26,16 @@ herr_t keep_innermost(unsigned /*depth*/, const H5E_error2_t* error, void* reaso
   return 1;  // the walk begins at the innermost: one step is enough
 }
 
+}  // namespace
+
+std::string sizes_text(const Hdf5Sizes& sizes) {
+  std::string text;
+  for (const hsize_t size : sizes) text += (text.empty() ? "" : " x ") + std::to_string(size);
+  return text;
+}
+
+namespace {
+
 hsize_t product(const Hdf5Sizes& sizes) {
   hsize_t result = 1;
   for (const hsize_t size : sizes) {
@@ -113,6 +123,24 @@ std::optional<Block> block_of(hid_t dataset, hsize_t first, hsize_t count) {
   return block;
 }
 
+struct FoundDatasets {
+  const Hdf5Input& file;
+  std::vector<Hdf5DatasetName> datasets;
+  std::size_t visited = 0;
+};
+
+herr_t find_dataset(hid_t /*root*/, const char* name, const H5O_info_t* info, void* to) {
+  constexpr std::size_t kMostDatasets = 1000;
+  constexpr std::size_t kMostVisited = 10000;
+  auto& found = *static_cast<FoundDatasets*>(to);
+  if (++found.visited > kMostVisited || found.datasets.size() == kMostDatasets) return 1;
+  if (info->type != H5O_TYPE_DATASET) return 0;
+  std::string path = std::string("/") + name;
+  Result<Hdf5Dataset> dataset = found.file.dataset(path.c_str());
+  if (dataset) found.datasets.push_back({std::move(path), std::move(dataset->sizes)});
+  return 0;
+}
+
 hid_t open_with_cache(hid_t file, const char* name, std::size_t cache_bytes) {
   const Hdf5Id access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
   H5Pset_chunk_cache(access.get(), H5D_CHUNK_CACHE_NSLOTS_DEFAULT, cache_bytes, H5D_CHUNK_CACHE_W0_DEFAULT);
@@ -165,9 +193,33 @@ Result<Hdf5Input> Hdf5Input::open(const std::string& path) {
 }
 
 bool Hdf5Input::contains(const char* name) const {
-  H5L_info_t link{};
-  return H5Lexists(file_.get(), name, H5P_DEFAULT) > 0 && H5Lget_info(file_.get(), name, &link, H5P_DEFAULT) >= 0 &&
-         link.type == H5L_TYPE_HARD;
+  const std::string_view path = name;
+  for (std::size_t end = path.find('/', 1);; end = path.find('/', end + 1)) {
+    const std::string part(path.substr(0, end));
+    H5L_info_t link{};
+    if (H5Lexists(file_.get(), part.c_str(), H5P_DEFAULT) <= 0 ||
+        H5Lget_info(file_.get(), part.c_str(), &link, H5P_DEFAULT) < 0 || link.type != H5L_TYPE_HARD) {
+      return false;
+    }
+    if (end == std::string_view::npos) return true;
+  }
+}
+
+std::vector<Hdf5DatasetName> Hdf5Input::datasets() const {
+  FoundDatasets found{*this, {}};
+  H5Ovisit2(file_.get(), H5_INDEX_NAME, H5_ITER_INC, find_dataset, &found, H5O_INFO_BASIC);
+  return std::move(found.datasets);
+}
+
+std::string Hdf5Input::datasets_text() const {
+  constexpr std::size_t kMostNames = 50;
+  std::string names;
+  std::size_t named = 0;
+  for (const Hdf5DatasetName& dataset : datasets()) {
+    if (dataset.sizes.size() < 2 || dataset.sizes.size() > 3 || named++ == kMostNames) continue;
+    names += (names.empty() ? "" : ", ") + files::in_quotes(dataset.path) + " (" + sizes_text(dataset.sizes) + ")";
+  }
+  return names.empty() ? "; it has none of two or three dimensions" : "; it has: " + names;
 }
 
 Result<Hdf5Dataset> Hdf5Input::dataset(const char* name) const {

@@ -61,6 +61,9 @@ class Hdf5Id {
 
 using Hdf5Sizes = std::vector<hsize_t>;
 
+/// "500 x 8 x 8"
+[[nodiscard]] std::string sizes_text(const Hdf5Sizes& sizes);
+
 /// A dataset that is read: of at most 8 dimensions, stored in the file itself, in chunks of at most 64 MiB.
 struct Hdf5Dataset {
   Hdf5Id id;
@@ -74,14 +77,23 @@ struct Hdf5Dataset {
   [[nodiscard]] Status read(hsize_t first, hsize_t count, hid_t memory_type, void* values) const;
 };
 
+struct Hdf5DatasetName {
+  std::string path;  ///< "/observations/tactile"
+  Hdf5Sizes sizes;
+};
+
 /// A file that is read.
 class Hdf5Input {
  public:
   [[nodiscard]] static Result<Hdf5Input> open(const std::string& path);
 
-  /// Whether an object of that name is in the root group; links out of the file count as absent.
+  /// Whether there is an object of that name, with the groups on the way to it; links out of the file count as absent.
   [[nodiscard]] bool contains(const char* name) const;
   [[nodiscard]] Result<Hdf5Dataset> dataset(const char* name) const;
+  /// The datasets of numbers in all groups, at most 1000.
+  [[nodiscard]] std::vector<Hdf5DatasetName> datasets() const;
+  /// "; it has: '/observations/tactile' (500 x 8 x 8), ..." of the datasets that frames may be in; few are named.
+  [[nodiscard]] std::string datasets_text() const;
   /// A text attribute of the root group of at most 1 MiB; empty where it is absent or no text.
   [[nodiscard]] std::string text(const char* name) const;
   /// A dataset cannot hold more elements than this: all bytes of the file, as far as deflate can compress them.

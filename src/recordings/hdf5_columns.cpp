@@ -13,12 +13,6 @@ namespace {
 constexpr hsize_t kBlockBytes = hsize_t{16} << 20U;
 constexpr std::int64_t kLargestExact = std::int64_t{1} << 24U;  ///< Up to here float holds every whole number.
 
-std::string sizes_text(const Hdf5Sizes& sizes) {
-  std::string text;
-  for (const hsize_t size : sizes) text += (text.empty() ? "" : " x ") + std::to_string(size);
-  return text;
-}
-
 bool is_exact(double /*value*/) {
   return true;
 }
@@ -62,6 +56,7 @@ Result<CountsDataset> CountsDataset::open(const Hdf5Input& file, const char* nam
   Result<Hdf5Dataset> dataset = file.dataset(name);
   if (!dataset) return dataset.error();
   const Hdf5Sizes& sizes = dataset->sizes;
+  if (sizes.size() == 2 && shape && sizes[1] == shape->taxel_count()) return CountsDataset(*std::move(dataset), *shape);
   if (sizes.size() != 3 || sizes[1] == 0 || sizes[2] == 0 || sizes[1] > kMaxLines || sizes[2] > kMaxLines) {
     return bad_input(dataset->place + " is " + sizes_text(sizes) + "; frames x rows x cols is expected, of at most " +
                      "1024x1024 taxels");

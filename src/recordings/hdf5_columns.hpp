@@ -24,7 +24,7 @@ template <typename T>
   return std::clamp<hsize_t>(dataset.chunk.empty() ? most : dataset.chunk[0], 1, most);
 }
 
-/// A dataset (N, rows, cols) of numbers, read as counts.
+/// A dataset (N, rows, cols) of numbers, or (N, taxels) of a given shape, read as counts.
 class CountsDataset {
  public:
   /// Fails where the dataset has not that form or, where one is given, another shape.

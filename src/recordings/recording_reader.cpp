@@ -41,7 +41,8 @@ Result<std::size_t> find_array(const std::vector<RecordedArray>& arrays, const s
 
 RecordingPlace recording_place(const std::string& text) {
   std::error_code ignored;
-  for (const std::string_view mark : {".mcap#", ".dsa#", ".dsa3#", ".csv#", ".txt#", ".npz#"}) {
+  for (const std::string_view mark :
+       {".mcap#", ".dsa#", ".dsa3#", ".csv#", ".txt#", ".npz#", ".mat#", ".h5#", ".hdf5#"}) {
     const std::size_t at = text.rfind(mark);
     if (at == std::string::npos || std::filesystem::exists(text, ignored)) continue;
     const std::size_t end = at + mark.size();

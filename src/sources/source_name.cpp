@@ -13,10 +13,14 @@ namespace {
 
 using acquisition::Transport;
 
-/// With a rate or an order of lines, and without a protocol, a file may be more than the bytes of a device.
+/// Without a protocol, a file may be more than the bytes of a device: with a rate or an order of lines, or with a shape
+/// where its system does not tell one.
 bool is_file_of_frames(const acquisition::SourceUri& uri) {
-  return uri.transport == Transport::file && (uri.rate_hz || !uri.order.is_plain()) && uri.protocol.name == "auto" &&
-         !uri.protocol.has_layout() && recordings::frame_format(recordings::recording_place(uri.path).path);
+  if (uri.transport != Transport::file || uri.protocol.name != "auto" || uri.protocol.has_layout()) return false;
+  const Result<recordings::FrameFormat> format = recordings::frame_format(recordings::recording_place(uri.path).path);
+  if (!format) return false;
+  const bool needs_shape = recordings::may_have_times(*format) || *format == recordings::FrameFormat::novel_asc;
+  return uri.rate_hz || !uri.order.is_plain() || (uri.protocol.shape && needs_shape);
 }
 
 SourceKind kind_of(const acquisition::SourceUri& uri) {

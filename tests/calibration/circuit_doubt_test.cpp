@@ -40,6 +40,14 @@ std::vector<ArrayDescription> kinds() {
           described(Circuit::divider, IdleRows::grounded, IdleColumns::floating), described(Circuit::transimpedance)};
 }
 
+/// Every press lifts its row and its column.
+ArrayDescription two_wires(double drive_ohm, double load_ohm) {
+  ArrayDescription array = described(Circuit::divider, IdleRows::floating, IdleColumns::floating);
+  array.readout.drive_ohm.assign(8, drive_ohm);
+  array.readout.load_ohm.assign(8, load_ohm);
+  return array;
+}
+
 /// Presses on every second row and column.
 Recording presses_on(const ArrayDescription& truth, std::uint64_t seed) {
   Recording recording = record(truth, "calibration", seed);
@@ -83,6 +91,28 @@ TEST(CircuitDoubt, names_the_circuit_that_explains_the_frames_of_one_that_is_des
       EXPECT_NE(said.front().find("circuit = \"auto\""), std::string::npos) << said.front();
     }
   }
+}
+
+TEST(CircuitDoubt, names_an_array_of_two_wires_that_is_described_as_grounded) {
+  const auto said = doubts(grounded_divider(), presses_on(two_wires(50.0, 1000.0), 1));
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_NE(said.front().find("\"divider, idle rows and columns floating\""), std::string::npos) << said.front();
+  EXPECT_NE(said.front().find("write idle_rows and idle_columns = \"floating\""), std::string::npos) << said.front();
+}
+
+TEST(CircuitDoubt, is_why_frames_cannot_be_used) {
+  const Recording recording = presses_on(two_wires(100.0, 10e3), 1);
+  const auto database = build_sample_database(grounded_divider(), recording.frames, recording.loads);
+  ASSERT_FALSE(database);
+  const std::string& message = database.error().message;
+  EXPECT_NE(message.find("labelled frames cannot be used"), std::string::npos) << message;
+  EXPECT_NE(message.find("these frames fit \"divider, idle rows and columns floating\""), std::string::npos) << message;
+  EXPECT_EQ(message.find("stuck lines"), std::string::npos) << message;
+}
+
+TEST(CircuitDoubt, leaves_two_wires_that_are_described_alone) {
+  const ArrayDescription truth = two_wires(50.0, 1000.0);
+  EXPECT_TRUE(doubts(truth, presses_on(truth, 1)).empty());
 }
 
 TEST(CircuitDoubt, names_the_bits_of_an_adc_whose_end_no_reading_comes_near) {

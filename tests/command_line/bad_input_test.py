@@ -30,7 +30,7 @@ class Usage(SmallArray):
             ("calibrate", "--array"),
             ("run", "--model"),
             ("evaluate", "--model"),
-            ("doctor", "--model"),
+            ("doctor", "--in"),
         ):
             with self.subTest(command):
                 self.refuse([command], [option])

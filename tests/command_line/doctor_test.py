@@ -73,6 +73,47 @@ class Doctor(SmallArray):
         report = self.unhealthy(self.work / "noisy" / "frames.csv")
         self.assertIn("counts of noise", report["problems"][0])
 
+    def test_counts_without_a_model(self):
+        frames = self.calibration / "frames.csv"
+        result = dermis("doctor", "--in", frames, "--array", self.array, "--loads", self.calibration / "loads.csv")
+        self.assertEqual((result.returncode, result.stderr), (0, ""), result.stdout)
+        self.assertTrue(result.stdout.endswith("nothing to doubt in these counts\n"), result.stdout)
+        report = json.loads(dermis("doctor", "--in", frames, "--json").stdout)
+        self.assertEqual((report["healthy"], report["problems"], report["remarks"]), (True, [], []))
+
+    def test_doubts_of_counts_without_a_model(self):
+        lines = (self.calibration / "frames.csv").read_text().splitlines()
+        first = lines[0].split(",").index("r0c0")
+        rows = 1 + max(int(name[1 : name.index("c")]) for name in lines[0].split(",")[first:])
+        cols = (len(lines[0].split(",")) - first) // rows
+
+        def turned(fields):
+            taxels = fields[first:]
+            return fields[:first] + [value for row in reversed(range(rows)) for value in taxels[row * cols :][:cols]]
+
+        flipped = [lines[0]] + [",".join(turned(line.split(","))) for line in lines[1:]]
+        frames = self.written("flipped.csv", "\n".join(flipped) + "\n")
+        self.assertEqual(dermis("doctor", "--in", frames).returncode, 0)  # nothing but the loads can tell
+        result = dermis("doctor", "--in", frames, "--loads", self.calibration / "loads.csv")
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertIn("turn the frames (flip_rows=1)", result.stdout)
+        self.assertIn("the readings are doubtful: 1 finding", result.stderr)
+
+    def test_nothing_but_zeros_without_a_model(self):
+        lines = (self.calibration / "frames.csv").read_text().splitlines()
+        first = lines[0].split(",").index("r0c0")
+        zeros = [",".join(line.split(",")[:first] + ["0"] * (line.count(",") + 1 - first)) for line in lines[1:101]]
+        frames = self.written("zeros.csv", "\n".join([lines[0], *zeros]) + "\n")
+        result = dermis("doctor", "--in", frames)
+        self.assertEqual(result.returncode, 0, result.stderr)  # it may be untouched
+        self.assertIn("remark: every reading of 100 frames is 0", result.stdout)
+        lowers = self.written(
+            "lowers.toml", self.array.read_text().replace("adc_bits", "pressure_raises_reading = false\nadc_bits", 1)
+        )
+        result = dermis("doctor", "--in", frames, "--array", lowers)
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertIn("every reading of 100 frames is 0", result.stdout)
+
     def test_an_open_row_in_plain_words(self):
         frames = self.recording("open_rows = [2]\nfrom_frame = 120\n")
         result = self.examine(frames)

@@ -77,7 +77,32 @@ def packed10(path):
     path.write_bytes(int(bits, 2).to_bytes(len(bits) // 8, "big"))
 
 
-TIMED = {"a.asf": tekscan, "tekscan.csv": tekscan, "xsensor.csv": xsensor, "a.lst": novel, "a.dsa": dsa}
+def matlab(path):
+    """Version 5, as MATLAB compresses it; the second size counts the frames."""
+
+    def element(kind, content):
+        return struct.pack("<II", kind, len(content)) + content + bytes(-len(content) % 8)
+
+    def variable(name, array):
+        sizes = struct.pack(f"<{array.ndim}i", *array.shape)
+        flags = struct.pack("<II", 6, 0)
+        matrix = element(6, flags) + element(5, sizes) + element(1, name) + element(9, array.tobytes(order="F"))
+        packed = zlib.compress(struct.pack("<II", 14, len(matrix)) + matrix)
+        return struct.pack("<II", 15, len(packed)) + packed
+
+    header = b"MATLAB 5.0 MAT-file".ljust(124) + b"\x00\x01IM"
+    rate = numpy.full((1, 1), RATE)
+    path.write_bytes(header + variable(b"data", counts().transpose(1, 0, 2)) + variable(b"fs", rate))
+
+
+TIMED = {
+    "a.asf": tekscan,
+    "tekscan.csv": tekscan,
+    "xsensor.csv": xsensor,
+    "a.lst": novel,
+    "a.dsa": dsa,
+    "a.mat": matlab,
+}
 UNTIMED = {
     "a.txt": text_matrix,
     "matrix.csv": text_matrix,

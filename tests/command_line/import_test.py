@@ -4,7 +4,9 @@
 
 import csv
 import json
+from pathlib import Path
 
+import h5py
 import numpy
 import support
 from foreign_files import ALL, COLS, FRAMES, RATE, ROWS, TIMED, UNTIMED, counts
@@ -123,6 +125,75 @@ class Imports(support.SmallArray):
                 self.assertEqual(info["format"], expected)
                 self.assertEqual((info["frames"], info["rows"], info["cols"]), (FRAMES, ROWS, COLS))
                 self.assertEqual(info["duration_s"] is None, name in UNTIMED)
+
+    def same_frames(self, source, *options):
+        """The frames of a file are those of all files here, by `convert`."""
+        out = self.work / "out.npy"
+        result = support.dermis("convert", source, out, "--force", *options)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        numpy.testing.assert_array_equal(numpy.load(out), counts())
+
+    def test_datasets_of_any_name(self):
+        path = self.work / "episode.h5"
+        with h5py.File(path, "w") as file:
+            file["/observations/tactile"] = counts()
+            file["/observations/flat"] = counts().reshape(FRAMES, -1)
+            file["/observations/qpos"] = numpy.zeros((FRAMES, 7, 3))
+        self.same_frames(f"{path}#/observations/tactile", "--rate", RATE)
+        self.same_frames(f"{path}#observations/flat", "--rate", RATE, "--rows", ROWS, "--cols", COLS)
+        self.refuse(
+            ("info", path),
+            ["name one", "'/observations/tactile' (60 x 4 x 5)", "'/observations/qpos' (60 x 7 x 3)"],
+        )
+        self.refuse(("info", f"{path}#/tactile"), ["no dataset '/tactile'", "'/observations/tactile'"])
+        self.refuse(("record", "--from", f"{path}#/observations/tactile", "--out", self.work / "a.mcap"), ["rate"])
+        source = f"file:{path}%23/observations/tactile?rate={RATE:g}"
+        result = support.dermis("record", "--from", source, "--out", self.work / "a.mcap")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        with h5py.File(path, "a") as file:
+            file["/observations/time_s"] = 5.0 + numpy.arange(FRAMES) / RATE
+        info = json.loads(self.succeed("info", f"{path}#/observations/tactile", "--json"))
+        self.assertEqual((info["format"], info["frames"], info["rate_hz"]), ("HDF5 dataset", FRAMES, RATE))
+
+    def test_links_out_of_a_file_are_no_datasets(self):
+        inner, outer = self.work / "inner.h5", self.work / "outer.h5"
+        with h5py.File(inner, "w") as file:
+            file["/group/tactile"] = counts()
+        with h5py.File(outer, "w") as file:
+            file["group"] = h5py.ExternalLink(str(inner), "/group")
+        self.refuse(("info", f"{outer}#/group/tactile"), ["no dataset '/group/tactile'"])
+
+    def test_matlab_of_version_7_3(self):
+        path = self.work / "a.mat"
+        with h5py.File(path, "w", userblock_size=512) as file:
+            file["data"] = counts().transpose(2, 0, 1)  # MATLAB has it as rows x frames x cols
+            file["fs"] = numpy.full((1, 1), RATE)
+        with open(path, "r+b") as file:
+            file.write(b"MATLAB 7.3 MAT-file".ljust(124) + b"\x00\x02IM")
+        for source in (path, f"{path}#data"):
+            self.same_frames(source)
+        info = json.loads(self.succeed("info", path, "--json"))
+        self.assertEqual((info["format"], info["rows"], info["rate_hz"]), ("MATLAB", ROWS, RATE))
+        path.write_bytes(path.read_bytes()[:2000])
+        self.refuse(("info", path), ["a.mat"])
+
+    def test_samples_of_matlab_and_novel(self):
+        folder = Path(__file__).parents[3] / "shared/data/layouts"
+        if not folder.exists():
+            self.skipTest("SKIPPED: ../shared/data/layouts is not there")
+        out = self.work / "out.npy"
+        for name, options in (("time_in_the_middle.mat", ("--rows", 12, "--cols", 14)), ("insole.asc", ())):
+            with self.subTest(name):
+                result = support.dermis("convert", folder / name, out, "--force", *options)
+                self.assertEqual(result.returncode, 0, result.stderr)
+                frames = numpy.load((folder / name).with_suffix(".npy"))
+                numpy.testing.assert_array_equal(numpy.load(out), frames)
+        self.refuse(("info", folder / "time_in_the_middle.mat"), ["12 x 30 x 14", "rows and cols must be given"])
+        source = f"file:{folder / 'time_in_the_middle.mat'}?rows=12&cols=14"
+        result = support.dermis("record", "--from", source, "--out", self.work / "a.mcap")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        info = json.loads(self.succeed("info", self.work / "a.mcap", "--json"))
+        self.assertEqual((info["frames"], info["rows"], info["cols"]), (30, 12, 14))
 
     def test_info_takes_a_shape_that_the_file_does_not_tell(self):
         for name in ("a.packed10", "a.txt", "a.asf"):

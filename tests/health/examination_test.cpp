@@ -116,6 +116,19 @@ TEST(Examination, gains_that_have_changed_are_found_by_touches) {
   EXPECT_LT(*fresh.ageing.gain_spread, 0.02);
 }
 
+TEST(Examination, what_raw_counts_alone_say_is_a_finding) {
+  Measurement measurement;
+  Examined examined(measurement.model);
+  for (std::size_t number = 0; number < 256; ++number) {
+    measurement.newtons.assign(64, 0.0);
+    if (number % 4 != 0) measurement.newtons[number / 4] = 10.0;
+    RawFrame raw = measurement.frame(number);
+    for (std::size_t k = 1; k < 64; k += 2) raw.counts[k] = raw.counts[k - 1];
+    examined.add(raw);
+  }
+  EXPECT_TRUE(says(examined.diagnosis(), "columns 0 and 1, 2 and 3, 4 and 5, ... read the same"));
+}
+
 TEST(Examination, what_the_calibration_doubted_is_a_finding) {
   Measurement measurement;
   measurement.model.provenance[pipeline::kDoubts] = "drive_ohm is not as given";

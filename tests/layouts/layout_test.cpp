@@ -76,6 +76,11 @@ TEST(TextLayout, a_line_is_a_frame_whatever_separates_its_values) {
   }
 }
 
+TEST(TextLayout, rows_and_taxels_may_be_counted_from_1_on) {
+  EXPECT_EQ(readings_of("line = \"{row-1}: {values}\"\n", "2: 3 4\n1: 1 2\n0: 9 9\n1: 5 6\n2: 7 8\n"), kOneToEight);
+  EXPECT_EQ(readings_of("line = \"{first-1} {value}\"\n", "1 1\n2 2\n3 3\n4 4\n1 5\n2 6\n3 7\n4 8\n"), kOneToEight);
+}
+
 TEST(PacketLayout, has_at_most_64_arrays) {
   std::string toml = "[layout]\npacket = [\"AA\", \"values u8\"]\n";
   for (int k = 0; k < 65; ++k) toml += "[[layout.array]]\nname = \"a" + std::to_string(k) + "\"\nrows = 1\ncols = 1\n";
@@ -92,10 +97,10 @@ TEST(TextLayout, rows_come_in_any_order_by_their_numbers) {
 }
 
 TEST(TextLayout, lines_may_count_from_one_and_others_are_told) {
-  EXPECT_EQ(readings_of("line = \"{row},{values}\"\nlines_from = 1\n", "2,3,4\n1,1,2\n1,5,6\n2,7,8\n"), kOneToEight);
+  EXPECT_EQ(readings_of("line = \"{row-1},{values}\"\n", "2,3,4\n1,1,2\n1,5,6\n2,7,8\n"), kOneToEight);
   const auto decoder = make_decoder(layout_of(std::string(kTwoByTwo) + "line = \"{row},{values}\"\n"), 0, false);
   EXPECT_TRUE(frames_of(*decoder, bytes_of("1,1,2\n2,3,4\n1,1,2\n2,3,4\n")).empty());
-  EXPECT_EQ(decoder->advice(), "row 2 is outside of 2x2, whose lines count from 0");
+  EXPECT_EQ(decoder->advice(), "row 2 is outside of 2x2: lines count from 0, or from 1 as {row-1}");
   const auto larger =
       make_decoder(layout_of(std::string("[layout]\nrows = 3\ncols = 2\nline = \"{row},{values}\"\n")), 0, false);
   EXPECT_TRUE(frames_of(*larger, bytes_of("0,1,2\n1,3,4\n0,1,2\n1,3,4\n")).empty());

@@ -180,7 +180,8 @@ TEST(FrameFiles, list_the_known_endings_where_the_name_has_another) {
     EXPECT_EQ(source.error().message,
               "'" + name +
                   "': the ending of its name tells no format of frames; known: .csv, .mcap, .h5, .hdf5, "
-                  ".wiresens.h5, .wiresens.hdf5 and .npy, and to read .npz, .dsa, .dsa3, .asf, .lst, .txt, .png and "
+                  ".wiresens.h5, .wiresens.hdf5 and .npy, and to read .npz, .dsa, .dsa3, .asf, .lst, .asc, .mat, .txt, "
+                  ".png and "
                   ".packed10");
     EXPECT_FALSE(create_frames(name, {1, 1}));
   }

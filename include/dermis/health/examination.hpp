@@ -12,8 +12,8 @@
 namespace dermis::health {
 
 /// Examines an array by the frames of one stream, however it is touched. It reports line faults, noise and drift of the
-/// unloaded taxels, saturation, temperature, misfit of the circuit and gains that have changed. Keeps 8 bytes a frame.
-/// Not thread-safe.
+/// unloaded taxels, saturation, temperature, misfit of the circuit and gains that have changed. It adds the findings of
+/// a RawExamination. Keeps 8 bytes a frame. Not thread-safe.
 class Examination {
  public:
   /// `model` must outlive the examination.

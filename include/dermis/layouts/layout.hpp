@@ -53,6 +53,7 @@ struct TextField {
   std::string literal{};  ///< Where it is one. Blanks in it stand for any blanks.
   std::size_t array = 0;  ///< values: place in Layout::arrays.
   double unit = 1.0;      ///< Factor on its number.
+  std::uint64_t from = 0;  ///< row, col, first: the number of the first one.
 };
 
 /// Lines of text. A line that fits none of the patterns holds no readings.
@@ -66,7 +67,6 @@ struct TextLayout {
   std::string frame_begin{};  ///< A line that begins with it begins a frame, and may go on as a row; empty: none.
   /// Ends a frame where rows carry no number: a line that begins with it, or for "" an empty one.
   std::optional<std::string> frame_end{};
-  std::size_t lines_from = 0;  ///< Number of the first row, column or taxel.
   std::size_t width = 0;       ///< Characters of a reading, which then need no separator; 0: any.
   char decimal_point = '.';
   bool is_hexadecimal = false;

@@ -58,9 +58,6 @@ class LineReader {
   /// Goes back to the first line that was not forgotten.
   void rewind() noexcept { read_ = searched_ = 0; }
 
-  /// Number of bytes pushed.
-  [[nodiscard]] std::uint64_t end() const noexcept { return window_.position() + window_.bytes().size(); }
-
   /// Number of bytes pushed up to the end of the line that was read last.
   [[nodiscard]] std::uint64_t position() const noexcept { return window_.position() + read_; }
 

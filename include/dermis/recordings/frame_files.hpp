@@ -25,14 +25,17 @@ enum class FrameFormat {
   wiresens,  ///< .wiresens.h5, .wiresens.hdf5; files of .h5 and .hdf5 that are read may be of this format too
   npy,       ///< .npy
   // Formats of other systems, only read (dermis/importers):
-  npz,          ///< .npz
-  dsa,          ///< .dsa, .dsa3
-  tekscan,      ///< .asf; .csv and .txt that begin as one
-  xsensor,      ///< .csv and .txt that begin as one
-  novel_lst,    ///< .lst
-  text_matrix,  ///< .txt; .csv that begins with numbers
-  png_stack,    ///< .png, or a folder of them
-  packed10,     ///< .packed10
+  npz,           ///< .npz
+  dsa,           ///< .dsa, .dsa3
+  tekscan,       ///< .asf; .csv and .txt that begin as one
+  xsensor,       ///< .csv and .txt that begin as one
+  novel_lst,     ///< .lst
+  novel_asc,     ///< .asc
+  matlab,        ///< .mat
+  text_matrix,   ///< .txt; .csv that begins with numbers
+  png_stack,     ///< .png, or a folder of them
+  packed10,      ///< .packed10
+  hdf5_dataset,  ///< A dataset of another name of .h5 and .hdf5: "file.h5#/observations/tactile"
 };
 
 /// "frames.csv", "MCAP", "HDF5", "WiReSens HDF5", "NumPy", ...
@@ -40,6 +43,9 @@ enum class FrameFormat {
 
 /// If false, FrameFileInput::rate_hz gives the times.
 [[nodiscard]] bool has_times(FrameFormat format);
+
+/// Files without times, as a rule, that may have some: FrameFileInput::rate_hz is needed where they have none.
+[[nodiscard]] bool may_have_times(FrameFormat format);
 
 /// Format by the ending of the name; pipes and devices such as /dev/stdin are frames.csv. Fails on another ending, and
 /// lists the known ones.

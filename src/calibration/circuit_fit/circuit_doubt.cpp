@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -52,6 +53,25 @@ ArrayDescription without_readout(ArrayDescription array) {
   unknown.pressure_raises_reading = array.readout.pressure_raises_reading;
   array.readout = std::move(unknown);
   return array;
+}
+
+/// Both lines of a taxel are connected, all others float; "auto" does not try it.
+bool has_two_wires(const Readout& readout) {
+  return readout.circuit == Circuit::divider && readout.idle_rows == IdleRows::floating &&
+         readout.idle_columns == IdleColumns::floating;
+}
+
+/// The kinds that "auto" tries, and the one of two wires.
+Trials rivals_of(const ArrayDescription& array, const CircuitFrames& frames) {
+  Trials rivals = trials_of_all_kinds(without_readout(array), frames);
+  const auto floating = std::find_if(rivals.begin(), rivals.end(), [](const CircuitTrial& rival) {
+    return rival.array.readout.circuit == Circuit::divider && rival.array.readout.idle_rows == IdleRows::floating;
+  });
+  CircuitTrial two_wires = *floating;
+  two_wires.name = "divider, idle rows and columns floating";
+  two_wires.array.readout.idle_columns = IdleColumns::floating;
+  rivals.insert(std::next(floating), std::move(two_wires));
+  return rivals;
 }
 
 bool is_same_kind(const Readout& a, const Readout& b) {
@@ -124,9 +144,10 @@ std::string describe(const Trials& rivals, const CircuitTrial& best, const Array
         "drive_ohm and load_ohm, or write \"fit\"",
         drive_over_load(best.fit->array), drive_over_load(array));
   }
-  return fmt::format(
-      "these frames fit {} better than the circuit of array.toml: check readout, or write circuit = \"auto\"",
-      names_of_best(rivals, best));
+  return fmt::format("these frames fit {} better than the circuit of array.toml: {}", names_of_best(rivals, best),
+                     has_two_wires(best.array.readout)
+                         ? "write idle_rows and idle_columns = \"floating\", and check drive_ohm and load_ohm"
+                         : "check readout, or write circuit = \"auto\"");
 }
 
 }  // namespace
@@ -134,7 +155,7 @@ std::string describe(const Trials& rivals, const CircuitTrial& best, const Array
 std::optional<std::string> doubt_circuit(const ArrayDescription& array, const CircuitFrames& frames) {
   if (array.has_unknown_circuit()) return std::nullopt;
   const CircuitTrial described{.name = "array.toml", .array = array, .frames = &frames};
-  Trials rivals = trials_of_all_kinds(without_readout(array), frames);
+  Trials rivals = rivals_of(array, frames);
   Trials trials{described};
   std::copy_if(rivals.begin(), rivals.end(), std::back_inserter(trials),
                [&](const CircuitTrial& rival) { return is_same_kind(rival.array.readout, array.readout); });

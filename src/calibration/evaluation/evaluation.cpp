@@ -50,7 +50,7 @@ double judged_from(const pipeline::Model& model, const LoadsOfFrames& loads_of) 
 Result<Evaluation> evaluate(const pipeline::Model& model, std::span<const RawFrame> frames, std::span<const Load> loads,
                             FurtherEstimator* further) {
   if (Status checked = check_loads(model.array, frames.size(), loads); !checked) return checked.error();
-  if (const auto exchange = check_labels(model.array, frames, loads, {}).exchange) return bad_input(*exchange);
+  if (const auto turn = check_labels(model.array, frames, loads, {}).turn) return bad_input(*turn);
   Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(model);
   if (!pipeline) return pipeline.error();
   if (further != nullptr && further->taxel_count() != model.array.taxel_count()) {

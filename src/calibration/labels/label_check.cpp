@@ -13,7 +13,7 @@
 #include "calibration/labels/frame_sums.hpp"
 #include "calibration/labels/label_shift.hpp"
 #include "calibration/labels/labels.hpp"
-#include "calibration/labels/place_check.hpp"
+#include "calibration/labels/turned_lines.hpp"
 #include "calibration/labels/unit_check.hpp"
 #include "calibration/robust_line.hpp"
 #include "dermis/calibration/sample_temperatures.hpp"
@@ -89,7 +89,7 @@ LabelCheck check_labels(const ArrayDescription& array, std::span<const RawFrame>
                         Nanos settle_time) {
   LabelCheck check;
   const std::vector<FrameSum> sums = sum_frames(array, frames, loads, settle_time);
-  check.exchange = find_exchange(array, sums, loads);
+  check.turn = find_turn(array, sums, loads);
   std::vector<const FrameSum*> unloaded;
   std::vector<const FrameSum*> loaded;
   for (const FrameSum& sum : sums) {

@@ -20,7 +20,7 @@ namespace dermis::calibration {
 struct LabelCheck {
   std::vector<std::size_t> pressed_frames;  ///< Called unloaded, but pressed; rising.
   std::vector<std::string> remarks;         ///< Errors in the labels, a sentence each.
-  std::optional<std::string> exchange;      ///< The error that makes all of them useless: find_exchange().
+  std::optional<std::string> turn;          ///< The error that makes all of them useless: find_turn().
 
   [[nodiscard]] bool is_pressed(std::size_t frame) const {
     return std::binary_search(pressed_frames.begin(), pressed_frames.end(), frame);

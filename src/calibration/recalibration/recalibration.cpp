@@ -52,7 +52,7 @@ Result<Recalibration> recalibrate(const pipeline::Model& model, std::span<const 
                                   std::span<const Load> loads) {
   if (Status checked = check_loads(model.array, frames.size(), loads); !checked) return checked.error();
   if (Status checked = check_readings(model.array, frames, loads); !checked) return checked.error();
-  if (const auto exchange = check_labels(model.array, frames, loads, {}).exchange) return bad_input(*exchange);
+  if (const auto turn = check_labels(model.array, frames, loads, {}).turn) return bad_input(*turn);
   const Result<KnownPresses> gathered = gather(model, frames, loads);
   if (!gathered) return gathered.error();
   const std::vector<KnownPress>& presses = gathered->presses();

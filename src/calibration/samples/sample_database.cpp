@@ -117,7 +117,7 @@ Sample make_sample(const ArrayDescription& array, std::size_t frame, std::span<c
 
 /// Leaves out the samples for which `is_bad` holds, and counts them.
 template <typename Predicate>
-void reject_if(SampleDatabase& database, Predicate is_bad, const char* reason) {
+void reject_if(SampleDatabase& database, Predicate is_bad, const std::string& reason) {
   for (const Sample& sample : database.samples) {
     if (!is_bad(sample)) continue;
     if (database.frames_rejected++ == 0) database.first_rejection = fmt::format("frame {}: {}", sample.frame, reason);
@@ -126,9 +126,11 @@ void reject_if(SampleDatabase& database, Predicate is_bad, const char* reason) {
 }
 
 void reject_unsolved(SampleDatabase& database) {
+  const std::string mend =
+      database.doubts.empty() ? "check drive_ohm, load_ohm, supply and stuck lines" : database.doubts.back();
   reject_if(
       database, [](const Sample& sample) { return sample.siemens.empty(); },
-      "readings that the circuit of the array cannot give; check drive_ohm, load_ohm, supply and stuck lines");
+      "readings that the circuit of the array cannot give; " + mend);
 }
 
 /// A few samples without a temperature among many with one are left out, so that temperature stays an input.
@@ -249,11 +251,13 @@ void doubt_circuit(std::span<const RawFrame> frames, std::span<const Load> loads
 }
 
 /// The samples of an array whose circuit is known.
-Result<SampleDatabase> invert_frames(const ArrayDescription& array, std::span<const RawFrame> frames,
+Result<SampleDatabase> invert_frames(const InstrumentFit& instrument, std::span<const RawFrame> frames,
                                      std::span<const Load> loads, Nanos settle_time,
                                      const std::function<void(double)>& progress) {
+  const ArrayDescription& array = instrument.array;
   SampleDatabase database;
   database.array = array;
+  database.doubts = instrument.doubts;
   const Result<compensation::Compensator> compensator = compensation::Compensator::create(array);
   if (!compensator) return compensator.error();
   const Readout& readout = array.readout;
@@ -292,7 +296,7 @@ Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std:
   ArrayDescription known = array;
   std::optional<std::string> flickering = leave_out_flickering(frames, loads, known);
   LabelCheck labels = check_labels(known, frames, loads, settle_time);
-  if (labels.exchange) return bad_input(*labels.exchange);
+  if (labels.turn) return bad_input(*labels.turn);
   if (flickering) labels.remarks.insert(labels.remarks.begin(), *std::move(flickering));
   std::vector<Load> kept;
   if (!labels.pressed_frames.empty()) {
@@ -322,15 +326,15 @@ Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std:
   labels.remarks.insert(labels.remarks.end(), instrument.statements.begin(), instrument.statements.end());
   known = instrument.array;
   if (array.readout.circuit != Circuit::automatic) doubt_circuit(frames, chosen, settle_time, instrument);
-  Result<SampleDatabase> database = invert_frames(known, frames, loads, settle_time, progress);
+  Result<SampleDatabase> database = invert_frames(instrument, frames, loads, settle_time, progress);
   if (!database && array.readout.circuit == Circuit::automatic && known.readout.circuit != Circuit::none) {
     circuit->statements.push_back("the circuit that was found does not do: " + database.error().message +
                                   "; readings are taken as they are");
     circuit->array = without_circuit(known);
-    database = invert_frames(circuit->array, frames, loads, settle_time, progress);
+    instrument.array = circuit->array;
+    database = invert_frames(instrument, frames, loads, settle_time, progress);
   }
   if (!database) return database.error();
-  database->doubts = std::move(instrument.doubts);
   database->lacks_proof = instrument.lacks_proof;
   database->unexplained_share = instrument.unexplained;
   database->circuit_fit = std::move(circuit);
