@@ -65,9 +65,10 @@ std::string with_queue(const acquisition::RecorderProgress& progress) {
 /// Why nothing is recorded, and what the bytes look like.
 Error without_frames(const std::string& from, const Status& recorded, std::span<const std::uint8_t> bytes) {
   Error error = recorded ? failed("'" + from + "': not a single frame came: nothing is recorded") : recorded.error();
-  const std::string look = look_of_unread(bytes, from);
+  const std::string look = look_of_unread(bytes);
   if (look.empty()) return error;
-  error.message += recorded ? ". " + look : more_by_describe(from);
+  if (recorded) error.message += ". " + look;
+  if (error.message.ends_with(look)) error.message += more_by_describe(from);
   return error;
 }
 

@@ -11,16 +11,17 @@
 
 namespace dermis::app {
 
-std::string look_of_unread(std::span<const std::uint8_t> bytes, const std::string& source) {
+std::string look_of_unread(std::span<const std::uint8_t> bytes) {
   const std::vector<describing::Proposal> proposals = describing::propose(bytes, {});
-  return proposals.empty() ? std::string() : describing::look_of(proposals.front()) + more_by_describe(source);
+  return proposals.empty() ? std::string() : describing::look_of(proposals.front());
 }
 
 std::string look_of_unread_file(const std::string& path) {
   const std::string text = files::first_bytes_of(path, describing::kMostBytes);
   const std::string_view kind = files::kind_of(text);
   if (!kind.empty() && kind != files::kTableKind) return {};
-  return look_of_unread({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, path);
+  const std::string look = look_of_unread({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  return look.empty() ? look : look + more_by_describe(path);
 }
 
 std::string more_by_describe(const std::string& source) {

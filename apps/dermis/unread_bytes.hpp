@@ -10,11 +10,10 @@
 
 namespace dermis::app {
 
-/// "The bytes look like 60 lines of 81 numbers: rows=9, cols=9?; 'dermis describe SOURCE' shows more"; empty where no layout
-/// reads the bytes.
-[[nodiscard]] std::string look_of_unread(std::span<const std::uint8_t> bytes, const std::string& source);
+/// "The bytes look like 60 lines of 81 numbers: rows=9, cols=9?"; empty where no layout reads them.
+[[nodiscard]] std::string look_of_unread(std::span<const std::uint8_t> bytes);
 
-/// The same of a file that nobody has described; empty of recordings, models and the like.
+/// The same of a file that nobody has described, and what shows more; empty of recordings, models and the like.
 [[nodiscard]] std::string look_of_unread_file(const std::string& path);
 
 /// "; 'dermis describe SOURCE' shows more"
