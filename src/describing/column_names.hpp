@@ -10,8 +10,8 @@
 
 namespace dermis::describing {
 
-/// The field of a layout that a column of such a name holds: "Timestamp [ms]" -> "time_ms"; "time" where its unit is
-/// not said; empty for any other name.
+/// The field of a layout that a column of such a name holds: "Timestamp [ms]" -> "time_ms". It is "time" where its unit
+/// is not said, and empty for any other name.
 [[nodiscard]] std::string field_of_name(std::string_view name);
 
 /// The unit of readings that such a name says: "kPa"; empty where it says none.
@@ -20,8 +20,8 @@ namespace dermis::describing {
 /// The name without its number: "R_ch12" -> "R_ch".
 [[nodiscard]] std::string stem_of(std::string_view name);
 
-/// The names in the head of a table for the tokens of `line` that are numbers or times: of the nearest line before that
-/// has as many cells. Empty where there is none.
+/// The names in the head of a table for the tokens of `line` that are numbers or times. The head is the nearest line
+/// before that has as many cells. Empty where there is none.
 [[nodiscard]] std::vector<std::string> names_of_columns(const std::vector<Line>& lines, std::size_t line);
 
 }  // namespace dermis::describing

@@ -127,7 +127,7 @@ class ColumnReader {
   void give(Column& column, const std::string& field, const std::string& what) {
     const bool is_second =
         field.starts_with("time") || field == "clock" || field == "datetime" ? has_time() : is_given(field);
-    if (is_second && field != "cycle") {
+    if (is_second && field != "cycle" && field != "turn") {
       column.field = "skip";
       return;
     }

@@ -133,6 +133,8 @@ class Interpreter {
     if (base_.spans.empty() || base_.fields.size() != columns_.size()) return {};
     const bool is_taxel = base_.spans.front().end - base_.spans.front().begin == 1;
     const std::size_t count = counting_.size();
+    const auto turns = std::count(base_.fields.begin(), base_.fields.end(), "turn");
+    if (turns > 1) return {};  // rather readings that never change
     if (count == 0) {
       found_.push_back(base_);
     } else if (is_taxel) {
@@ -157,20 +159,17 @@ class Interpreter {
     numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
     return numbers;
   }
-  [[nodiscard]] const char* from_1(std::size_t place) const {
-    return columns_[counting_[place]].is_counted_from_1 ? "-1" : "";
-  }
   [[nodiscard]] std::string named(std::size_t place, const char* otherwise) const {
     const Column& column = columns_[counting_[place]];
     const std::string name = field_of_name(column.name.empty() ? column.label : column.name);
     return name == "row" || name == "col" ? name : otherwise;
   }
-  [[nodiscard]] std::string row_of(std::size_t place) const { return named(place, "row") + from_1(place); }
-  [[nodiscard]] std::string col_of(std::size_t place) const { return named(place, "col") + from_1(place); }
+  [[nodiscard]] std::string row_of(std::size_t place) const { return named(place, "row"); }
+  [[nodiscard]] std::string col_of(std::size_t place) const { return named(place, "col"); }
 
   void add_taxels_in_turn() {
     LineFields fields = base_;
-    fields.fields[counting_[0]] = std::string("first") + from_1(0);
+    fields.fields[counting_[0]] = columns_[counting_[0]].is_counted_from_1 ? "first-1" : "first";
     const std::size_t count = numbers_of(0).size();
     fields.shape = FrameShape{1, count};
     fields.reasons.push_back("a number of each line counts " + std::to_string(count) + " taxels");
@@ -186,6 +185,7 @@ class Interpreter {
       if (what == "columns") shape.cols = numbers.size();
       if (what == "arrays") fields.ids.assign(numbers.begin(), numbers.end());
       fields.fields[counting_[k]] = counted[k];
+      if (what != "arrays" && columns_[counting_[k]].is_counted_from_1) fields.fields[counting_[k]] += "-1";
       fields.reasons.push_back("a number of each line counts " + std::to_string(numbers.size()) + " " + what);
     }
     if (fields.ids.size() > kMostArrays) return;

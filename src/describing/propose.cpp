@@ -19,7 +19,8 @@ namespace {
 
 constexpr double kMostLeft = 1.0 / 3.0;
 constexpr std::size_t kFewestBytes = 16;
-constexpr double kNoise = 0.85;  // roughness of readings that tell nothing
+constexpr std::size_t kFewestTaxels = 4;  // of an array that nobody has named
+constexpr double kNoise = 0.85;           // roughness of readings that tell nothing
 
 /// Readings that rest at the top of their range, and fall.
 void describe_falling(const Trial& trial, Draft& draft) {
@@ -79,6 +80,8 @@ struct Judged {
 };
 
 std::optional<Judged> judge(Draft draft, std::span<const std::uint8_t> bytes, const Known& known) {
+  const bool is_tiny = draft.arrays.front().shape.taxel_count() < kFewestTaxels;
+  if (is_tiny && !known.rows && !known.cols) return std::nullopt;
   if (!known.unit.empty()) draft.keys.emplace_back("unit", quoted(known.unit));
   std::optional<Trial> trial = try_layout(toml_of(draft), bytes);
   if (!trial || trial->frames == 0) return std::nullopt;

@@ -10,7 +10,6 @@
 namespace dermis::describing {
 namespace {
 
-constexpr std::size_t kFewest = 4;       // taxels of an array that nobody has named
 constexpr std::size_t kMostFrames = 24;  // looked at
 constexpr double kLongest = 8.0;         // times as many rows as columns, or the other way round
 constexpr double kAsSmooth = 1.1;        // times the least difference is as good
@@ -77,7 +76,6 @@ std::vector<FrameShape> likely_shapes(const Readings& frames, std::size_t taxels
   const Readings looked(frames.begin(),
                         frames.begin() + static_cast<std::ptrdiff_t>(std::min(frames.size(), kMostFrames)));
   std::vector<Judged> all;
-  if (taxels < kFewest && !known.rows && !known.cols) return {};
   for (std::size_t rows = 1; rows <= taxels && rows <= 1024; ++rows) {
     const FrameShape shape{rows, taxels / rows};
     if (taxels % rows != 0 || shape.cols > 1024 || !is_known(shape, known)) continue;

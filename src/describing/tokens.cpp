@@ -74,10 +74,13 @@ std::size_t decimal_at(std::string_view text, char point, char before) {
   return at;
 }
 
+/// A word for no reading.
 std::size_t nan_at(std::string_view text, char before) {
-  if (is_letter(before) || text.size() < 3 || (text.size() > 3 && is_letter(text[3]))) return 0;
-  const auto is = [&](std::size_t k, char c) { return (text[k] | 0x20) == c; };
-  return is(0, 'n') && is(1, 'a') && is(2, 'n') ? 3 : 0;
+  if (is_letter(before)) return 0;
+  for (const std::string_view word : {"nan", "NaN", "NAN", "null", "None", "NA"}) {
+    if (text.starts_with(word) && (text.size() == word.size() || !is_letter(text[word.size()]))) return word.size();
+  }
+  return 0;
 }
 
 std::size_t hexadecimal_at(std::string_view text, std::size_t width, char before) {

@@ -36,7 +36,7 @@ double strangeness(std::size_t count) {
   const auto side = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(count))));
   if (side * side == count) return 0.0;
   for (std::size_t rows = side + 1; rows > 1; --rows) {
-    if (count % rows == 0) return static_cast<double>(count / rows) > 4.0 * static_cast<double>(rows) ? 0.25 : 0.1;
+    if (count % rows == 0) return count / rows > 4 * rows ? 0.25 : 0.1;
   }
   return 0.3;
 }

@@ -30,15 +30,12 @@ def pressed(frames, rows, cols):
     row, col = numpy.mgrid[0:rows, 0:cols]
     shape = numpy.exp(-((row - rows / 2) ** 2 + (col - cols / 2) ** 2) / 3)
     return [
-        (900 * max(0, numpy.sin(k / 6)) * shape + noise.integers(0, 6, (rows, cols))).astype(int)
-        for k in range(frames)
+        (900 * max(0, numpy.sin(k / 6)) * shape + noise.integers(0, 6, (rows, cols))).astype(int) for k in range(frames)
     ]
 
 
 LINES = "".join(" ".join(map(str, frame.ravel())) + "\n" for frame in pressed(40, 4, 6))
-BINARY = b"".join(
-    b"\xaa\x55" + bytes([k]) + frame.astype(">u2").tobytes() for k, frame in enumerate(pressed(60, 4, 4))
-)
+BINARY = b"".join(b"\xaa\x55" + bytes([k]) + frame.astype(">u2").tobytes() for k, frame in enumerate(pressed(60, 4, 4)))
 
 
 class Describe(support.SmallArray):
@@ -148,7 +145,9 @@ class Describe(support.SmallArray):
 
     def test_what_dermis_cannot_read_is_said_as_it_looks(self):
         shown = self.succeed("info", self.written("bare.csv", LINES.replace(" ", ",")))
-        self.assertRegex(shown, r"(?m)^or +The bytes look like 40 lines of 24 numbers: rows=4, cols=6\?; 'dermis describe ")
+        self.assertRegex(
+            shown, r"(?m)^or +The bytes look like 40 lines of 24 numbers: rows=4, cols=6\?; 'dermis describe "
+        )
         log = self.written("LOG.DAT", LINES)
         self.refuse(["info", log], ["tells no format", "40 lines of 24 numbers", f"'dermis describe {log}' shows more"])
         triples = "".join(

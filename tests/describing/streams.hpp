@@ -28,12 +28,13 @@ inline std::vector<Frame> pressed_frames(const FrameShape& shape, double peak = 
   const auto cols = static_cast<double>(shape.cols);
   const double width = std::max(rows, cols) / 6.0;
   for (std::size_t k = 0; k < kFrames; ++k) {
-    const double phase = static_cast<double>(k);
+    const auto phase = static_cast<double>(k);
     const double row = rows / 2.0 + rows / 4.0 * std::sin(phase / 5.0 + seed);
     const double col = cols / 2.0 + cols / 4.0 * std::cos(phase / 7.0 + seed);
     Frame& frame = frames.emplace_back();
     for (std::size_t i = 0; i < shape.taxel_count(); ++i) {
-      const double down = static_cast<double>(i / shape.cols) - row;
+      const std::size_t taxel_row = i / shape.cols;
+      const double down = static_cast<double>(taxel_row) - row;
       const double right = static_cast<double>(i % shape.cols) - col;
       const double press = peak * std::max(0.0, std::sin(phase / 6.0)) *
                            std::exp(-(down * down + right * right) / (2.0 * width * width));

@@ -11,8 +11,8 @@
 
 namespace dermis::describing {
 
-/// Describes bytes of which no frame was made, as a sentence without its full stop: by the first of the proposals, or
-/// as a person would see them.
+/// Describes bytes of which no frame was made, as a sentence without its full stop. The first of the proposals does so;
+/// where there is none, the bytes are told as a person would see them.
 [[nodiscard]] std::string look_of(std::span<const std::uint8_t> bytes, const Known& known);
 
 /// The same of proposals, which must not be empty.

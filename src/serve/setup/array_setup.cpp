@@ -4,12 +4,14 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -20,6 +22,7 @@
 #include "serve/requests/json_request.hpp"
 #include "serve/setup/first_look.hpp"
 #include "serve/setup/known_arrays.hpp"
+#include "serve/setup/layout_proposals.hpp"
 #include "serve/setup/source_choice.hpp"
 #include "serve/setup/touch_watch.hpp"
 
@@ -32,10 +35,11 @@ using sources::SourceName;
 constexpr std::chrono::milliseconds kPeriod{50};
 constexpr std::chrono::milliseconds kToAnswer{300};  // until a client has what it asked for
 constexpr std::size_t kMostFileName = 255;
+constexpr std::size_t kMostShown = 256;  // bytes of which no frame was made
 constexpr const char* kNoSource = "choose where the array is first";
 
 /// As two digits a byte.
-std::string hex_of(const std::vector<std::uint8_t>& bytes) {
+std::string hex_of(std::span<const std::uint8_t> bytes) {
   std::string hex;
   for (const std::uint8_t byte : bytes) hex += fmt::format("{:02x}", byte);
   return hex;
@@ -53,7 +57,7 @@ std::string suit_json(const std::optional<SourceName>& name, const FirstLook& fo
   setup["rows"] = found.shape ? ordered_json(found.shape->rows) : ordered_json();
   setup["cols"] = found.shape ? ordered_json(found.shape->cols) : ordered_json();
   setup["message"] = found.message;
-  setup["bytes"] = hex_of(found.bytes);
+  setup["bytes"] = hex_of(std::span(found.bytes).first(std::min(found.bytes.size(), kMostShown)));
   return json_text(json);
 }
 
@@ -114,6 +118,8 @@ class ArraySetup::Implementation {
                                              service("/array/use", &Implementation::use),
                                              service("/array/watch", &Implementation::watch),
                                              service("/array/touch", &Implementation::touch),
+                                             service("/layout/propose", &Implementation::propose),
+                                             service("/layout/use", &Implementation::use_layout),
                                              service("/source/look", &Implementation::look),
                                              {"/array/known", [](std::string_view) { return list_known(); }}};
     if (!with_choice) return services;
@@ -124,6 +130,7 @@ class ArraySetup::Implementation {
   }
 
   void show(const FirstLook& found) {
+    unread_ = found.bytes;
     server_->set_document("/suit.json", "application/json", suit_json(name_, found));
   }
 
@@ -222,6 +229,36 @@ class ArraySetup::Implementation {
     watch_ = std::make_unique<TouchWatch>(*name_, shape, options_);
   }
 
+  /// Layouts of the bytes of which no frame was made; `text` has what the client knows of the array.
+  Result<std::string> propose(std::string_view text) {
+    const Result<JsonRequest> request = JsonRequest::parse(text);
+    if (!request) return request.error();
+    const Result<describing::Known> known = known_request(*request);
+    if (!known) return known.error();
+    return layout_proposals(unread_, *known);
+  }
+
+  /// {"name": "mat", "place": 0} and what the client knows: writes that layout, by which the source is then read.
+  Result<std::string> use_layout(std::string_view text) {
+    if (!name_ || !name_->uri) return bad_input(kNoSource);
+    const Result<JsonRequest> request = JsonRequest::parse(text);
+    if (!request) return request.error();
+    const Result<describing::Known> known = known_request(*request);
+    if (!known) return known.error();
+    const Result<std::string> name = request->file_name("name");
+    if (!name) return name.error();
+    const Result<std::optional<std::uint64_t>> place = request->number("place", "that of a proposal");
+    if (!place) return place.error();
+    const std::string file = *name + ".layout.toml";
+    const Result<std::string> array = write_layout(unread_, *known, place->value_or(0), file);
+    if (!array) return array.error();
+    const std::string& from = name_->text;
+    Result<SourceName> described = SourceName::parse(from + (from.find('?') == std::string::npos ? "?" : "&") +
+                                                     "layout=" + file + (array->empty() ? "" : "&array=" + *array));
+    if (!described) return described.error();
+    return look_at(*std::move(described));
+  }
+
   /// From now on touch() gives the sent readings; `request` has their shape.
   Result<std::string> watch(std::string_view request) {
     if (!name_) return bad_input(kNoSource);
@@ -247,6 +284,7 @@ class ArraySetup::Implementation {
   DescribedArray described_;
   std::optional<SourceName> name_;  // this and the rest: of the services, which are called one at a time
   sources::SourceOptions options_;
+  std::vector<std::uint8_t> unread_;   // of which no frame was made
   std::unique_ptr<TouchWatch> watch_;  // null: nobody asked for it
   std::unique_ptr<stream::Server> server_;
 };

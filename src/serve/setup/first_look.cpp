@@ -16,7 +16,6 @@ namespace {
 
 constexpr std::chrono::milliseconds kPeriod{50};
 constexpr std::size_t kMostKept = 65536;
-constexpr std::size_t kMostShown = 256;
 
 /// Sets a flag when another is set, or after kPatience.
 class Patience {
@@ -45,7 +44,6 @@ void explain(const sources::SourceName& name, std::vector<std::uint8_t> bytes, F
   acquisition::UndecodedReason reason = acquisition::why_undecoded(*name.uri, bytes);
   found.message = std::move(reason.why);
   found.shape = reason.likely_shape;
-  bytes.resize(std::min(bytes.size(), kMostShown));
   found.bytes = std::move(bytes);
 }
 

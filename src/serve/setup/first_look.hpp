@@ -22,7 +22,7 @@ struct FirstLook {
   bool has_frames = false;
   std::optional<FrameShape> shape{};  ///< Shape of the frames; without frames the likely one.
   std::string message{};              ///< Describes the bytes, or what they lack.
-  std::vector<std::uint8_t> bytes{};  ///< The first of those of which no frame was made, at most 256.
+  std::vector<std::uint8_t> bytes{};  ///< The first of those of which no frame was made, at most 64 KiB.
 };
 
 /// Reads the first frame, for at most kPatience. Bytes that make no frame are described and are no error.

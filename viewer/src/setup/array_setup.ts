@@ -8,6 +8,7 @@ import type { Theme } from "../theme";
 import { CornerGuide } from "./corner_guide";
 import { dumpOf } from "./first_bytes";
 import { KnownArrays } from "./known_arrays";
+import { LayoutChoice } from "./layout_choice";
 import { LivePicture } from "./live_picture";
 import { makeSourceChoice } from "./source_choice";
 import { type Shape, TouchFeed } from "./touch_feed";
@@ -108,7 +109,11 @@ export function makeArraySetup(stream: Stream, suit: Suit, theme: Theme): HTMLEl
       isSwapped = false;
       corners.forget();
       window.clearTimeout(typing);
-      typing = window.setTimeout(() => isWatched() || watch(), TYPING_MS);
+      areTyped = true;
+      typing = window.setTimeout(() => {
+        if (!isWatched()) watch();
+        propose();
+      }, TYPING_MS);
     });
   }
   feed.latest.follow((touch) => {
@@ -126,6 +131,22 @@ export function makeArraySetup(stream: Stream, suit: Suit, theme: Theme): HTMLEl
       tell(errorText(error));
     }
   }
+  /** Rows and columns that a person typed are asked of the bytes. */
+  let areTyped = false;
+  const layouts = new LayoutChoice(
+    stream,
+    theme,
+    (proposal) => {
+      if (!areTyped) [rows.value, cols.value] = [String(proposal.rows), String(proposal.cols)];
+    },
+    (request) => void ask("/layout/use", { ...request, name: name.value }).then(() => stream.refresh()),
+  );
+  const propose = (): void => {
+    if (suit.description.value.setup?.readable !== false || suit.description.value.setup.bytes === "") return;
+    const shape = areTyped ? sentShape() : undefined;
+    layouts.propose(shape ?? {}).catch((error: unknown) => tell(errorText(error)));
+  };
+  stream.services.follow(propose);
   const use = async (file: string): Promise<void> => {
     window.clearTimeout(typing);
     await ask("/array/use", { file });
@@ -157,6 +178,7 @@ export function makeArraySetup(stream: Stream, suit: Suit, theme: Theme): HTMLEl
     source,
     found,
     bytes,
+    layouts.element,
     element("div", { class: "setup-row" }, again, leave),
     known.makeList(({ file }) => void use(file)),
     ...field("Name", name),
@@ -203,7 +225,10 @@ export function makeArraySetup(stream: Stream, suit: Suit, theme: Theme): HTMLEl
     rows.value = setup.rows === null ? "" : String(setup.rows);
     cols.value = setup.cols === null ? "" : String(setup.cols);
     isSwapped = false;
+    areTyped = false;
     corners.forget();
+    layouts.forget();
+    propose();
     setHidden(problem, true);
     if (known.chosen.value !== undefined) void use(known.chosen.value.file);
     else watch();
