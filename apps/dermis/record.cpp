@@ -96,9 +96,6 @@ Status record(const RecordOptions& options) {
   if (!source) return source.error();
   output.notes = sources::notes_of_source(**source, options.from);
   recorder.source_stops = (*source)->is_live();
-  if (options.from.starts_with("file:") && (*source)->is_live()) {
-    print_notice("the file has no times, so the recording has those of this reading: give rate=");
-  }
 
   recorder.progress = [&](const acquisition::RecorderProgress& progress) { line.show(with_queue(progress)); };
   acquisition::RecorderProgress last;
@@ -113,6 +110,9 @@ Status record(const RecordOptions& options) {
                          known->model ? "model or the disk" : "disk");
     }
     print_notice(sum);
+    if (options.from.starts_with("file:") && (*source)->is_live()) {
+      print_notice("the file has no times, so the recording has those of this reading: give rate=");
+    }
   }
   return last.frames > 0 ? recorded : without_frames(options.from, recorded, first.bytes());
 }

@@ -18,19 +18,28 @@ constexpr std::size_t kPairsNamed = 3;
 
 }  // namespace
 
-/// Nearly all readings are the same.
-bool EqualLines::Agreement::is_equal() const noexcept {
-  return 20 * equal >= 19 * presses;
-}
-
-/// Many readings differ, some one way and some the other: a gradient is no difference.
-bool EqualLines::Agreement::is_different() const noexcept {
-  const std::size_t differ = presses - equal;
-  return 10 * differ > 3 * presses && 10 * stronger >= differ && 10 * (differ - stronger) >= differ;
+void EqualLines::Pairs::add(const Agreement& both) noexcept {
+  if (both.presses == 0) return;
+  const std::size_t differ = both.presses - both.equal;
+  const bool is_different = 10 * differ > 3 * both.presses;
+  ++pressed;
+  equal += 20 * both.equal >= 19 * both.presses ? 1 : 0;
+  different += is_different ? 1 : 0;
+  const bool falls = is_different && 10 * both.stronger >= differ;
+  const bool rises = is_different && 10 * (differ - both.stronger) >= differ;
+  falling += falls ? 1 : 0;
+  rising += rises ? 1 : 0;
+  both_ways += falls && rises ? 1 : 0;
+  presses += both.presses;
 }
 
 bool EqualLines::Pairs::are_equal() const noexcept {
   return pressed >= 2 && equal == pressed && presses >= kFewestPresses;
+}
+
+/// A gradient, which goes one way, is no difference.
+bool EqualLines::Pairs::are_different() const noexcept {
+  return 3 * different >= pressed && falling > 0 && rising > 0;
 }
 
 EqualLines::EqualLines(const ArrayDescription& array, Axis axis) : array_(&array), axis_(axis) {
@@ -65,12 +74,7 @@ void EqualLines::compare(std::size_t line, std::size_t other, std::span<const fl
 /// Adds those whose first line has this bit set, or not set.
 void EqualLines::add_pairs(std::size_t bit, bool is_set, Pairs& pairs) const {
   for (std::size_t line = 0; line < agreements_[bit].size(); ++line) {
-    const Agreement& both = agreements_[bit][line];
-    if (((line >> bit) % 2 != 0) != is_set || both.presses == 0) continue;
-    ++pairs.pressed;
-    pairs.equal += both.is_equal() ? 1 : 0;
-    pairs.different += both.is_different() ? 1 : 0;
-    pairs.presses += both.presses;
+    if (((line >> bit) % 2 != 0) == is_set) pairs.add(agreements_[bit][line]);
   }
 }
 
@@ -106,7 +110,8 @@ std::string EqualLines::name_pairs(std::size_t bit) const {
 
 std::vector<std::string> EqualLines::findings(const EqualLines& crossing) const {
   const char* const name = to_string(axis_);
-  if (neighbours().are_equal() && crossing.neighbours().are_different()) {
+  const Pairs across = crossing.neighbours();
+  if (neighbours().are_equal() && across.are_different() && across.both_ways >= 2) {
     return {fmt::format(
         "all {}s read the same: their multiplexer does not switch; check its supply, its enable pin and its address "
         "lines",

@@ -31,19 +31,20 @@ class EqualLines {
     std::size_t presses = 0;
     std::size_t equal = 0;
     std::size_t stronger = 0;  // on the first one, of those that differ
-
-    [[nodiscard]] bool is_equal() const noexcept;
-    [[nodiscard]] bool is_different() const noexcept;
   };
   /// Pairs of lines that were pressed.
   struct Pairs {
     std::size_t pressed = 0;
-    std::size_t equal = 0;
-    std::size_t different = 0;
+    std::size_t equal = 0;      // nearly all readings are
+    std::size_t different = 0;  // many readings are
+    std::size_t falling = 0;    // of these, some are stronger on the first line
+    std::size_t rising = 0;     // and some on the second one
+    std::size_t both_ways = 0;  // pairs that are falling and rising
     std::size_t presses = 0;
 
+    void add(const Agreement& both) noexcept;
     [[nodiscard]] bool are_equal() const noexcept;
-    [[nodiscard]] bool are_different() const noexcept { return different >= 2 && 3 * different >= pressed; }
+    [[nodiscard]] bool are_different() const noexcept;
   };
 
   void compare(std::size_t line, std::size_t other, std::span<const float> counts, std::span<const float> change,

@@ -10,6 +10,7 @@
 
 #include "health/press_patterns.hpp"
 #include "health/reading_levels.hpp"
+#include "health/repeated_frames.hpp"
 
 namespace dermis::health {
 namespace {
@@ -40,6 +41,7 @@ class RawExamination::Implementation {
     }
     levels_.add(counts_);
     presses_.add(counts_);
+    repeated_.add(counts_);
   }
 
   [[nodiscard]] RawDiagnosis diagnosis() const {
@@ -51,8 +53,10 @@ class RawExamination::Implementation {
     diagnosis.most_counts = levels_.most();
     if (auto finding = levels_.finding()) diagnosis.findings.push_back(*std::move(finding));
     for (std::string& finding : presses_.findings()) diagnosis.findings.push_back(std::move(finding));
+    if (auto finding = repeated_.finding()) diagnosis.findings.push_back(*std::move(finding));
     diagnosis.stuck_lines = levels_.stuck_lines();
     diagnosis.remark = levels_.remark();
+    if (!diagnosis.remark) diagnosis.remark = repeated_.remark();
     return diagnosis;
   }
 
@@ -60,6 +64,7 @@ class RawExamination::Implementation {
   ArrayDescription array_;
   ReadingLevels levels_;
   PressPatterns presses_;
+  RepeatedFrames repeated_;
   std::size_t frames_ = 0;
   Nanos first_time_{};
   Nanos last_time_{};
