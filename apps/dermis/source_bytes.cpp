@@ -8,12 +8,12 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <system_error>
 
 #include "dermis/acquisition/byte_stream.hpp"
 #include "dermis/acquisition/protocol.hpp"
 #include "dermis/describing/proposals.hpp"
-#include "dermis/files/file_kind.hpp"
 #include "dermis/files/input.hpp"
 #include "dermis/recordings/frame_file_info.hpp"
 #include "dermis/recordings/frame_files.hpp"
@@ -48,10 +48,11 @@ Result<std::vector<std::uint8_t>> bytes_of_stream(acquisition::ByteStream& strea
   return bytes;
 }
 
-/// A format whose content proves it. Numbers alone are in any.
-std::optional<recordings::FrameFormat> proven_format(const std::string& path) {
+/// A format whose content proves it: by its first bytes, or since it holds frames. Numbers alone are in any.
+std::optional<recordings::FrameFormat> proven_format(const std::string& path, std::string_view first_bytes) {
   const Result<recordings::FrameFormat> format = recordings::recognise_frames(path);
   if (!format || *format == recordings::FrameFormat::text_matrix) return std::nullopt;
+  if (*format == recordings::FrameFormat::matlab && first_bytes.starts_with("MATLAB")) return *format;
   const auto info = recordings::frame_file_info(path, std::nullopt);
   return info && info->frames > 0 ? std::optional(*format) : std::nullopt;
 }
@@ -60,8 +61,8 @@ Result<SourceBytes> bytes_of_file(const std::string& path) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) return files::open_input(path).error();
   SourceBytes found;
-  if (const auto format = proven_format(path)) found.known = recordings::to_string(*format);
   const std::string text = files::first_bytes_of(path, describing::kMostBytes);
+  if (const auto format = proven_format(path, text)) found.known = recordings::to_string(*format);
   found.bytes.assign(text.begin(), text.end());
   return found;
 }

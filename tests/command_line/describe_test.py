@@ -77,6 +77,8 @@ class Describe(support.SmallArray):
             [sample] = (path for path in SAMPLES.glob(frames.stem + ".*") if path != frames)
             outcomes[sample.name] = self.reads_as_meant(sample, numpy.load(frames))
         self.assertGreaterEqual(sum(map(bool, outcomes.values())), FEWEST_RIGHT, outcomes)
+        for known in ("time_in_the_middle.mat", "insole.asc"):
+            self.assertEqual(outcomes[known], "is known")
 
     def test_what_speaks_for_a_layout_is_shown(self):
         source = self.written("it.log", "boot v1\n" + LINES)
