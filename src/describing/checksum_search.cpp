@@ -17,8 +17,8 @@ constexpr std::size_t kPackets = 8;  // tried
 constexpr std::size_t kLongestTrailer = 4;
 
 struct Kind {
-  const char* name;
-  std::size_t size;
+  const char* name = "";
+  std::size_t size = 0;
   const char* options = "";
 };
 constexpr std::array kKinds = {

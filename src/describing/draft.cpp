@@ -39,14 +39,17 @@ std::string toml_of(const Draft& draft) {
   const bool is_alone = draft.arrays.size() == 1;
   if (is_alone) text += shape_keys(draft.arrays.front().shape);
   const std::string line = quoted(draft.line);
-  if (!draft.line.empty())
-    text += "line = " + (draft.head.empty() ? line : "[" + quoted(draft.head) + ", " + line + "]") + "\n";
+  const std::string lines = draft.head.empty() ? line : "[" + quoted(draft.head) + ", " + line + "]";
+  if (!draft.line.empty()) text += "line = " + lines + "\n";
   if (!draft.packet.empty()) {
     text += "packet = [";
-    for (const std::string& field : draft.packet) text += (text.back() == '[' ? "" : ", ") + quoted(field);
+    for (const std::string& field : draft.packet) {
+      if (text.back() != '[') text += ", ";
+      text += quoted(field);
+    }
     text += "]\n";
   }
-  for (const auto& [key, value] : draft.keys) text += key + " = " + value + "\n";
+  for (const auto& [key, value] : draft.keys) text.append(key).append(" = ").append(value).append("\n");
   if (is_alone) return text;
   for (const DraftArray& array : draft.arrays) {
     text += "\n[[layout.array]]\nname = " + quoted(array.name) + "\n";

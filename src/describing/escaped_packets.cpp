@@ -72,8 +72,8 @@ std::optional<Packets> packets_with(const Escape& escape, std::span<const std::u
     std::optional<Bytes> plain = plain_of(escape, piece);
     if (!plain) continue;
     shortened += plain->size() < piece.size() ? 1 : 0;
-    if (plain->size() >= kSmallest && by_size[plain->size()].size() < kMostKept)
-      by_size[plain->size()].push_back(*std::move(plain));
+    std::vector<Bytes>& alike = by_size[plain->size()];
+    if (plain->size() >= kSmallest && alike.size() < kMostKept) alike.push_back(*std::move(plain));
   }
   const auto most = std::max_element(by_size.begin(), by_size.end(),
                                      [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });

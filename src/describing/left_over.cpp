@@ -61,7 +61,7 @@ std::vector<std::string> left_over_lines(const std::vector<Line>& lines, const s
     if (distance > 1) {
       sentences.push_back("every " + ordinal(distance) + " line " + look);
     } else if (is_last) {
-      sentences.push_back("the last line is cut or none of readings");
+      sentences.emplace_back("the last line is cut or none of readings");
     } else {
       sentences.push_back(std::to_string(places.size()) + " of " + std::to_string(lines.size()) + " lines: each " +
                           look);
