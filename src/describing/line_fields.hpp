@@ -27,7 +27,7 @@ struct LineFields {
   std::vector<std::string> fields;    ///< [columns] As in a layout; empty: a reading.
   std::vector<Span> spans;            ///< Of the arrays.
   std::optional<FrameShape> shape{};  ///< As the numbers of rows, columns or taxels tell; 1xN of N taxels in turn.
-  std::vector<std::uint64_t> ids{};  ///< Of the arrays that come in turn.
+  std::vector<std::uint64_t> ids{};   ///< Of the arrays that come in turn.
   std::vector<std::string> reasons{};
   double merit = 0.0;
 };

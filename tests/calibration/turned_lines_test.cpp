@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/calibration/turned_lines.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +12,6 @@
 
 #include "calibration/simulated.hpp"
 #include "dermis/calibration/sample_database.hpp"
-#include "dermis/calibration/turned_lines.hpp"
 
 namespace dermis::calibration {
 namespace {

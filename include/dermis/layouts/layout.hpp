@@ -50,9 +50,9 @@ enum class Role {
 /// A field of a line.
 struct TextField {
   Role role = Role::literal;
-  std::string literal{};  ///< Where it is one. Blanks in it stand for any blanks.
-  std::size_t array = 0;  ///< values: place in Layout::arrays.
-  double unit = 1.0;      ///< Factor on its number.
+  std::string literal{};   ///< Where it is one. Blanks in it stand for any blanks.
+  std::size_t array = 0;   ///< values: place in Layout::arrays.
+  double unit = 1.0;       ///< Factor on its number.
   std::uint64_t from = 0;  ///< row, col, first: the number of the first one.
 };
 
@@ -67,7 +67,7 @@ struct TextLayout {
   std::string frame_begin{};  ///< A line that begins with it begins a frame, and may go on as a row; empty: none.
   /// Ends a frame where rows carry no number: a line that begins with it, or for "" an empty one.
   std::optional<std::string> frame_end{};
-  std::size_t width = 0;       ///< Characters of a reading, which then need no separator; 0: any.
+  std::size_t width = 0;  ///< Characters of a reading, which then need no separator; 0: any.
   char decimal_point = '.';
   bool is_hexadecimal = false;
 };
