@@ -102,7 +102,7 @@ Status ask_lines(const std::string& name, std::size_t likely, std::optional<std:
   return Done{};
 }
 
-/// What the bytes cannot tell; true where an answer says more than was known.
+/// Asks for what the bytes cannot tell; true where an answer says more than was known.
 Result<bool> ask(const Proposal& proposal, describing::Known& known) {
   for (const std::string& key : proposal.open) {
     Status answered = Done{};

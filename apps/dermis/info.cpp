@@ -214,7 +214,7 @@ std::string other_look(const std::string& file, const FrameFileInfo& info) {
   return is_one ? look_of_unread_file(file) : std::string();
 }
 
-/// Of bytes that a layout describes.
+/// The same for bytes that a layout describes.
 Status print_info(const InfoOptions& options, const DescribedFile& file) {
   const Result<std::unique_ptr<FrameSource>> source = file.open();
   if (!source) return source.error();

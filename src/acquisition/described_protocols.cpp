@@ -20,8 +20,9 @@ using layouts::Role;
 
 struct DescribedProtocol {
   std::string_view name;
-  std::vector<FrameShape> shapes;      ///< Of the arrays that are built. Their sizes differ, so that packets tell them.
-  std::vector<std::string_view> keys;  ///< Of [layout], but for rows and cols: one text for each form of its packets.
+  std::vector<FrameShape> shapes;  ///< The arrays that are built. Their sizes differ, so that packets tell them.
+  std::vector<std::string_view>
+      keys;  ///< Keys of [layout], but for rows and cols: one text for each form of its packets.
 };
 
 const std::vector<DescribedProtocol>& described_protocols() {

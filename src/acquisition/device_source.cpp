@@ -29,7 +29,7 @@ constexpr Nanos kPause = 100ms;  // then the decoder gets a pause
 constexpr Nanos kSilence = 2s;   // then the user gets a notice
 constexpr Nanos kRepeatRequest = 1s;
 
-/// What a layout says of the times of frames.
+/// Times of frames as a layout describes them.
 struct DescribedTimes {
   bool are_in_file = false;  ///< The file holds the times of its frames.
   std::optional<double> rate_hz{};
@@ -219,7 +219,7 @@ class DeviceSource final : public FrameSource {
   bool silence_noticed_ = false;
 };
 
-/// Of a file without times, the rate of the layout is that of the frames.
+/// A file without times has the rate of its layout.
 Result<DescribedTimes> read_times(SourceUri& uri) {
   if (!uri.protocol.has_layout()) return DescribedTimes{};
   const Result<layouts::Layout> layout = read_layout(uri.protocol);

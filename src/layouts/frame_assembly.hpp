@@ -50,7 +50,7 @@ class FrameAssembly {
   std::vector<std::uint8_t> is_filled_;
   std::size_t filled_ = 0;
   std::size_t bytes_ = 0;
-  std::size_t most_filled_ = 0;   ///< Of all frames that were not complete.
+  std::size_t most_filled_ = 0;   ///< The most of a frame that was not complete.
   std::optional<Piece> outside_;  ///< The last that the array does not have.
   Piece first_;                   ///< Of the frame that is being read.
   DecoderCounts counts_;

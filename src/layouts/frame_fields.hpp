@@ -13,7 +13,7 @@
 
 namespace dermis::layouts {
 
-/// What a line or a packet holds: a frame, a row, a taxel, or any run of taxels.
+/// The content of a line or a packet: a frame, a row, a taxel, or any run of taxels.
 struct Piece {
   std::size_t array = 0;  ///< Place of the array whose readings these are.
   std::optional<std::uint64_t> row{};

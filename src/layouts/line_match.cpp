@@ -252,7 +252,7 @@ bool LineMatch::read_reading(float& value) noexcept {
   return is_empty || skip_absent();
 }
 
-/// What programs print for no reading, beside nan.
+/// Programs print these for no reading, beside nan.
 bool LineMatch::skip_absent() noexcept {
   constexpr std::array<std::string_view, 5> kWords = {"null", "None", "N/A", "NA", "--"};
   const std::string_view rest(reinterpret_cast<const char*>(at_), static_cast<std::size_t>(end_ - at_));

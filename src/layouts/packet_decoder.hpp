@@ -35,7 +35,7 @@ class PacketDecoder final : public Decoder {
   [[nodiscard]] std::string advice() const override;
 
  private:
-  /// What next_packet() found.
+  /// The result of next_packet().
   enum class Found { nothing, packet, frame };
 
   [[nodiscard]] Found next_packet(RawFrame& frame);

@@ -48,7 +48,7 @@ Status check_order(const std::string& path, const ArrayDescription* array) {
   return notes ? check_recorded_order(path, notes->array_toml, *array) : Status(Done{});
 }
 
-/// What the circuit of an array is called that gives readings in such a unit; empty: none does.
+/// The circuit in array.toml of readings in such a unit; empty: there is none.
 std::string circuit_of(const std::string& unit) {
   if (unit == "kPa") return "pressure";
   return unit == "newtons" ? "force" : "";

@@ -54,7 +54,7 @@ struct ProtocolOptions {
 /// The layout of options that have one.
 [[nodiscard]] Result<layouts::Layout> read_layout(const ProtocolOptions& options);
 
-/// What a reading is by that layout: counts, volts, ohms, kPa or newtons.
+/// The unit of a reading by that layout: counts, volts, ohms, kPa or newtons.
 [[nodiscard]] Result<std::string> unit_of(const ProtocolOptions& options);
 
 /// Name of the protocol whose decoder finds the most frames in the bytes; empty if none finds any.

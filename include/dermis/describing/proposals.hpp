@@ -15,7 +15,7 @@
 /// Layouts (docs/layouts.md) of bytes that nobody has described.
 namespace dermis::describing {
 
-/// What is known of an array beside its bytes.
+/// Facts on an array that are known beside its bytes.
 struct Known {
   std::optional<std::size_t> rows{};
   std::optional<std::size_t> cols{};

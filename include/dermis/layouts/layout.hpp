@@ -26,7 +26,7 @@ struct LayoutArray {
   std::optional<std::uint64_t> id{};
 };
 
-/// What a field of a line or packet holds.
+/// The content of a field of a line or packet.
 enum class Role {
   literal,      ///< These very bytes.
   skip,         ///< Anything.
@@ -42,7 +42,7 @@ enum class Role {
   datetime,     ///< "2026-11-27 18:45:00.125", or with a T; text only.
   temperature,  ///< [C] after `unit` and `offset`.
   supply,       ///< [V] after `unit`.
-  flags,        ///< What the device says of the frame.
+  flags,        ///< Remarks of the device on the frame.
   length,       ///< Bytes of the packet from behind this field on, less `offset`.
   checksum,     ///< Of the packet up to here.
 };
@@ -139,7 +139,7 @@ struct Layout {
 
   [[nodiscard]] bool has_times() const;
   [[nodiscard]] bool has_numbers() const;
-  /// What the device needs next. `is_sending`: a frame has come since it was connected.
+  /// Text that the device needs next. `is_sending`: a frame has come since it was connected.
   [[nodiscard]] std::string_view request_after(bool is_sending) const noexcept;
   /// Place of the array of that name; an empty name is that of the only one. Fails with the names.
   [[nodiscard]] Result<std::size_t> find_array(const std::string& name) const;

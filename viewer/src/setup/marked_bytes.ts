@@ -7,7 +7,7 @@ export type Part = readonly [begin: number, end: number, what: string];
 /** Words that stand together: text as it is printed, other bytes as hexadecimal digits. */
 export interface Piece {
   words: string;
-  /** Of a part; empty: of none. */
+  /** The kind of part that they are; empty: none. */
   what: string;
 }
 
