@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "describing/shapes.hpp"
 
@@ -89,8 +90,10 @@ std::vector<FrameShape> likely_shapes(const Readings& frames, std::size_t taxels
                                       [](const Judged& a, const Judged& b) { return a.difference < b.difference; });
   const double best = all.empty() ? 0.0 : kAsSmooth * least->difference;
   const auto rank = [&](const Judged& one) {
-    const double ratio = static_cast<double>(one.shape.rows) / static_cast<double>(one.shape.cols);
-    return std::pair(one.difference > best, one.difference > best ? one.difference : std::abs(std::log(ratio)));
+    const auto [shorter, longer] = std::minmax(one.shape.rows, one.shape.cols);
+    const double ratio = static_cast<double>(longer) / static_cast<double>(shorter);
+    const bool has_fewer_rows = one.shape.rows < one.shape.cols;
+    return std::tuple(one.difference > best, one.difference > best ? one.difference : ratio, has_fewer_rows);
   };
   std::stable_sort(all.begin(), all.end(), [&](const Judged& a, const Judged& b) { return rank(a) < rank(b); });
   std::vector<FrameShape> shapes;
