@@ -3,9 +3,7 @@
 #include "describing/byte_text.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
-#include <cstdio>
 
 namespace dermis::describing {
 
@@ -16,16 +14,6 @@ bool is_text(std::span<const std::uint8_t> bytes) {
   const auto nuls = std::count(bytes.begin(), bytes.end(), 0);
   return 20 * (static_cast<std::size_t>(count) + std::min(static_cast<std::size_t>(nuls), bytes.size() / 8)) >=
          17 * bytes.size();
-}
-
-std::string hexadecimal(std::span<const std::uint8_t> bytes) {
-  std::string text;
-  for (const std::uint8_t byte : bytes) {
-    std::array<char, 4> digits{};
-    std::snprintf(digits.data(), digits.size(), "%02X", unsigned{byte});
-    text += (text.empty() ? "" : " ") + std::string(digits.data());
-  }
-  return text;
 }
 
 std::string printable(std::string_view text) {

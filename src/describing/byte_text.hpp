@@ -12,9 +12,6 @@ namespace dermis::describing {
 /// Nearly all bytes are letters, digits, signs and ends of lines.
 [[nodiscard]] bool is_text(std::span<const std::uint8_t> bytes);
 
-/// "AA 55"
-[[nodiscard]] std::string hexadecimal(std::span<const std::uint8_t> bytes);
-
 /// For a message: what is no letter, digit or sign becomes '?'.
 [[nodiscard]] std::string printable(std::string_view text);
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "dermis/layouts/layout.hpp"
 #include "describing/byte_text.hpp"
 #include "describing/draft.hpp"
 #include "describing/trial.hpp"
@@ -43,7 +44,7 @@ std::string toml_with(const Packets& packets, std::size_t at, const std::string&
   Draft draft{.arrays = {{"", {1, 1}}}};
   const std::size_t mark = packets.escape.empty() ? packets.mark_size : 0;
   const Bytes& first = packets.packets.front();
-  if (mark > 0) draft.packet.push_back(hexadecimal(std::span(first).first(mark)));
+  if (mark > 0) draft.packet.push_back(layouts::hexadecimal(std::span(first).first(mark)));
   draft.packet.emplace_back("values u8 x1");
   if (at > mark + 1) draft.packet.push_back("skip " + std::to_string(at - mark - 1));
   draft.packet.push_back(checksum);

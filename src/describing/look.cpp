@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "dermis/layouts/layout.hpp"
 #include "describing/byte_text.hpp"
 #include "describing/line_end.hpp"
 #include "describing/lines.hpp"
@@ -68,7 +69,7 @@ std::string look_of(const Proposal& proposal) {
 std::string look_of(std::span<const std::uint8_t> bytes, const Known& known) {
   if (bytes.empty()) return "There is not a single byte";
   const auto is_first = [&](std::uint8_t byte) { return byte == bytes.front(); };
-  if (std::ranges::all_of(bytes, is_first)) return "Each of them is 0x" + hexadecimal(bytes.first(1));
+  if (std::ranges::all_of(bytes, is_first)) return "Each of them is 0x" + layouts::hexadecimal(bytes.first(1));
   if (const std::vector<Proposal> proposals = propose(bytes, known); !proposals.empty())
     return look_of(proposals.front());
   if (!is_text(bytes)) return "They are not text, and no frame of a known protocol comes again in them";

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "dermis/layouts/layout.hpp"
 #include "describing/byte_text.hpp"
 #include "describing/checksum_search.hpp"
 #include "describing/packet_fields.hpp"
@@ -110,7 +111,7 @@ class CutDrafts {
                               packets_.escape + ") are undone");
       draft.merit += 0.5;
     } else {
-      draft.reasons.push_back(hexadecimal(std::span(packets_.packets.front()).first(packets_.mark_size)) +
+      draft.reasons.push_back(layouts::hexadecimal(std::span(packets_.packets.front()).first(packets_.mark_size)) +
                               " comes every " + std::to_string(packets_.size) + " bytes");
     }
     draft.is_weak = !checksum_ && packets_.escape.empty() && packets_.mark_size < 2;

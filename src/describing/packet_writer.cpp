@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <span>
 
+#include "dermis/layouts/layout.hpp"
 #include "describing/byte_text.hpp"
 
 namespace dermis::describing {
@@ -23,7 +24,7 @@ void PacketWriter::write(const std::vector<PacketField>& fields, const PacketFie
   const std::size_t end = checksum_ != nullptr ? checksum_->at : packets_.size;
   const bool are_named = draft_.arrays.size() > 1 && turn == nullptr;
   if (packets_.mark_size > 0) {
-    add(hexadecimal(std::span(packets_.packets.front()).first(packets_.mark_size)), packets_.mark_size,
+    add(layouts::hexadecimal(std::span(packets_.packets.front()).first(packets_.mark_size)), packets_.mark_size,
         layouts::Role::literal);
   }
   for (std::size_t k = 0; k < fields.size(); ++k) {
@@ -76,7 +77,8 @@ void PacketWriter::add_trailer() {
   for (std::size_t k = at_; k < packets_.size; ++k) is_same = is_same && is_constant(packets_, k);
   if (!is_same) return add_constant(packets_.size);
   const std::size_t size = packets_.size - at_;
-  if (size > 0) add(hexadecimal(std::span(packets_.packets.front()).subspan(at_)), size, layouts::Role::literal);
+  if (size > 0)
+    add(layouts::hexadecimal(std::span(packets_.packets.front()).subspan(at_)), size, layouts::Role::literal);
 }
 
 }  // namespace dermis::describing

@@ -22,12 +22,12 @@ constexpr std::size_t kFewestBytes = 16;
 constexpr std::size_t kFewestTaxels = 4;  // of an array that nobody has named
 constexpr double kNoise = 0.85;           // roughness of readings that tell nothing
 
-/// Readings that rest at the top of their range, and fall.
-void describe_falling(const Trial& trial, Draft& draft) {
+/// Readings that rest at the top of their range, and fall; true where the draft says so now.
+bool describe_falling(const Trial& trial, Draft& draft) {
   std::vector<float> all;
   for (const std::vector<float>& frame : trial.readings) all.insert(all.end(), frame.begin(), frame.end());
   if (all.empty() || !std::all_of(all.begin(), all.end(), [](float v) { return v >= 0.0F && v == std::floor(v); }))
-    return;
+    return false;
   std::sort(all.begin(), all.end());
   for (const float top : {255.0F, 1023.0F, 4095.0F, 16383.0F, 65535.0F}) {
     const bool rests_there = all.back() <= top && all[all.size() / 2] > 0.9F * top && all.front() < 0.8F * top;
@@ -37,8 +37,9 @@ void describe_falling(const Trial& trial, Draft& draft) {
     if (trial.has_empty_array) draft.keys.emplace_back("absent", "0");
     draft.reasons.push_back("most readings are near " + std::to_string(static_cast<int>(top)) +
                             " and some far below: pressing lowers them");
-    return;
+    return true;
   }
+  return false;
 }
 
 bool are_whole(const Readings& readings) {
@@ -92,13 +93,12 @@ std::optional<Judged> judge(Draft draft, std::span<const std::uint8_t> bytes, co
   const double along = roughness_along(trial->readings);
   const double in_time = roughness_in_time(trial->readings);
   if (draft.is_weak && along > kNoise && in_time > kNoise) return std::nullopt;
-  describe_falling(*trial, draft);
+  const bool is_changed = describe_falling(*trial, draft);
   Judged judged;
-  judged.merit =
-      draft.merit + (1.0 - left) - 0.3 * roughness_along(trial->readings) - 0.2 * roughness_in_time(trial->readings);
+  judged.merit = draft.merit + (1.0 - left) - 0.3 * along - 0.2 * in_time;
   Proposal& proposal = judged.proposal;
   proposal.toml = toml_of(draft);
-  trial = try_layout(proposal.toml, bytes);
+  if (is_changed) trial = try_layout(proposal.toml, bytes);
   proposal.summary = question_of(draft, known);
   proposal.reasons = std::move(draft.reasons);
   proposal.left_over = std::move(draft.left_over);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "dermis/layouts/layout.hpp"
 #include "describing/byte_text.hpp"
 #include "describing/checksum_search.hpp"
 #include "describing/draft.hpp"
@@ -106,7 +107,7 @@ class ValueSearch {
     if (!shape) return std::nullopt;
     Draft draft{.arrays = {{"", *shape}}};
     const std::size_t mark = packets_.escape.empty() ? packets_.mark_size : 0;
-    if (mark > 0) draft.packet.push_back(hexadecimal(std::span(packets_.packets.front()).first(mark)));
+    if (mark > 0) draft.packet.push_back(layouts::hexadecimal(std::span(packets_.packets.front()).first(mark)));
     if (span.begin > mark) draft.packet.push_back("skip " + std::to_string(span.begin - mark));
     draft.packet.push_back("values " + span.type);
     if (span.end < packets_.size) draft.packet.push_back("skip " + std::to_string(packets_.size - span.end));

@@ -3,8 +3,6 @@
 #include "layouts/constant_packets.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 
 #include "layouts/has_role.hpp"
 
@@ -26,17 +24,6 @@ Layout without_mark(const Layout& layout) {
   PacketField& mark = is_at_begin(layout) ? fields.front() : fields.back();
   mark = {.role = Role::skip, .count = mark.literal.size()};
   return other;
-}
-
-/// "FF FE"
-std::string bytes_text(const std::vector<std::uint8_t>& bytes) {
-  std::string text;
-  for (const std::uint8_t byte : bytes) {
-    std::array<char, 4> digits{};
-    std::snprintf(digits.data(), digits.size(), "%s%02X", text.empty() ? "" : " ", byte);
-    text += digits.data();
-  }
-  return text;
 }
 
 std::vector<std::size_t> sizes_of(const std::vector<std::shared_ptr<const Layout>>& layouts) {
@@ -132,7 +119,7 @@ std::string ConstantPackets::advice() const {
   if (counts().frames > 0) return {};
   std::string sizes;
   for (const auto& form : forms_) sizes += (sizes.empty() ? "" : " or ") + std::to_string(form->size);
-  return "the mark " + bytes_text(mark_of(*first_).literal) + " does not come again after " + sizes + " bytes";
+  return "the mark " + hexadecimal(mark_of(*first_).literal) + " does not come again after " + sizes + " bytes";
 }
 
 }  // namespace dermis::layouts

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "layouts/escapes.hpp"
+#include "dermis/layouts/escapes.hpp"
 
 namespace dermis::layouts {
 namespace {

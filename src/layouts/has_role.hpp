@@ -29,4 +29,10 @@ template <typename Field>
   return std::any_of(lines.begin(), lines.end(), [&](const auto& line) { return has_role(line, role); });
 }
 
+/// Whether one of the fields of a line, of several lines, or of a packet is a time.
+template <typename Fields>
+[[nodiscard]] bool has_time(const Fields& fields) {
+  return has_role(fields, Role::time) || has_role(fields, Role::clock) || has_role(fields, Role::datetime);
+}
+
 }  // namespace dermis::layouts

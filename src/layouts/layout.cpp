@@ -3,6 +3,8 @@
 #include "dermis/layouts/layout.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <utility>
 
 #include "layouts/constant_packets.hpp"
@@ -12,14 +14,6 @@
 #include "layouts/text_decoder.hpp"
 
 namespace dermis::layouts {
-namespace {
-
-template <typename Fields>
-bool has_time(const Fields& fields) {
-  return has_role(fields, Role::time) || has_role(fields, Role::clock) || has_role(fields, Role::datetime);
-}
-
-}  // namespace
 
 bool Layout::has_times() const {
   const auto* const text = std::get_if<TextLayout>(&form);
@@ -46,6 +40,16 @@ Result<std::size_t> Layout::find_array(const std::string& name) const {
   for (const LayoutArray& array : arrays) names += (names.empty() ? "" : ", ") + array.name;
   if (name.empty()) return bad_input("the layout has several arrays; name one: " + names);
   return bad_input("the layout has no array '" + name + "'" + (names.empty() ? "" : "; it has " + names));
+}
+
+std::string hexadecimal(std::span<const std::uint8_t> bytes) {
+  std::string text;
+  for (const std::uint8_t byte : bytes) {
+    std::array<char, 4> digits{};
+    std::snprintf(digits.data(), digits.size(), "%02X", unsigned{byte});
+    text += (text.empty() ? "" : " ") + std::string(digits.data());
+  }
+  return text;
 }
 
 std::unique_ptr<Decoder> make_decoder(const std::vector<std::shared_ptr<const Layout>>& layouts) {

@@ -32,10 +32,6 @@ std::uint32_t digit(std::uint8_t byte) noexcept {
   return static_cast<std::uint32_t>(byte) - '0';
 }
 
-bool has_time(const TextLayout::Pattern& line) {
-  return has_role(line, Role::time) || has_role(line, Role::clock) || has_role(line, Role::datetime);
-}
-
 }  // namespace
 
 LineMatch::LineMatch(const Layout& layout, std::size_t array)

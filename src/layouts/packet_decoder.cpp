@@ -6,7 +6,7 @@
 #include <cstring>
 #include <utility>
 
-#include "layouts/escapes.hpp"
+#include "dermis/layouts/escapes.hpp"
 #include "layouts/has_role.hpp"
 
 namespace dermis::layouts {

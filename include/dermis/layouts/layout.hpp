@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -144,6 +145,9 @@ struct Layout {
   /// Place of the array of that name; an empty name is that of the only one. Fails with the names.
   [[nodiscard]] Result<std::size_t> find_array(const std::string& name) const;
 };
+
+/// "AA 55", as bytes stand in a packet.
+[[nodiscard]] std::string hexadecimal(std::span<const std::uint8_t> bytes);
 
 /// Reads a TOML file with a table [layout]. Errors name the file, the line and the key.
 [[nodiscard]] Result<Layout> read_layout(const std::string& path);

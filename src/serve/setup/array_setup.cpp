@@ -38,13 +38,6 @@ constexpr std::size_t kMostFileName = 255;
 constexpr std::size_t kMostShown = 256;  // bytes of which no frame was made
 constexpr const char* kNoSource = "choose where the array is first";
 
-/// As two digits a byte.
-std::string hex_of(std::span<const std::uint8_t> bytes) {
-  std::string hex;
-  for (const std::uint8_t byte : bytes) hex += fmt::format("{:02x}", byte);
-  return hex;
-}
-
 /// /suit.json of an array that is not described yet.
 std::string suit_json(const std::optional<SourceName>& name, const FirstLook& found) {
   ordered_json json;

@@ -53,6 +53,12 @@ ordered_json parts_json(const std::vector<describing::Part>& parts) {
 
 }  // namespace
 
+std::string hex_of(std::span<const std::uint8_t> bytes) {
+  std::string hex;
+  for (const std::uint8_t byte : bytes) hex += fmt::format("{:02x}", byte);
+  return hex;
+}
+
 Result<describing::Known> known_request(const JsonRequest& request) {
   describing::Known known;
   for (const auto& [field, lines] : {std::pair{"rows", &known.rows}, {"cols", &known.cols}}) {
@@ -65,9 +71,8 @@ Result<describing::Known> known_request(const JsonRequest& request) {
 }
 
 std::string layout_proposals(std::span<const std::uint8_t> bytes, const describing::Known& known) {
-  std::string hex;
-  for (const std::uint8_t byte : bytes.first(std::min(bytes.size(), kMostShown))) hex += fmt::format("{:02x}", byte);
-  ordered_json answer = {{"bytes", hex}, {"proposals", ordered_json::array()}};
+  ordered_json answer = {{"bytes", hex_of(bytes.first(std::min(bytes.size(), kMostShown)))},
+                         {"proposals", ordered_json::array()}};
   for (const describing::Proposal& proposal : describing::propose(bytes, known)) {
     answer["proposals"].push_back({{"summary", proposal.summary},
                                    {"layout", proposal.toml},

@@ -12,6 +12,9 @@
 
 namespace dermis::serve {
 
+/// Two digits a byte.
+[[nodiscard]] std::string hex_of(std::span<const std::uint8_t> bytes);
+
 /// {"rows": 8, "cols": 8}: what a client knows; either may be missing.
 [[nodiscard]] Result<describing::Known> known_request(const JsonRequest& request);
 
