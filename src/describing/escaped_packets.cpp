@@ -18,8 +18,8 @@ constexpr std::size_t kMostKept = 2000;
 using layouts::PacketLayout;
 
 struct Escape {
-  const char* name;
-  PacketLayout layout;
+  const char* name = "";
+  PacketLayout layout{};
 };
 
 /// The byte behind an escape of HDLC is one of those that are escaped.
