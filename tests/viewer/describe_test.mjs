@@ -52,6 +52,9 @@ it("proposes a layout, marks what the bytes hold, and reads the device by it", a
     assert.ok(await part(page, "first-bytes").isHidden());
     assert.equal(await page.locator("#array-rows").inputValue(), "4");
     assert.deepEqual(await part(page, "layout-map").evaluate(({ width, height }) => [width, height]), [6, 4]);
+    await page.setViewportSize({ width: 390, height: 844 });
+    assert.equal(await page.evaluate(() => document.scrollingElement.scrollWidth), 390);
+    await page.setViewportSize({ width: 1280, height: 720 });
     await page.locator("#array-name").fill("mine");
     await part(page, "use-layout").click();
     await page.locator("[data-role=array-setup]", { hasText: "layout=mine.layout.toml" }).waitFor();
