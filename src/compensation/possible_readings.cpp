@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "compensation/readout_parts.hpp"
@@ -27,7 +26,6 @@ constexpr double kStillShort = 4.0;     // times as many ohm, where the last rea
 constexpr double kStillShare = 0.03;    // likewise, of the supply
 constexpr double kLeastOfShort = 0.25;  // of the supply: where up to three short one column
 constexpr double kLittleLeft = 0.6;     // readings of a line together, over what a taxel of 0 ohm reads alone
-constexpr std::size_t kAtOnce = 8;      // sums that do not wait for each other
 
 /// Most impossible readings of a line of so many taxels: with more, none of its readings counts.
 std::size_t most_bad(std::size_t taxels) {
@@ -48,6 +46,7 @@ PossibleReadings::PossibleReadings(const ArrayDescription& array)
   last_taken_.resize(array.taxel_count());
   verdicts_.resize(array.taxel_count());
   sums_.resize(array.sensed_lines());
+  line_.resize(array.sensed_lines());
   const double weakest_driver = *std::max_element(drive_ohm_.begin(), drive_ohm_.end());
   for (std::size_t line = 0; line < array.sensed_lines(); ++line) {
     const SensedLine sensed = sensed_line(array.readout, line);
@@ -85,7 +84,9 @@ void PossibleReadings::check(std::span<const double> ratio, double sigma_ratio,
 bool PossibleReadings::any_may_exceed(std::span<const double> ratio) noexcept {
   std::fill(sums_.begin(), sums_.end(), 0.0);
   bool any = false;
-  for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) any = driven_may_exceed(driven, ratio) || any;
+  for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
+    any = driven_may_exceed(driven, readings_of(driven, ratio)) || any;
+  }
   for (std::size_t sensed = 0; sensed < heads_.size() && sums_are_bounded_; ++sensed) {
     any = any || sums_[sensed] > heads_[sensed].most_sum;
   }
@@ -93,34 +94,35 @@ bool PossibleReadings::any_may_exceed(std::span<const double> ratio) noexcept {
 }
 
 /// Nothing on the line is above its limits, as the sum and the largest of its readings show. Adds these to the sums.
-DERMIS_PROCESSOR_CLONES bool PossibleReadings::driven_may_exceed(std::size_t driven,
-                                                                 std::span<const double> ratio) noexcept {
+DERMIS_PROCESSOR_CLONES bool PossibleReadings::driven_may_exceed(std::size_t driven, const double* readings) noexcept {
   const std::size_t sensed_lines = heads_.size();
-  const std::size_t step = rows_are_driven_ ? 1 : cols_;
-  const double* const readings = ratio.data() + taxel_of(driven, 0);
   const double* const current = limits_.current.data();
   const double* const offset = limits_.offset.data();
   const double* const ohm = limits_.ohm.data();
   const double* const emf = limits_.emf.data();
   double* const sums = sums_.data();
-  for (std::size_t sensed = 0; sensed < sensed_lines; ++sensed) sums[sensed] += readings[sensed * step];
-  double parts[kAtOnce] = {};
-  std::size_t first = 0;
-  for (; first + kAtOnce <= sensed_lines; first += kAtOnce) {
-    for (std::size_t k = 0; k < kAtOnce; ++k) {
-      parts[k] += current[first + k] * readings[(first + k) * step] + offset[first + k];
-    }
+  double total = 0.0;
+#pragma omp simd reduction(+ : total)
+  for (std::size_t sensed = 0; sensed < sensed_lines; ++sensed) {
+    sums[sensed] += readings[sensed];
+    total += current[sensed] * readings[sensed] + offset[sensed];
   }
-  for (; first < sensed_lines; ++first) parts[0] += current[first] * readings[first * step] + offset[first];
-  const double total = std::accumulate(parts, parts + kAtOnce, 0.0);
   const double own_ohm = one_loaded_ ? drive_ohm_[driven] : 0.0;
   const double left = one_loaded_ ? 1.0 : 1.0 - drive_ohm_[driven] * total;
-  std::uint64_t exceeds = 0;
+  std::uint64_t exceeds = left < 0.0 ? 1 : 0;
+#pragma omp simd reduction(| : exceeds)
   for (std::size_t sensed = 0; sensed < sensed_lines; ++sensed) {
-    const double own = current[sensed] * readings[sensed * step] + offset[sensed];
+    const double own = current[sensed] * readings[sensed] + offset[sensed];
     exceeds |= (ohm[sensed] + own_ohm) * own + emf[sensed] > left ? 1 : 0;
   }
-  return exceeds != 0 || left < 0.0;
+  return exceeds != 0;
+}
+
+/// One after the other.
+const double* PossibleReadings::readings_of(std::size_t driven, std::span<const double> ratio) noexcept {
+  if (rows_are_driven_) return &ratio[driven * cols_];
+  for (std::size_t sensed = 0; sensed < line_.size(); ++sensed) line_[sensed] = ratio[taxel_of(driven, sensed)];
+  return line_.data();
 }
 
 void PossibleReadings::doubt_bad_lines(std::span<ReadingVerdict> verdicts) const noexcept {

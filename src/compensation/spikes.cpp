@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "compensation/readout_parts.hpp"
@@ -26,7 +25,6 @@ constexpr double kMoreStay = 2.0;    // than fall
 constexpr double kNewShare = 0.125;  // of a reading in its mean
 constexpr double kLeastLeft = 0.01;  // of the supply
 constexpr std::uint8_t kMostFrames = 3;
-constexpr std::size_t kAtOnce = 8;  // sums that do not wait for each other
 
 }  // namespace
 
@@ -104,41 +102,38 @@ DERMIS_PROCESSOR_CLONES void Spikes::follow(std::span<const double> ratio, doubl
 }
 
 DERMIS_PROCESSOR_CLONES bool Spikes::any_jump(std::span<const double> ratio) const noexcept {
-  double most[kAtOnce] = {};
-  std::size_t taxel = 0;
-  for (; taxel + kAtOnce <= ratio.size(); taxel += kAtOnce) {
-    for (std::size_t k = 0; k < kAtOnce; ++k) {
-      const double change = ratio[taxel + k] - last_[taxel + k];
-      most[k] = change > most[k] ? change : most[k];
-    }
+  const double* const readings = ratio.data();
+  const double* const last = last_.data();
+  double most = 0.0;
+#pragma omp simd reduction(max : most)
+  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
+    const double change = readings[taxel] - last[taxel];
+    most = change > most ? change : most;
   }
-  for (; taxel < ratio.size(); ++taxel) most[0] = std::max(most[0], ratio[taxel] - last_[taxel]);
-  return *std::max_element(most, most + kAtOnce) > kLeastJump;
+  return most > kLeastJump;
 }
 
 /// Most of the loads are about what they were, those that have just jumped aside: they may fall back. Where there are
 /// no others, there is no evidence.
 DERMIS_PROCESSOR_CLONES bool Spikes::follows_last(std::span<const double> ratio, double sigma_ratio) const noexcept {
-  double loads[kAtOnce] = {};
-  double changed[kAtOnce] = {};
-  double jumped[kAtOnce] = {};
+  const double* const readings = ratio.data();
+  const double* const before = last_.data();
+  const double* const has_jumped = jumped_.data();
   const double least = kLoadedSigmas * sigma_ratio;
-  const auto add = [&](std::size_t taxel, std::size_t k) {
-    const double last = last_[taxel];
+  double loads = 0.0;
+  double changed = 0.0;
+  double jumped = 0.0;
+#pragma omp simd reduction(+ : loads, changed, jumped)
+  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
+    const double last = before[taxel];
     const double load = last > least ? last : 0.0;
-    const double falls = jumped_[taxel] * load;
+    const double falls = has_jumped[taxel] * load;
     const double stays = load - falls;
-    jumped[k] += falls;
-    loads[k] += stays;
-    changed[k] += std::abs(ratio[taxel] - last) > kMostChange * last ? stays : 0.0;
-  };
-  std::size_t taxel = 0;
-  for (; taxel + kAtOnce <= ratio.size(); taxel += kAtOnce) {
-    for (std::size_t k = 0; k < kAtOnce; ++k) add(taxel + k, k);
+    jumped += falls;
+    loads += stays;
+    changed += std::abs(readings[taxel] - last) > kMostChange * last ? stays : 0.0;
   }
-  for (std::size_t k = 0; taxel + k < ratio.size(); ++k) add(taxel + k, k);
-  const auto sum = [](const double(&parts)[kAtOnce]) { return std::accumulate(parts, parts + kAtOnce, 0.0); };
-  return sum(changed) <= kMostChanged * sum(loads) && (sum(loads) > 0.0 || sum(jumped) == 0.0);
+  return changed <= kMostChanged * loads && (loads > 0.0 || jumped == 0.0);
 }
 
 void Spikes::check_line(std::size_t line, std::span<const double> ratio, double sigma_ratio,

@@ -10,15 +10,12 @@
 namespace dermis::compensation {
 namespace {
 
-/// Sums in four parts, which do not wait for each other.
-double sum_of(std::span<const double> values) {
-  double parts[4] = {};
-  std::size_t k = 0;
-  for (; k + 4 <= values.size(); k += 4) {
-    for (std::size_t part = 0; part < 4; ++part) parts[part] += values[k + part];
-  }
-  for (; k < values.size(); ++k) parts[0] += values[k];
-  return (parts[0] + parts[1]) + (parts[2] + parts[3]);
+inline double sum_of(std::span<const double> values) {
+  const double* const value = values.data();
+  double sum = 0.0;
+#pragma omp simd reduction(+ : sum)
+  for (std::size_t k = 0; k < values.size(); ++k) sum += value[k];
+  return sum;
 }
 
 }  // namespace

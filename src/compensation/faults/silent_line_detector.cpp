@@ -72,10 +72,13 @@ DERMIS_PROCESSOR_CLONES void SilentLineDetector::sum_over_lines(const FaultList&
     const float* const evidence = &evidence_[row * cols];
     const float* const of_column = &faults.witnesses(Axis::column)[row * cols];
     const float* const of_row = &faults.witnesses(Axis::row)[row * cols];
-    for (std::size_t col = 0; col < cols; ++col) columns[col] += of_column[col] * evidence[col];
-    float parts[4] = {};
-    for (std::size_t col = 0; col < cols; ++col) parts[col % 4] += of_row[col] * evidence[col];
-    line_evidence_.row[row] = (parts[0] + parts[1]) + (parts[2] + parts[3]);
+    float sum = 0.0F;
+#pragma omp simd reduction(+ : sum)
+    for (std::size_t col = 0; col < cols; ++col) {
+      columns[col] += of_column[col] * evidence[col];
+      sum += of_row[col] * evidence[col];
+    }
+    line_evidence_.row[row] = sum;
   }
 }
 

@@ -88,6 +88,7 @@ DERMIS_PROCESSOR_CLONES bool StuckTaxelDetector::count_repetitions(const Observa
   std::int64_t idle_repeated = 0;
   std::int64_t idle_repetitions = 0;
   std::int64_t any_decides = 0;
+#pragma omp simd reduction(+ : idle, idle_repeated) reduction(max : idle_repetitions) reduction(| : any_decides)
   for (std::size_t taxel = from; taxel < to; ++taxel) {
     const double ratio = ratios[taxel];
     const double count = zero + per_ratio * ratio;
