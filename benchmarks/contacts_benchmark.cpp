@@ -6,6 +6,8 @@
 #include <benchmark/benchmark.h>
 
 #include <chrono>
+#include <utility>
+#include <vector>
 
 #include "dermis/calibration/calibrate.hpp"
 #include "dermis/contacts/contact_tracker.hpp"
@@ -68,24 +70,54 @@ void counts_to_contacts(benchmark::State& state) {
   state.counters["checked"] = contacts > 0 ? 1 : 0;
 }
 
-void newtons_to_contacts(benchmark::State& state) {
+std::vector<ForceFrame> scene_forces() {
   Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(scene().model);
   std::vector<ForceFrame> forces(scene().frames.size());
   for (std::size_t k = 0; k < forces.size(); ++k) pipeline->process(scene().frames[k], forces[k]);
+  return forces;
+}
+
+void measure_tracker(benchmark::State& state, std::vector<ForceFrame> forces) {
   contacts::ContactTracker tracker(scene().array);
   ContactReport report;
   Nanos time{0};
-  std::size_t contacts = 0;
   benchmarks::measure_frames(state, forces.size(), [&](std::size_t k) {
     forces[k].time = time += std::chrono::milliseconds(10);
     tracker.process(forces[k], report);
-    contacts += report.contacts.size();
+    benchmark::DoNotOptimize(report.contacts.data());
   });
-  state.counters["checked"] = contacts > 0 ? 1 : 0;
+  state.counters["checked"] = forces.empty() ? 0 : 1;
+}
+
+void newtons_to_contacts(benchmark::State& state) {
+  measure_tracker(state, scene_forces());
+}
+
+/// Of the scene's frames those with so many contacts, in their order.
+void newtons_to_so_many_contacts(benchmark::State& state, std::size_t contacts) {
+  const std::vector<ForceFrame> forces = scene_forces();
+  contacts::ContactTracker tracker(scene().array);
+  ContactReport report;
+  std::vector<ForceFrame> chosen;
+  for (const ForceFrame& force : forces) {
+    tracker.process(force, report);
+    if (report.contacts.size() == contacts) chosen.push_back(force);
+  }
+  measure_tracker(state, std::move(chosen));
+}
+
+void newtons_to_no_contact(benchmark::State& state) {
+  newtons_to_so_many_contacts(state, 0);
+}
+
+void newtons_to_one_contact(benchmark::State& state) {
+  newtons_to_so_many_contacts(state, 1);
 }
 
 BENCHMARK(counts_to_contacts)->Name("frame: counts to contacts|dermis")->Arg(16)->UseManualTime();
 BENCHMARK(newtons_to_contacts)->Name("frame: newtons to contacts|dermis")->Arg(16)->UseManualTime();
+BENCHMARK(newtons_to_no_contact)->Name("newtons to no contact|dermis")->Arg(16)->UseManualTime();
+BENCHMARK(newtons_to_one_contact)->Name("newtons to one contact|dermis")->Arg(16)->UseManualTime();
 
 }  // namespace
 }  // namespace dermis

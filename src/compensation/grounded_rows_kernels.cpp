@@ -41,6 +41,7 @@ struct GroundedRowsView {
         shunted(state.shunted.data()),
         returned(state.returned.data()),
         line_gain(state.line_gain.data()),
+        line_part(state.line_part.data()),
         noise_gain(state.noise_gain.data()),
         column_part(state.column_part.data()),
         column_scale(state.column_scale.data()) {}
@@ -62,6 +63,7 @@ struct GroundedRowsView {
   double* shunted;
   double* returned;
   double* line_gain;
+  double* line_part;
   double* noise_gain;
   double* column_part;
   double* column_scale;
@@ -153,6 +155,7 @@ void refresh_kernel(const View state) {
       hn::StoreU(hn::Mul(drive, hn::LoadU(d, &state.explained[k])), d, &state.dropped[k]);
     }
     state.line_gain[row] = 1.0 + state.drive_ohm[row] * hn::GetLane(hn::SumOfLanes(d, sum));
+    state.line_part[row] = 1.0 / state.line_gain[row];
   }
   const bool one_loaded = state.idle_columns == IdleColumns::floating;
   for (std::size_t col = 0; col < state.stride; col += lanes) {
@@ -192,7 +195,7 @@ double assess_kernel(const View state) {
     for (std::size_t row = 0; row < state.rows; ++row) {
       const std::size_t k = row * state.stride + col;
       const Vec gain = hn::Set(d, state.line_gain[row]);
-      const Vec off_diagonal = hn::Set(d, 1.0 - 1.0 / state.line_gain[row]);
+      const Vec off_diagonal = hn::Set(d, 1.0 - state.line_part[row]);
       const Vec returned = hn::LoadU(d, &state.returned[k]);
       const Vec z = hn::MulSub(gain, hn::LoadU(d, &state.explained[k]), returned);
       const Vec positive = hn::Max(z, zero);
@@ -218,7 +221,7 @@ void advance_kernel(const View state) {
   const Vec zero = hn::Zero(d);
   for (std::size_t row = 0; row < state.rows; ++row) {
     const Vec gain = hn::Set(d, state.line_gain[row]);
-    const Vec inverse_gain = hn::Set(d, 1.0 / state.line_gain[row]);
+    const Vec inverse_gain = hn::Set(d, state.line_part[row]);
     for (std::size_t col = 0; col < state.stride; col += hn::Lanes(d)) {
       const std::size_t k = row * state.stride + col;
       const Vec y = hn::LoadU(d, &state.measured[k]);
@@ -354,6 +357,7 @@ GroundedRowsState::GroundedRowsState(std::size_t row_count, std::size_t col_coun
       returned(rows * stride),
       single(rows * stride, cols * stride),
       line_gain(rows),
+      line_part(rows),
       noise_gain(rows),
       column_part(stride),
       column_scale(stride) {}

@@ -71,6 +71,7 @@ struct GroundedRowsState {
   std::vector<double> returned;  // G diag(eta) G^T Rd y'
   SinglePrecision single;
   std::vector<double> line_gain;     // a [rows]
+  std::vector<double> line_part;     // 1 / a [rows]
   std::vector<double> noise_gain;    // square of the diagonal of S D^-1 [rows]
   std::vector<double> column_part;   // w [stride]
   std::vector<double> column_scale;  // From Z to the next G [stride]

@@ -4,12 +4,12 @@
 
 #include <cassert>
 #include <cmath>
-#include <functional>
-#include <numeric>
+#include <cstdint>
 
 #include "compensation/readout_parts.hpp"
 #include "compensation/sensed_line.hpp"
 #include "dermis/core/axis.hpp"
+#include "dermis/core/processor_clones.hpp"
 
 namespace dermis::compensation {
 namespace {
@@ -20,6 +20,17 @@ bool has_grounded_lines(const Readout& readout) {
   const bool is_virtual = readout.circuit == Circuit::transimpedance && has_ideal_amplifiers(readout);
   return readout.circuit == Circuit::none || readout.circuit == Circuit::flexitac || is_virtual ||
          readout.idle_rows == IdleRows::grounded;
+}
+
+double square(double value) {
+  return value * value;
+}
+
+DERMIS_PROCESSOR_CLONES bool any_other_than_zero(std::span<const float> values) {
+  const float* const value = values.data();
+  std::uint32_t any = 0;
+  for (std::size_t k = 0; k < values.size(); ++k) any |= value[k] != 0.0F ? 1 : 0;
+  return any != 0;
 }
 
 }  // namespace
@@ -92,23 +103,36 @@ void SharedErrors::variances(const ConductanceErrors& errors, std::span<const We
 }
 
 void SharedErrors::find_lines(const ConductanceErrors& errors, Frame& frame) const noexcept {
-  const std::size_t sensed = sensed_ohm_.size();
-  frame.siemens.resize(driven_ohm_.size() * sensed);
+  frame.siemens.resize(errors.siemens.size());
   frame.driven_sum.resize(driven_ohm_.size());
   frame.driven_gain.resize(driven_ohm_.size());
-  frame.sensed_sum.assign(sensed, 0.0);
-  for (std::size_t i = 0; i < driven_ohm_.size(); ++i) {
-    double* const siemens = &frame.siemens[i * sensed];
-    for (std::size_t j = 0; j < sensed; ++j) siemens[j] = errors.siemens[at(i, j)];
-    for (std::size_t j = 0; j < sensed; ++j) frame.sensed_sum[j] += siemens[j];
-    frame.driven_sum[i] = std::reduce(siemens, siemens + sensed);
-    frame.driven_gain[i] = 1.0 + driven_ohm_[i] * frame.driven_sum[i];
-  }
+  frame.sensed_sum.assign(sensed_ohm_.size(), 0.0);
+  sum_conductances(errors.siemens, frame);
   find_sensed_lines(frame);
   find_own_gains(frame);
   frame.doubted.clear();
+  if (!any_other_than_zero(errors.doubt_siemens)) return;
   for (std::size_t k = 0; k < errors.doubt_siemens.size(); ++k) {
     if (errors.doubt_siemens[k] != 0.0F) frame.doubted.push_back(k);
+  }
+}
+
+DERMIS_PROCESSOR_CLONES void SharedErrors::sum_conductances(std::span<const float> of_taxels,
+                                                            Frame& frame) const noexcept {
+  const std::size_t sensed = sensed_ohm_.size();
+  double* const sensed_sum = frame.sensed_sum.data();
+  for (std::size_t i = 0; i < driven_ohm_.size(); ++i) {
+    const float* const line = &of_taxels[at(i, 0)];
+    double* const siemens = &frame.siemens[i * sensed];
+    for (std::size_t j = 0; j < sensed; ++j) siemens[j] = static_cast<double>(line[j * sensed_step_]);
+    double sum = 0.0;
+#pragma omp simd reduction(+ : sum)
+    for (std::size_t j = 0; j < sensed; ++j) {
+      sensed_sum[j] += siemens[j];
+      sum += siemens[j];
+    }
+    frame.driven_sum[i] = sum;
+    frame.driven_gain[i] = 1.0 + driven_ohm_[i] * sum;
   }
 }
 
@@ -132,21 +156,21 @@ void SharedErrors::find_sensed_lines(Frame& frame) const noexcept {
   }
 }
 
-void SharedErrors::find_own_gains(Frame& frame) const noexcept {
-  const auto shunted = [](double siemens, double shunt) { return siemens * siemens * shunt; };
+DERMIS_PROCESSOR_CLONES void SharedErrors::find_own_gains(Frame& frame) const noexcept {
+  const std::size_t sensed = sensed_ohm_.size();
+  const double* const shunt = frame.sensed_shunt.data();
   frame.own_gain.resize(driven_ohm_.size());
   frame.own_gains = 0.0;
   for (std::size_t i = 0; i < driven_ohm_.size(); ++i) {
-    const std::span<const double> siemens = frame.of_driven(i);
-    const double returned =
-        std::transform_reduce(siemens.begin(), siemens.end(), frame.sensed_shunt.begin(), 0.0, std::plus<>(), shunted);
+    const double* const siemens = frame.of_driven(i).data();
+    double returned = 0.0;
+#pragma omp simd reduction(+ : returned)
+    for (std::size_t j = 0; j < sensed; ++j) returned += siemens[j] * siemens[j] * shunt[j];
     frame.own_gain[i] = frame.driven_gain[i] - driven_ohm_[i] * returned;
     frame.own_gains += frame.own_gain[i] * frame.own_gain[i];
   }
   frame.reading_gains = 0.0;
-  for (std::size_t j = 0; j < sensed_ohm_.size(); ++j) {
-    frame.reading_gains += std::pow(reading_siemens_[j] * frame.sensed_gain[j], 2);
-  }
+  for (std::size_t j = 0; j < sensed; ++j) frame.reading_gains += square(reading_siemens_[j] * frame.sensed_gain[j]);
 }
 
 void SharedErrors::weigh(const Frame& frame, const WeightedConductances& of, Sum& sum) const noexcept {
@@ -184,7 +208,7 @@ double SharedErrors::noise(const ConductanceErrors& errors, const Frame& frame, 
   double by_sensed_square = 0.0;  // sum_j q_j^2 v_j^2
   for (std::size_t j = 0; j < sensed_ohm_.size(); ++j) {
     const double through_sensed = sensed_ohm_[j] * sum.sensed_weighted[j];
-    const double shift = std::pow(reading_siemens_[j] * frame.sensed_gain[j], 2) * through_sensed;
+    const double shift = square(reading_siemens_[j] * frame.sensed_gain[j]) * through_sensed;
     by_sensed += shift;
     by_sensed_square += shift * through_sensed;
   }

@@ -44,6 +44,7 @@ class SharedErrors final : public CircuitErrors {
   }
   void find_lines(const ConductanceErrors& errors, Frame& frame) const noexcept;
   void find_sensed_lines(Frame& frame) const noexcept;
+  void sum_conductances(std::span<const float> of_taxels, Frame& frame) const noexcept;
   void find_own_gains(Frame& frame) const noexcept;
   void weigh(const Frame& frame, const WeightedConductances& of, Sum& sum) const noexcept;
   [[nodiscard]] double noise(const ConductanceErrors& errors, const Frame& frame, const Sum& sum) const noexcept;

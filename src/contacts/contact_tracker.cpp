@@ -100,6 +100,7 @@ class ContactTracker::Implementation {
 
   /// An area too weak to go on is left out, and one that holds two contacts is parted.
   void add(const ForceFrame& force, std::span<std::uint32_t> taxels) {
+    if (!any_part_can_go_on(force, taxels)) return;
     const Measurement measured = gauge_.measure(force, taxels, pressed_sigma(), expected_at(taxels.front()));
     const auto [own, share] = part(force, taxels, measured);
     if (own < taxels.size() && own > 0 && can_go_on(force, taxels.subspan(own)) && is_top(force, taxels, taxels[own]) &&
@@ -178,6 +179,13 @@ class ContactTracker::Implementation {
 
   [[nodiscard]] bool can_go_on(const ForceFrame& force, std::span<const std::uint32_t> taxels) const {
     return is_strong(force, taxels, expected_at(taxels.front()) != nullptr ? options.release_share : 1.0);
+  }
+
+  /// No part of an area is stronger than the whole: noise is not measured.
+  [[nodiscard]] bool any_part_can_go_on(const ForceFrame& force, std::span<const std::uint32_t> taxels) const {
+    const auto is_expected = [&](std::uint32_t taxel) { return expected_at(taxel) != nullptr; };
+    const bool any_is_expected = !held_.empty() && std::any_of(taxels.begin(), taxels.end(), is_expected);
+    return is_strong(force, taxels, any_is_expected ? options.release_share : 1.0);
   }
 
   /// `share`: of the thresholds of an onset. Each taxel adds the square of its signal over the noise, less that of a

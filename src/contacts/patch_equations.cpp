@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "dermis/core/processor_clones.hpp"
+
 namespace dermis::contacts {
 namespace {
 
@@ -23,7 +25,8 @@ struct Sums {
   float squares = 0.0F;             // r^2
 };
 
-Sums sum_up(std::span<const FitTaxel> taxels, const PatchResponse& response, const Patch& patch) {
+DERMIS_PROCESSOR_CLONES Sums sum_up(std::span<const FitTaxel> taxels, const PatchResponse& response,
+                                    const Patch& patch) {
   const PatchResponse::Row row = response.row(patch.log_radius);
   Lanes x_products{};
   Lanes y_products{};

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "dermis/core/processor_clones.hpp"
+
 namespace dermis::contacts {
 namespace {
 
@@ -40,8 +42,8 @@ void StressedAreas::find(const ForceFrame& force, double sigma, std::span<const 
   group();
 }
 
-void StressedAreas::collect(const ForceFrame& force, float sigma) {
-  constexpr std::size_t kBlock = 8;
+DERMIS_PROCESSOR_CLONES void StressedAreas::collect(const ForceFrame& force, float sigma) {
+  constexpr std::size_t kBlock = 16;
   pressed_.clear();
   const std::size_t taxels = rows_ * cols_;
   for (std::size_t first = 0; first < taxels; first += kBlock) {

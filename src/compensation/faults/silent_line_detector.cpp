@@ -84,10 +84,12 @@ DERMIS_PROCESSOR_CLONES void SilentLineDetector::sum_over_lines(const FaultList&
 
 void SilentLineDetector::judge_lines(const Observation& seen, Axis axis, FaultList& faults) noexcept {
   const Nanos time = seen.conditioned.time;
+  const bool none_is_known = faults.all().empty();
   for (std::size_t line = 0; line < line_count(array_, axis); ++line) {
-    if (faults.contains(kSupplied[axis], line)) continue;
     const auto evidence = static_cast<double>(line_evidence_[axis][line]);
     auto& [silent, alive] = tests_[axis][line];
+    if (none_is_known && silent.frames == 0 && evidence <= 0.0) continue;
+    if (faults.contains(kSupplied[axis], line)) continue;
     if (!faults.contains(kSilent[axis], line)) {
       if (witnesses_.are_doubtful()) silent.restart();
       silent.add(evidence, seen.frame, time);
