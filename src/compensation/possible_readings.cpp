@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -47,6 +46,7 @@ PossibleReadings::PossibleReadings(const ArrayDescription& array)
   verdicts_.resize(array.taxel_count());
   sums_.resize(array.sensed_lines());
   line_.resize(array.sensed_lines());
+  beyond_.resize(array.sensed_lines());
   const double weakest_driver = *std::max_element(drive_ohm_.begin(), drive_ohm_.end());
   for (std::size_t line = 0; line < array.sensed_lines(); ++line) {
     const SensedLine sensed = sensed_line(array.readout, line);
@@ -83,24 +83,26 @@ void PossibleReadings::check(std::span<const double> ratio, double sigma_ratio,
 
 bool PossibleReadings::any_may_exceed(std::span<const double> ratio) noexcept {
   std::fill(sums_.begin(), sums_.end(), 0.0);
-  bool any = false;
+  std::fill(beyond_.begin(), beyond_.end(), 0.0);
   for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
-    any = driven_may_exceed(driven, readings_of(driven, ratio)) || any;
+    find_beyond(driven, readings_of(driven, ratio));
   }
+  bool any = *std::max_element(beyond_.begin(), beyond_.end()) > 0.0;
   for (std::size_t sensed = 0; sensed < heads_.size() && sums_are_bounded_; ++sensed) {
     any = any || sums_[sensed] > heads_[sensed].most_sum;
   }
   return any;
 }
 
-/// Nothing on the line is above its limits, as the sum and the largest of its readings show. Adds these to the sums.
-DERMIS_PROCESSOR_CLONES bool PossibleReadings::driven_may_exceed(std::size_t driven, const double* readings) noexcept {
+/// How far readings of the line are beyond their limits, as they and their sum show.
+DERMIS_PROCESSOR_CLONES void PossibleReadings::find_beyond(std::size_t driven, const double* readings) noexcept {
   const std::size_t sensed_lines = heads_.size();
   const double* const current = limits_.current.data();
   const double* const offset = limits_.offset.data();
   const double* const ohm = limits_.ohm.data();
   const double* const emf = limits_.emf.data();
   double* const sums = sums_.data();
+  double* const beyond = beyond_.data();
   double total = 0.0;
 #pragma omp simd reduction(+ : total)
   for (std::size_t sensed = 0; sensed < sensed_lines; ++sensed) {
@@ -109,13 +111,12 @@ DERMIS_PROCESSOR_CLONES bool PossibleReadings::driven_may_exceed(std::size_t dri
   }
   const double own_ohm = one_loaded_ ? drive_ohm_[driven] : 0.0;
   const double left = one_loaded_ ? 1.0 : 1.0 - drive_ohm_[driven] * total;
-  std::uint64_t exceeds = left < 0.0 ? 1 : 0;
-#pragma omp simd reduction(| : exceeds)
   for (std::size_t sensed = 0; sensed < sensed_lines; ++sensed) {
     const double own = current[sensed] * readings[sensed] + offset[sensed];
-    exceeds |= (ohm[sensed] + own_ohm) * own + emf[sensed] > left ? 1 : 0;
+    const double taken = (ohm[sensed] + own_ohm) * own + emf[sensed];
+    const double more = (taken > 0.0 ? taken : 0.0) - left;
+    beyond[sensed] = more > beyond[sensed] ? more : beyond[sensed];
   }
-  return exceeds != 0;
 }
 
 /// One after the other.

@@ -83,7 +83,7 @@ class PossibleReadings {
   }
   [[nodiscard]] bool was_taken(std::size_t taxel) const noexcept { return last_taken_[taxel] != 0; }
   [[nodiscard]] bool any_may_exceed(std::span<const double> ratio) noexcept;
-  [[nodiscard]] bool driven_may_exceed(std::size_t driven, const double* readings) noexcept;
+  void find_beyond(std::size_t driven, const double* readings) noexcept;
   [[nodiscard]] const double* readings_of(std::size_t driven, std::span<const double> ratio) noexcept;
   void judge_driven(std::size_t driven, std::span<const double> ratio, double sigma_ratio,
                     std::span<ReadingVerdict> verdicts) const noexcept;
@@ -110,6 +110,7 @@ class PossibleReadings {
   std::vector<Head> heads_;         // [sensed]
   Limits limits_;
   std::vector<double> sums_;              // of readings [sensed]
+  std::vector<double> beyond_;            // the supply, the most of a frame [sensed]
   std::vector<double> line_;              // readings of a driven line [sensed]
   std::vector<ReadingVerdict> verdicts_;  // [taxels]
   std::vector<std::uint8_t> taken_;       // from this frame [taxels]

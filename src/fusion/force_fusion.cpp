@@ -111,7 +111,11 @@ ForceFusion::ForceFusion(ForceNetworks networks)
   assert(networks_.is_consistent());
   for (const float siemens : networks_.reference_siemens) per_reference_siemens_.push_back(1.0F / siemens);
   for (const float gain : networks_.gain) log_gain_.push_back(std::log(gain));
-  for (const float sigma : networks_.relative_sigma) relative_variance_.push_back(sigma * sigma);
+  for (std::size_t k = 0; k < networks_.relative_sigma.size(); ++k) {
+    const float sigma = networks_.relative_sigma[k];
+    const float before = k < networks_.taxel_count() ? 0.0F : networks_.relative_sigma[k - networks_.taxel_count()];
+    variance_rises_.push_back(sigma * sigma - before * before);
+  }
   for (std::size_t table = 0; table < networks_.tables.taxels.size(); ++table) {
     line_end_siemens_.push_back(networks_.tables.line_end_siemens(table));
   }
@@ -220,7 +224,7 @@ void ForceFusion::compute_forces(const Temperature& temperature, ForceFrame& for
   sources.gradient = gradient_;
   sources.offset_per_celsius = offset_per_celsius_;
   sources.offset_sigma = networks_.offset_sigma_siemens;
-  sources.relative_variance = relative_variance_;
+  sources.variance_rises = variance_rises_;
   sources.table_variance = table_variance_;
   sources.temperature_sigma = static_cast<float>(temperature.sigma);
   if (uses_temperature()) {

@@ -53,12 +53,12 @@ hn::Vec<D> material_variance(D d, const ForceSources& sources, hn::Vec<D> log_ne
   const auto knot =
       hn::Mul(hn::Sub(log_newtons, hn::Set(d, sources.log_first_knot)), hn::Set(d, sources.knots_per_log));
   const auto place = hn::Clamp(knot, hn::Zero(d), hn::Set(d, static_cast<float>(kSigmaKnots - 1)));
-  auto variance = hn::Zero(d);
-  for (std::size_t k = 0; k < kSigmaKnots; ++k) {
-    const auto distance = hn::Abs(hn::Sub(place, hn::Set(d, static_cast<float>(k))));
-    const auto weight = hn::Max(hn::Sub(hn::Set(d, 1.0F), distance), hn::Zero(d));
-    const float* at_knot = sources.relative_variance.data() + k * sources.log_gain.size() + first;
-    variance = hn::MulAdd(weight, hn::LoadU(d, at_knot), variance);
+  const float* rises = sources.variance_rises.data() + first;
+  auto variance = hn::LoadU(d, rises);
+  for (std::size_t k = 1; k < kSigmaKnots; ++k) {
+    const auto beyond = hn::Max(hn::Sub(place, hn::Set(d, static_cast<float>(k - 1))), hn::Zero(d));
+    rises += sources.log_gain.size();
+    variance = hn::MulAdd(hn::Min(beyond, hn::Set(d, 1.0F)), hn::LoadU(d, rises), variance);
   }
   return variance;
 }

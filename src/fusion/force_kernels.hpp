@@ -30,7 +30,8 @@ struct ForceSources {
   std::span<const float> gradient;            ///< d output / d input [inputs, taxels].
   std::span<const float> offset_per_celsius;  ///< [S/C]
   std::span<const float> offset_sigma;        ///< Part of excess.sigma_siemens that stays from frame to frame [S].
-  std::span<const float> relative_variance;   ///< relative_sigma^2 [kSigmaKnots, taxels]
+  std::span<const float> variance_rises;      ///< relative_sigma^2, of the first knot and from knot to knot
+                                              ///< [kSigmaKnots, taxels]
   std::span<const float> table_variance;      ///< Relative, of the law that a table does not know.
   float temperature_sigma = 0.0F;             ///< [C]
   float temperature_per_celsius = 0.0F;       ///< Rise of the third input [1/C]; 0 where there is none.

@@ -133,7 +133,7 @@ class ForceFusion {
   std::vector<float> per_reference_siemens_;  // [taxels]
   std::vector<float> log_gain_;               // [taxels]
   std::vector<float> offset_per_celsius_;     // [taxels]
-  std::vector<float> relative_variance_;      // [kSigmaKnots, taxels]
+  std::vector<float> variance_rises_;         // ForceSources::variance_rises [kSigmaKnots, taxels]
   std::vector<float> excess_siemens_;         // [taxels]
   std::vector<float> sigma_siemens_;          // of the excess [taxels]
   std::vector<float> inputs_;                 // [inputs, taxels]
