@@ -12,6 +12,7 @@
 #include <thread>
 #include <utility>  // Asio 1.74 forgets it
 
+#include "dermis/core/thread_priority.hpp"
 #include "stream/access.hpp"
 #include "stream/budget.hpp"
 #include "stream/client.hpp"
@@ -179,7 +180,10 @@ void Server::Implementation::start(Handlers handlers, std::vector<Service> servi
   offer_.handlers = std::move(handlers);
   offer_.services = std::move(services);
   accept();
-  thread_ = std::thread([this] { context_.run(); });
+  thread_ = std::thread([this] {
+    set_thread_priority(ThreadPriority::low);
+    context_.run();
+  });
 }
 
 void Server::Implementation::stop() {
