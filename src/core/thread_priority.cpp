@@ -6,16 +6,10 @@
 #include <unistd.h>
 
 namespace dermis {
-namespace {
 
-constexpr int kHigh = -10;
-constexpr int kLow = 5;
-
-}  // namespace
-
-void set_thread_priority(ThreadPriority priority) noexcept {
-  const int nice = priority == ThreadPriority::high ? kHigh : kLow;
-  static_cast<void>(::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), nice));
+void raise_thread_priority() noexcept {
+  constexpr int kNice = -10;
+  static_cast<void>(::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kNice));
 }
 
 }  // namespace dermis

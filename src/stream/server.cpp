@@ -181,7 +181,7 @@ void Server::Implementation::start(Handlers handlers, std::vector<Service> servi
   offer_.services = std::move(services);
   accept();
   thread_ = std::thread([this] {
-    set_thread_priority(ThreadPriority::low);
+    raise_thread_priority();  // arrays wait for the locks that it holds
     context_.run();
   });
 }
