@@ -218,10 +218,22 @@ void slowest_frame(benchmark::State& state) {
   state.counters["checked"] = 1;
 }
 
-BENCHMARK(frame_counts_to_newtons)->Name("frame: counts to newtons|dermis")->Arg(16)->Arg(32)->UseManualTime();
-BENCHMARK(frame_of_a_material_with_memory)->Name("the same, with memory|dermis")->Arg(16)->Arg(32)->UseManualTime();
+BENCHMARK(frame_counts_to_newtons)
+    ->Name("frame: counts to newtons|dermis")
+    ->Arg(8)
+    ->Arg(16)
+    ->Arg(32)
+    ->Arg(64)
+    ->UseManualTime();
+BENCHMARK(frame_of_a_material_with_memory)
+    ->Name("the same, with memory|dermis")
+    ->Arg(8)
+    ->Arg(16)
+    ->Arg(32)
+    ->Arg(64)
+    ->UseManualTime();
 BENCHMARK(slowest_frame)->Name("slowest of any input|dermis")->Arg(16)->Iterations(1)->UseManualTime();
-BENCHMARK(memory_alone)->Name("memory of the material|dermis")->Arg(16)->Arg(32)->UseManualTime();
+BENCHMARK(memory_alone)->Name("memory of the material|dermis")->Arg(8)->Arg(16)->Arg(32)->Arg(64)->UseManualTime();
 
 }  // namespace
 }  // namespace dermis

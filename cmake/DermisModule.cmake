@@ -25,6 +25,10 @@ if(DERMIS_SANITIZE)
   target_compile_definitions(dermis_build_flags INTERFACE _GLIBCXX_ASSERTIONS)
 endif()
 
+# For loops with DERMIS_PROCESSOR_CLONES: a choice or a square root becomes a vector only where a comparison need not trap
+# nor a root set errno; and a product and a sum are rounded apart on every processor.
+set(DERMIS_VECTOR_OPTIONS -fno-trapping-math -fno-math-errno -ffp-contract=off)
+
 # compile_together(<target> [<sources that stay alone>]): with DERMIS_UNITY_BUILD, its sources in batches.
 function(compile_together target)
   if(NOT DERMIS_UNITY_BUILD)

@@ -155,8 +155,10 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
   prepare_errors(conditioned.ratio.size(), conductance.errors);
   conductance.residual_sigma = 0.0;
   std::fill(conductance.siemens.begin(), conductance.siemens.end(), 0.0);
-  std::fill(conductance.sigma_siemens.begin(), conductance.sigma_siemens.end(), 0.0);
-  if (has(conditioned.status, FrameStatus::rejected)) return;
+  if (has(conditioned.status, FrameStatus::rejected)) {
+    std::fill(conductance.sigma_siemens.begin(), conductance.sigma_siemens.end(), 0.0);
+    return;
+  }
   faults_->start_frame(conditioned.time);
   const InversionResult result = invert_possible(conditioned, conductance);
   conductance.residual_sigma = result.residual_ratio / conditioned.sigma_ratio;
@@ -165,6 +167,8 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
     follow_slopes(conditioned.noise_gain, conductance.sigma_siemens);
     note_errors(conditioned, conductance);
     faults_->add_doubt(conductance.siemens, conductance.sigma_siemens);
+  } else {
+    std::fill(conductance.sigma_siemens.begin(), conductance.sigma_siemens.end(), 0.0);
   }
   supply_error_->add(conductance.siemens, conditioned.supply_doubt, conductance.sigma_siemens);
   if (result.solved) {

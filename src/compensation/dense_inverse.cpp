@@ -54,12 +54,13 @@ void DenseInverse::invert() noexcept {
     invert_block(pivot);
     left_.leftCols(rows) = matrix_.middleCols(first, rows);
     left_.middleRows(first, rows).setZero();
-    multiply({pivot_.data(), static_cast<std::size_t>(kBlock), 1}, matrix_.data() + first * matrix_.cols(), count,
-             count, size, right_.data());
+    multiply(StridedMatrix<double>{pivot_.data(), static_cast<std::size_t>(kBlock), 1},
+             matrix_.data() + first * matrix_.cols(), count, count, size, right_.data());
     right_.block(0, first, rows, rows) = pivot;
     matrix_.middleCols(first, rows).setZero();
     matrix_.middleRows(first, rows) = right_.topRows(rows);
-    multiply({left_.data(), static_cast<std::size_t>(kBlock), 1}, right_.data(), size, count, size, product_.data());
+    multiply(StridedMatrix<double>{left_.data(), static_cast<std::size_t>(kBlock), 1}, right_.data(), size, count, size,
+             product_.data());
     matrix_ -= product_;
   }
 }

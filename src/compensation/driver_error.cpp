@@ -87,7 +87,7 @@ void DriverError::find_lifts(const double* siemens, std::size_t stride) noexcept
         shunted_[col * rows_ + row] = -shunt_[col] * siemens[row * stride + col];
       }
     }
-    multiply({siemens, stride, 1}, shunted_.data(), rows_, cols_, rows_, lift_.data());
+    multiply(StridedMatrix<double>{siemens, stride, 1}, shunted_.data(), rows_, cols_, rows_, lift_.data());
   }
   for (std::size_t row = 0; row < rows_; ++row) {
     for (std::size_t col = 0; col < cols_; ++col) lift_[row * rows_ + row] += siemens[row * stride + col];

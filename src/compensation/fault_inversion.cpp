@@ -43,9 +43,7 @@ FaultInversion::Correction::Correction(std::size_t taxels)
       faulty_ratio(taxels) {}
 
 FaultInversion::Masks::Masks(const ArrayDescription& array)
-    : absent(array.taxel_count()), masked(array.taxel_count()), hidden(array.taxel_count()) {
-  for (const std::size_t taxel : array.absent) absent[taxel] = 1;
-}
+    : masked(array.taxel_count()), hidden(array.taxel_count()) {}
 
 FaultInversion::FaultInversion(const ArrayDescription& array, double tolerance_ratio,
                                const ReferenceConductances& references)
@@ -175,7 +173,7 @@ void FaultInversion::add_to_circuit(const LineFault& fault, LumpedCircuit& circu
 /// A conductance of a driven line k and a sensed line j that is wrong by d changes the others to first order. Their
 /// share is Rd_k d, or RL_j d.
 void FaultInversion::add_doubt(std::span<const double> siemens, std::span<double> sigma_siemens) const noexcept {
-  if (array_.readout.circuit == Circuit::none || lines_are_faulty_) return;
+  if (array_.readout.circuit == Circuit::none || lines_are_faulty_ || !missing_.any()) return;
   const Axis driven = driven_axis(array_);
   for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
     if (!missing_.is_missing(taxel)) continue;
@@ -193,24 +191,15 @@ void FaultInversion::add_doubt(std::span<const double> siemens, std::span<double
 
 void FaultInversion::find_doubt(std::span<const double> siemens, std::span<float> doubt_siemens) const noexcept {
   std::fill(doubt_siemens.begin(), doubt_siemens.end(), 0.0F);
-  if (array_.readout.circuit == Circuit::none || lines_are_faulty_) return;
+  if (array_.readout.circuit == Circuit::none || lines_are_faulty_ || !missing_.any()) return;
   for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
     if (missing_.is_missing(taxel)) doubt_siemens[taxel] = static_cast<float>(missing_.doubt(taxel) * siemens[taxel]);
   }
 }
 
 bool FaultInversion::concerns(std::span<const TaxelStatus> taxels) noexcept {
-  const std::uint8_t* const absent = is_.absent.data();
-  const std::uint8_t* const hidden = is_.hidden.data();
-  std::uint8_t* const missing = missing_.missing().data();
-  std::uint8_t any_missing = 0;
-  for (std::size_t taxel = 0; taxel < taxels.size(); ++taxel) {
-    const auto is_invalid = static_cast<std::uint8_t>(taxels[taxel] == TaxelStatus::invalid);
-    const auto is_missing = static_cast<std::uint8_t>(is_invalid & ~absent[taxel]);
-    missing[taxel] = hidden[taxel] | is_missing;
-    any_missing |= is_missing;
-  }
-  return any_ || any_missing != 0;
+  const bool any_unread = missing_.mark(taxels, is_.hidden);
+  return any_ || any_unread;
 }
 
 InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<const double> ratio,

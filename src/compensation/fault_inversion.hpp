@@ -71,7 +71,6 @@ class FaultInversion {
   struct Masks {
     explicit Masks(const ArrayDescription& array);
 
-    std::vector<std::uint8_t> absent;  // from the sheet
     std::vector<std::uint8_t> masked;  // without a force to report
     std::vector<std::uint8_t> hidden;  // by a fault
   };

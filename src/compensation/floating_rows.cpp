@@ -28,8 +28,9 @@ constexpr double kLeastCurrent = 1e-18;  // [A at 1 V]
 constexpr double kHighestSiemens = 1e3;
 
 void multiply_into(const DenseInverse::Matrix& a, const DenseInverse::Matrix& b, DenseInverse::Matrix& out) noexcept {
-  multiply({a.data(), static_cast<std::size_t>(a.cols()), 1}, b.data(), static_cast<std::size_t>(a.rows()),
-           static_cast<std::size_t>(a.cols()), static_cast<std::size_t>(b.cols()), out.data());
+  multiply(StridedMatrix<double>{a.data(), static_cast<std::size_t>(a.cols()), 1}, b.data(),
+           static_cast<std::size_t>(a.rows()), static_cast<std::size_t>(a.cols()), static_cast<std::size_t>(b.cols()),
+           out.data());
 }
 
 }  // namespace
@@ -135,8 +136,9 @@ void FloatingRows::couple_columns() noexcept {
     const double weight = currents_[row] > 0.0 ? std::exp(logarithms_[cols + row]) / currents_[row] : 0.0;
     weighted_.row(row) = std::sqrt(weight) * potentials_.row(row).cwiseProduct(scale_);
   }
-  multiply({weighted_.data(), 1, static_cast<std::size_t>(cols)}, weighted_.data(), static_cast<std::size_t>(cols),
-           static_cast<std::size_t>(weighted_.rows()), static_cast<std::size_t>(cols), square_.data());
+  multiply(StridedMatrix<double>{weighted_.data(), 1, static_cast<std::size_t>(cols)}, weighted_.data(),
+           static_cast<std::size_t>(cols), static_cast<std::size_t>(weighted_.rows()), static_cast<std::size_t>(cols),
+           square_.data());
   // Newton's method for the root, all of whose steps commute with T, from above at its largest eigenvalue and from
   // below between.
   const double most = 0.5 + std::sqrt(0.25 + square_.cwiseAbs().rowwise().sum().maxCoeff());

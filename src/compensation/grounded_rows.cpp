@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
 #include "compensation/readout_parts.hpp"
 #include "compensation/sensed_line.hpp"
 #include "compensation/shorted_crossings.hpp"
+#include "dermis/core/processor_clones.hpp"
 
 namespace dermis::compensation {
 namespace {
@@ -22,6 +24,7 @@ constexpr int kMixedSteps = 400;
 constexpr int kDampedSteps = 200;
 constexpr int kStepsWithoutGain = 60;
 constexpr int kRoundedStepsWithoutGain = 5;
+constexpr double kRough = 1e-4;     // certificate, above which single precision shows the way as well
 constexpr double kRounded = 1e-12;  // certificate; what is left of it is rounding
 constexpr std::size_t kMixingDepth = 8;
 constexpr double kLeastSiemens = 1e-12;  // held at 0 below
@@ -29,6 +32,13 @@ constexpr double kSourceShare = 1e-3;    // of the tolerance, to which the sourc
 constexpr int kSourcePasses = 200;
 constexpr double kMostLogStep = 2.0;
 constexpr double kMostLogResidual = 2.302585092994046;  // ln 10
+
+DERMIS_PROCESSOR_CLONES bool any_is_missing(std::span<const double> ratio) {
+  const double* const readings = ratio.data();
+  std::uint64_t missing = 0;
+  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) missing |= readings[taxel] != readings[taxel] ? 1 : 0;
+  return missing != 0;
+}
 
 }  // namespace
 
@@ -49,8 +59,7 @@ GroundedRows::GroundedRows(const ArrayDescription& array, double tolerance_ratio
       best_siemens_(state_.siemens.size()),
       best_explained_(state_.siemens.size()),
       mixing_(state_.siemens.size()),
-      sigma_column_(state_.stride),
-      sigma_(state_.siemens.size()) {
+      sigma_column_(state_.stride) {
   state_.kept.reserve(array.taxel_count());
   state_.shorted.reserve(array.cols);
   joined_.pairs.reserve(array.rows);
@@ -145,22 +154,36 @@ void GroundedRows::forget() noexcept {
 
 void GroundedRows::start_anew() noexcept {
   has_last_ = false;
+  first_precision_ = Precision::full;
   std::fill(sources_.siemens.begin(), sources_.siemens.end(), 0.0);
   std::fill(sources_.column_ratio.begin(), sources_.column_ratio.end(), 0.0);
 }
 
 /// y of the readings, with what the sources drove into the array in the last frame.
 void GroundedRows::load(std::span<const double> ratio, std::span<const double> siemens) noexcept {
+  load_readings(ratio);
   state_.kept.clear();
+  if (any_is_missing(ratio)) keep_missing(ratio, siemens);
+  if (!state_.shorted.empty()) load_shorted();
+}
+
+DERMIS_PROCESSOR_CLONES void GroundedRows::load_readings(std::span<const double> ratio) noexcept {
+  const double* const siemens = reading_siemens_.data();
+  const double* const offset = offset_siemens_.data();
+  const double* const of_sources = sources_.siemens.data();
   for (std::size_t row = 0; row < state_.rows; ++row) {
+    const double* const readings = &ratio[row * state_.cols];
+    double* const measured = &state_.measured[row * state_.stride];
     for (std::size_t col = 0; col < state_.cols; ++col) {
-      const std::size_t taxel = row * state_.cols + col;
-      if (std::isnan(ratio[taxel])) state_.kept.push_back({row, col, siemens[taxel]});
-      const double reading = reading_siemens_[col] * ratio[taxel];
-      state_.measured[row * state_.stride + col] = reading + offset_siemens_[col] + sources_.siemens[col];
+      measured[col] = siemens[col] * readings[col] + offset[col] + of_sources[col];
     }
   }
-  if (!state_.shorted.empty()) load_shorted();
+}
+
+void GroundedRows::keep_missing(std::span<const double> ratio, std::span<const double> siemens) noexcept {
+  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
+    if (std::isnan(ratio[taxel])) state_.kept.push_back({taxel / state_.cols, taxel % state_.cols, siemens[taxel]});
+  }
 }
 
 /// Joined rows are driven together; of the second of them nothing is left. Where one has no reading, both are kept.
@@ -183,9 +206,9 @@ void GroundedRows::load_shorted() noexcept {
   take_loads_away(state_);
 }
 
-double GroundedRows::certify() noexcept {
+double GroundedRows::certify(Precision precision) noexcept {
   const bool settled = sources_.ratio.empty() || follow_sources();
-  const double certificate = assess(state_);
+  const double certificate = assess(state_, precision);
   return settled ? certificate : std::numeric_limits<double>::infinity();
 }
 
@@ -240,13 +263,21 @@ void GroundedRows::find_row_currents() noexcept {
 /// Certificate of the iterate that it ends with.
 double GroundedRows::iterate() noexcept {
   double last = std::numeric_limits<double>::infinity();
+  Precision precision = first_precision_;
   for (int step = 0;; ++step) {
-    const double certificate = certify();
-    if (certificate <= tolerance_) return certificate;
+    const double certificate = certify(precision);
+    const Precision next_precision = certificate > kRough ? Precision::single : Precision::full;
+    if (step == 0) first_precision_ = next_precision;
+    if (certificate <= tolerance_ && precision == Precision::full) return certificate;
     if (step > 0 && !(certificate < last)) break;
-    keep();
-    if (step == kPlainSteps || certificate > kShrinks * last || !budget_.take(1.0)) return certificate;
+    if (step == kPlainSteps || certificate > kShrinks * last || !budget_.take(1.0)) {
+      keep();
+      return certificate;
+    }
     last = certificate;
+    precision = next_precision;
+    std::swap(state_.siemens, best_siemens_);  // advance() writes both anew
+    std::swap(state_.explained, best_explained_);
     advance(state_);
   }
   state_.siemens = best_siemens_;
@@ -268,7 +299,7 @@ double GroundedRows::iterate_with_mixing(double best, int damped_steps) noexcept
   int without_gain = 0;
   for (int step = 0; step < damped_steps + kMixedSteps && best > tolerance_ && budget_.take(kMixedWork); ++step) {
     take_step();
-    const double certificate = certify();
+    const double certificate = certify(Precision::full);
     if (certificate < best) {
       best = certificate;
       keep();
@@ -334,10 +365,7 @@ void GroundedRows::choose_step() noexcept {
 /// times too small.
 void GroundedRows::propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept {
   for (std::size_t col = 0; col < state_.cols; ++col) sigma_column_[col] = sigma_ratio * reading_siemens_[col];
-  spread_noise(state_, sigma_column_, sigma_);
-  for (std::size_t row = 0; row < state_.rows; ++row) {
-    std::copy_n(&sigma_[row * state_.stride], state_.cols, &sigma_siemens[row * state_.cols]);
-  }
+  spread_noise(state_, sigma_column_, sigma_siemens);
   if (driver_error_) driver_error_->add(state_.siemens, state_.explained, state_.stride, sigma_siemens);
 }
 

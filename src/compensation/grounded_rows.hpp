@@ -99,9 +99,11 @@ class GroundedRows final : public CrosstalkInversion {
 
   [[nodiscard]] bool add_shorted(std::size_t row, std::size_t col) noexcept;
   void load(std::span<const double> ratio, std::span<const double> siemens) noexcept;
+  void load_readings(std::span<const double> ratio) noexcept;
+  void keep_missing(std::span<const double> ratio, std::span<const double> siemens) noexcept;
   void load_shorted() noexcept;
   void start_anew() noexcept;
-  [[nodiscard]] double certify() noexcept;
+  [[nodiscard]] double certify(Precision precision) noexcept;
   [[nodiscard]] bool follow_sources() noexcept;
   void find_row_currents() noexcept;
   double iterate() noexcept;
@@ -117,13 +119,13 @@ class GroundedRows final : public CrosstalkInversion {
   std::vector<double> reading_siemens_;  // y of a ratio of 1 [stride]
   std::vector<double> offset_siemens_;   // y of a ratio of 0 [stride]
   Sources sources_;
-  bool has_last_ = false;              // `state_` holds the solution of the last frame
-  std::vector<double> last_estimate_;  // and this is the estimate that belongs to it
+  Precision first_precision_ = Precision::full;  // of a frame that differs from the last as that did from its own
+  bool has_last_ = false;                        // `state_` holds the solution of the last frame
+  std::vector<double> last_estimate_;            // and this is the estimate that belongs to it
   std::vector<double> best_siemens_;
   std::vector<double> best_explained_;
   Mixing mixing_;
   std::vector<double> sigma_column_;  // of y [stride]
-  std::vector<double> sigma_;         // of G [rows, stride]
   std::optional<DriverError> driver_error_;
 };
 

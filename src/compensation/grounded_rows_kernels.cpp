@@ -9,12 +9,65 @@
 
 #include "compensation/matrix_product.hpp"
 #include "compensation/shorted_crossings.hpp"
+#include "dermis/core/processor_clones.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "compensation/grounded_rows_kernels.cpp"
 #include "hwy/foreach_target.h"
 // foreach_target.h comes first: it includes this file again for every instruction set.
 #include "hwy/highway.h"
+
+// What kernels read and write of the state. They take it by value: stores of vectors may alias all that is reached
+// through a pointer, and the pointers themselves would be loaded anew after each.
+#ifndef DERMIS_COMPENSATION_GROUNDED_ROWS_VIEW
+#define DERMIS_COMPENSATION_GROUNDED_ROWS_VIEW
+namespace dermis::compensation {
+struct GroundedRowsView {
+  explicit GroundedRowsView(GroundedRowsState& state)
+      : rows(state.rows),
+        cols(state.cols),
+        stride(state.stride),
+        idle_columns(state.idle_columns),
+        drive_ohm(state.drive_ohm.data()),
+        column_ohm(state.column_ohm.data()),
+        certificate_ratio(state.certificate_ratio.data()),
+        measured(state.measured.data()),
+        explained(state.explained.data()),
+        dropped(state.dropped.data()),
+        estimate(state.estimate.data()),
+        kept_siemens(state.kept_siemens.data()),
+        kept_drawn(state.kept_drawn.data()),
+        siemens(state.siemens.data()),
+        shunted(state.shunted.data()),
+        returned(state.returned.data()),
+        line_gain(state.line_gain.data()),
+        noise_gain(state.noise_gain.data()),
+        column_part(state.column_part.data()),
+        column_scale(state.column_scale.data()) {}
+
+  std::size_t rows;
+  std::size_t cols;
+  std::size_t stride;
+  IdleColumns idle_columns;
+  const double* drive_ohm;
+  const double* column_ohm;
+  const double* certificate_ratio;
+  double* measured;
+  double* explained;
+  double* dropped;
+  double* estimate;
+  const double* kept_siemens;
+  const double* kept_drawn;
+  double* siemens;
+  double* shunted;
+  double* returned;
+  double* line_gain;
+  double* noise_gain;
+  double* column_part;
+  double* column_scale;
+};
+}  // namespace dermis::compensation
+#endif
 
 HWY_BEFORE_NAMESPACE();
 namespace dermis::compensation::HWY_NAMESPACE {
@@ -23,24 +76,25 @@ namespace hn = hwy::HWY_NAMESPACE;
 // Whole vectors of any instruction set fill a row of `stride` values.
 using D = hn::CappedTag<double, 8>;
 using Vec = hn::Vec<D>;
+using View = GroundedRowsView;
 
 constexpr double kLeastShare = 1e-6;      // The share of the supply that a column leaves stays positive under noise.
 constexpr double kLeastLineRatio = 0.05;  // The least share of the supply that a row leaves, for the estimate.
 
 /// (c): `sum` of Z; for one loaded column the mean of Rd y weighted by Z+ is `drop` over `weight`. Kept taxels draw
 /// G w, with the w that this gives.
-HWY_INLINE Vec column_scale(D d, const GroundedRowsState& state, std::size_t col, Vec sum, Vec drop, Vec weight) {
+HWY_INLINE Vec column_scale(D d, const View state, std::size_t col, Vec sum, Vec drop, Vec weight) {
   const Vec one = hn::Set(d, 1.0);
-  const Vec ohm = hn::LoadU(d, state.column_ohm.data() + col);
-  Vec share = hn::NegMulAdd(ohm, hn::Sub(sum, hn::LoadU(d, state.kept_drawn.data() + col)), one);
+  const Vec ohm = hn::LoadU(d, state.column_ohm + col);
+  Vec share = hn::NegMulAdd(ohm, hn::Sub(sum, hn::LoadU(d, state.kept_drawn + col)), one);
   if (state.idle_columns == IdleColumns::floating) {
     share = hn::Sub(share, hn::IfThenElseZero(hn::Gt(weight, hn::Zero(d)), hn::Div(drop, weight)));
   }
-  const Vec kept = hn::MulAdd(ohm, hn::LoadU(d, state.kept_siemens.data() + col), one);
+  const Vec kept = hn::MulAdd(ohm, hn::LoadU(d, state.kept_siemens + col), one);
   return hn::Div(kept, hn::Max(share, hn::Set(d, kLeastShare)));
 }
 
-void estimate_kernel(GroundedRowsState& state) {
+void estimate_kernel(const View state) {
   const D d;
   const std::size_t lanes = hn::Lanes(d);
   const Vec zero = hn::Zero(d);
@@ -71,10 +125,10 @@ void estimate_kernel(GroundedRowsState& state) {
   }
 }
 
-void warm_kernel(GroundedRowsState& state, const double* HWY_RESTRICT last_estimate) {
+void warm_kernel(const View state, const double* HWY_RESTRICT last_estimate) {
   const D d;
   const Vec zero = hn::Zero(d);
-  for (std::size_t k = 0; k < state.siemens.size(); k += hn::Lanes(d)) {
+  for (std::size_t k = 0; k < state.rows * state.stride; k += hn::Lanes(d)) {
     const Vec y = hn::LoadU(d, &state.measured[k]);
     const Vec last = hn::LoadU(d, &state.siemens[k]);
     const Vec explained = hn::LoadU(d, &state.explained[k]);
@@ -85,7 +139,7 @@ void warm_kernel(GroundedRowsState& state, const double* HWY_RESTRICT last_estim
   }
 }
 
-void refresh_kernel(GroundedRowsState& state) {
+void refresh_kernel(const View state) {
   const D d;
   const std::size_t lanes = hn::Lanes(d);
   const Vec zero = hn::Zero(d);
@@ -104,7 +158,7 @@ void refresh_kernel(GroundedRowsState& state) {
   for (std::size_t col = 0; col < state.stride; col += lanes) {
     Vec sum = zero;
     Vec drop = zero;
-    for (std::size_t k = col; k < state.siemens.size(); k += state.stride) {
+    for (std::size_t k = col; k < state.rows * state.stride; k += state.stride) {
       const Vec g = hn::LoadU(d, &state.siemens[k]);
       sum = hn::Add(sum, g);
       if (one_loaded) drop = hn::MulAdd(g, hn::LoadU(d, &state.dropped[k]), drop);
@@ -117,13 +171,13 @@ void refresh_kernel(GroundedRowsState& state) {
       part = hn::Mul(part, hn::NegMulAdd(drop, eta, one));
     }
     hn::StoreU(part, d, &state.column_part[col]);
-    for (std::size_t k = col; k < state.siemens.size(); k += state.stride) {
+    for (std::size_t k = col; k < state.rows * state.stride; k += state.stride) {
       hn::StoreU(hn::Mul(hn::LoadU(d, &state.siemens[k]), eta), d, &state.shunted[k]);
     }
   }
 }
 
-double assess_kernel(GroundedRowsState& state) {
+double assess_kernel(const View state) {
   const D d;
   const Vec zero = hn::Zero(d);
   Vec largest = zero;
@@ -159,7 +213,7 @@ double assess_kernel(GroundedRowsState& state) {
   return hn::GetLane(hn::MaxOfLanes(d, largest));
 }
 
-void advance_kernel(GroundedRowsState& state) {
+void advance_kernel(const View state) {
   const D d;
   const Vec zero = hn::Zero(d);
   for (std::size_t row = 0; row < state.rows; ++row) {
@@ -177,11 +231,19 @@ void advance_kernel(GroundedRowsState& state) {
 }
 
 /// Base of column j: what noise of y_ij alone makes of G_ij, but for the line gain a_i.
-HWY_INLINE Vec column_noise(D d, const GroundedRowsState& state, const double* HWY_RESTRICT sigma, std::size_t col) {
+HWY_INLINE Vec column_noise(D d, const View state, const double* HWY_RESTRICT sigma, std::size_t col) {
   return hn::Div(hn::LoadU(d, sigma + col), hn::LoadU(d, &state.column_part[col]));
 }
 
-void noise_kernel(GroundedRowsState& state, const double* HWY_RESTRICT sigma, double* HWY_RESTRICT out) {
+/// As many of the lanes as there are columns from `col` on.
+HWY_INLINE void store_columns(D d, Vec lanes, std::size_t col, std::size_t cols, double* HWY_RESTRICT row) {
+  if (col + hn::Lanes(d) <= cols) return hn::StoreU(lanes, d, row + col);
+  double last[hn::MaxLanes(d)];
+  hn::StoreU(lanes, d, last);
+  std::copy_n(last, cols - std::min(col, cols), row + col);
+}
+
+void noise_kernel(const View state, const double* HWY_RESTRICT sigma, double* HWY_RESTRICT out) {
   const D d;
   const std::size_t lanes = hn::Lanes(d);
   const Vec one = hn::Set(d, 1.0);
@@ -216,7 +278,7 @@ void noise_kernel(GroundedRowsState& state, const double* HWY_RESTRICT sigma, do
       Vec variance = hn::Mul(hn::Mul(hn::Set(d, gain), square), hn::Mul(own, own));
       variance = hn::MulAdd(hn::Mul(p, p), hn::Mul(hn::Set(d, gain), other_columns), variance);
       variance = hn::MulAdd(hn::Mul(w, w), hn::Mul(hn::Set(d, all_rows - gain), square), variance);
-      hn::StoreU(hn::Sqrt(variance), d, out + k);
+      store_columns(d, hn::Sqrt(variance), col, state.cols, out + row * state.cols);
     }
   }
 }
@@ -231,6 +293,35 @@ namespace {
 
 constexpr std::size_t kMostLanes = 8;
 
+DERMIS_PROCESSOR_CLONES void convert(const std::vector<double>& from, std::vector<float>& to) {
+  for (std::size_t k = 0; k < to.size(); ++k) to[k] = static_cast<float>(from[k]);
+}
+
+DERMIS_PROCESSOR_CLONES void convert(const std::vector<float>& from, std::vector<double>& to) {
+  for (std::size_t k = 0; k < to.size(); ++k) to[k] = static_cast<double>(from[k]);
+}
+
+/// G diag(eta) G^T Rd y' from its factors.
+template <typename Factors, typename Real>
+void multiply_factors(const GroundedRowsState& state, const Factors& factors, std::vector<Real>& coupling,
+                      std::vector<Real>& returned) {
+  const auto [rows, cols, stride] = std::tuple(state.rows, state.cols, state.stride);
+  multiply(StridedMatrix<Real>{factors.shunted.data(), 1, stride}, factors.dropped.data(), cols, rows, stride,
+           coupling.data());
+  multiply(StridedMatrix<Real>{factors.siemens.data(), stride, 1}, coupling.data(), rows, cols, stride,
+           returned.data());
+}
+
+void find_returned(GroundedRowsState& state, Precision precision) {
+  if (precision == Precision::full) return multiply_factors(state, state, state.coupling, state.returned);
+  auto& [dropped, shunted, siemens, coupling, returned] = state.single;
+  convert(state.dropped, dropped);
+  convert(state.shunted, shunted);
+  convert(state.siemens, siemens);
+  multiply_factors(state, state.single, coupling, returned);
+  convert(returned, state.returned);
+}
+
 }  // namespace
 
 HWY_EXPORT(estimate_kernel);
@@ -239,6 +330,9 @@ HWY_EXPORT(refresh_kernel);
 HWY_EXPORT(assess_kernel);
 HWY_EXPORT(advance_kernel);
 HWY_EXPORT(noise_kernel);
+
+GroundedRowsState::SinglePrecision::SinglePrecision(std::size_t size, std::size_t coupling_size)
+    : dropped(size), shunted(size), siemens(size), coupling(coupling_size), returned(size) {}
 
 GroundedRowsState::GroundedRowsState(std::size_t row_count, std::size_t col_count, IdleColumns columns)
     : rows(row_count),
@@ -258,6 +352,7 @@ GroundedRowsState::GroundedRowsState(std::size_t row_count, std::size_t col_coun
       shunted(rows * stride),
       coupling(cols * stride),
       returned(rows * stride),
+      single(rows * stride, cols * stride),
       line_gain(rows),
       noise_gain(rows),
       column_part(stride),
@@ -270,7 +365,7 @@ void estimate_from_readings(GroundedRowsState& state) noexcept {
     state.kept_siemens[col] += siemens;
     state.measured[row * state.stride + col] = 0.0;
   }
-  HWY_DYNAMIC_DISPATCH(estimate_kernel)(state);
+  HWY_DYNAMIC_DISPATCH(estimate_kernel)(GroundedRowsView(state));
   if (!state.shorted.empty()) estimate_with_shorted(state);
   for (const auto& [row, col, siemens] : state.kept) {
     const std::size_t k = row * state.stride + col;
@@ -286,40 +381,38 @@ void start_cold(GroundedRowsState& state) noexcept {
 }
 
 void start_warm(GroundedRowsState& state, const std::vector<double>& last_estimate) noexcept {
-  HWY_DYNAMIC_DISPATCH(warm_kernel)(state, last_estimate.data());
+  HWY_DYNAMIC_DISPATCH(warm_kernel)(GroundedRowsView(state), last_estimate.data());
   refresh(state);
 }
 
 void refresh(GroundedRowsState& state) noexcept {
   for (const auto& [row, col, siemens] : state.kept) state.siemens[row * state.stride + col] = siemens;
   if (!state.shorted.empty()) add_up_nodes(state);
-  HWY_DYNAMIC_DISPATCH(refresh_kernel)(state);
+  HWY_DYNAMIC_DISPATCH(refresh_kernel)(GroundedRowsView(state));
   if (!state.shorted.empty()) take_columns_away(state);
 }
 
-double assess(GroundedRowsState& state) noexcept {
-  const auto [rows, cols, stride] = std::tuple(state.rows, state.cols, state.stride);
-  multiply({state.shunted.data(), 1, stride}, state.dropped.data(), cols, rows, stride, state.coupling.data());
-  multiply({state.siemens.data(), stride, 1}, state.coupling.data(), rows, cols, stride, state.returned.data());
+double assess(GroundedRowsState& state, Precision precision) noexcept {
+  find_returned(state, precision);
   if (!state.shorted.empty()) return_through_nodes(state);
   std::fill(state.kept_drawn.begin(), state.kept_drawn.end(), 0.0);
   for (const auto& [row, col, siemens] : state.kept) {
-    const std::size_t k = row * stride + col;
+    const std::size_t k = row * state.stride + col;
     state.kept_drawn[col] += state.line_gain[row] * state.explained[k] - state.returned[k];
     state.measured[k] = (siemens * state.column_part[col] + state.returned[k]) / state.line_gain[row];
   }
-  const double certificate = HWY_DYNAMIC_DISPATCH(assess_kernel)(state);
+  const double certificate = HWY_DYNAMIC_DISPATCH(assess_kernel)(GroundedRowsView(state));
   if (!state.shorted.empty()) scale_shorted_columns(state);
   return certificate;
 }
 
 void advance(GroundedRowsState& state) noexcept {
-  HWY_DYNAMIC_DISPATCH(advance_kernel)(state);
+  HWY_DYNAMIC_DISPATCH(advance_kernel)(GroundedRowsView(state));
   refresh(state);
 }
 
-void spread_noise(GroundedRowsState& state, const std::vector<double>& sigma, std::vector<double>& out) noexcept {
-  HWY_DYNAMIC_DISPATCH(noise_kernel)(state, sigma.data(), out.data());
+void spread_noise(GroundedRowsState& state, const std::vector<double>& sigma, std::span<double> out) noexcept {
+  HWY_DYNAMIC_DISPATCH(noise_kernel)(GroundedRowsView(state), sigma.data(), out.data());
 }
 
 }  // namespace dermis::compensation

@@ -3,11 +3,15 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "dermis/core/array_description.hpp"
 
 namespace dermis::compensation {
+
+/// Of the sums of currents that flow from row to row.
+enum class Precision { single, full };
 
 /// The state of the iteration of GroundedRows; grounded_rows.hpp explains the symbols. Matrices are [rows, stride],
 /// row-major: zeros fill up the columns to whole SIMD vectors. Many members: the symbols of formula (4), of the
@@ -25,6 +29,17 @@ struct GroundedRowsState {
     std::size_t row;
     std::size_t col;
     bool is_second;  ///< The second one of its row: its conductances are in the column of the first.
+  };
+
+  /// The factors of `returned`, and itself.
+  struct SinglePrecision {
+    SinglePrecision(std::size_t size, std::size_t coupling_size);
+
+    std::vector<float> dropped;
+    std::vector<float> shunted;
+    std::vector<float> siemens;
+    std::vector<float> coupling;
+    std::vector<float> returned;
   };
 
   GroundedRowsState(std::size_t row_count, std::size_t col_count, IdleColumns columns);
@@ -50,10 +65,11 @@ struct GroundedRowsState {
   std::vector<double> kept_drawn;    // Z of them, likewise [stride]
 
   // The iterate.
-  std::vector<double> siemens;       // G
-  std::vector<double> shunted;       // G diag(eta)
-  std::vector<double> coupling;      // diag(eta) G^T Rd y' [cols, stride]
-  std::vector<double> returned;      // G diag(eta) G^T Rd y'
+  std::vector<double> siemens;   // G
+  std::vector<double> shunted;   // G diag(eta)
+  std::vector<double> coupling;  // diag(eta) G^T Rd y' [cols, stride]
+  std::vector<double> returned;  // G diag(eta) G^T Rd y'
+  SinglePrecision single;
   std::vector<double> line_gain;     // a [rows]
   std::vector<double> noise_gain;    // square of the diagonal of S D^-1 [rows]
   std::vector<double> column_part;   // w [stride]
@@ -70,14 +86,14 @@ void start_cold(GroundedRowsState& state) noexcept;
 void start_warm(GroundedRowsState& state, const std::vector<double>& last_estimate) noexcept;
 
 /// Equations (b) and (c) at the present G; gives its certificate, as a ratio, and prepares advance(). The readings of
-/// kept taxels become what these draw.
-[[nodiscard]] double assess(GroundedRowsState& state) noexcept;
+/// kept taxels become what these draw. In single precision the certificate is right to about 1e-5.
+[[nodiscard]] double assess(GroundedRowsState& state, Precision precision) noexcept;
 
 /// Equations (d) and (e): the next G and y'.
 void advance(GroundedRowsState& state) noexcept;
 
-/// Standard deviation of G [rows, stride] from that of y, `sigma` [stride]; see GroundedRows::propagate_noise.
-void spread_noise(GroundedRowsState& state, const std::vector<double>& sigma, std::vector<double>& out) noexcept;
+/// Standard deviation of G [rows, cols] from that of y, `sigma` [stride]; see GroundedRows::propagate_noise.
+void spread_noise(GroundedRowsState& state, const std::vector<double>& sigma, std::span<double> out) noexcept;
 
 /// After a change of G or y' from outside, which keeps what is kept.
 void refresh(GroundedRowsState& state) noexcept;

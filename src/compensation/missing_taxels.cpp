@@ -9,6 +9,7 @@
 
 #include "compensation/readout_parts.hpp"
 #include "compensation/sensed_line.hpp"
+#include "dermis/core/processor_clones.hpp"
 
 namespace dermis::compensation {
 namespace {
@@ -73,6 +74,25 @@ MissingTaxels::MissingTaxels(const ArrayDescription& array, const ReferenceCondu
   }
 }
 
+DERMIS_PROCESSOR_CLONES bool MissingTaxels::mark(std::span<const TaxelStatus> taxels,
+                                                 std::span<const std::uint8_t> hidden) noexcept {
+  const TaxelStatus* const status = taxels.data();
+  const std::uint8_t* const is_hidden = hidden.data();
+  const std::uint8_t* const is_absent = absent_.data();
+  std::uint8_t* const missing = missing_.data();
+  std::uint8_t any_missing = 0;
+  std::uint8_t any_unread = 0;
+  for (std::size_t taxel = 0; taxel < taxels.size(); ++taxel) {
+    const auto is_invalid = static_cast<std::uint8_t>(status[taxel] == TaxelStatus::invalid ? 1 : 0);
+    const auto is_unread = static_cast<std::uint8_t>(is_invalid & ~is_absent[taxel]);
+    missing[taxel] = static_cast<std::uint8_t>(is_hidden[taxel] | is_unread);
+    any_missing = static_cast<std::uint8_t>(any_missing | missing[taxel]);
+    any_unread = static_cast<std::uint8_t>(any_unread | is_unread);
+  }
+  any_ = any_missing != 0;
+  return any_unread != 0;
+}
+
 void MissingTaxels::forget() noexcept {
   std::fill(frames_ago_.begin(), frames_ago_.end(), std::uint8_t{kLong});
 }
@@ -82,7 +102,7 @@ void MissingTaxels::forget(std::size_t taxel) noexcept {
 }
 
 void MissingTaxels::remember(std::span<const double> siemens) noexcept {
-  if (std::find(missing_.begin(), missing_.end(), std::uint8_t{1}) == missing_.end()) {
+  if (!any_) {
     std::copy(siemens.begin(), siemens.end(), last_siemens_.begin());
     std::fill(frames_ago_.begin(), frames_ago_.end(), std::uint8_t{0});
     return;

@@ -26,8 +26,9 @@ class MissingTaxels {
  public:
   MissingTaxels(const ArrayDescription& array, const ReferenceConductances& references);
 
-  /// Which taxels these are [taxels].
-  [[nodiscard]] std::span<std::uint8_t> missing() noexcept { return missing_; }
+  /// Those of the sheet that are invalid, or `hidden`; whether any is invalid.
+  bool mark(std::span<const TaxelStatus> taxels, std::span<const std::uint8_t> hidden) noexcept;
+  [[nodiscard]] bool any() const noexcept { return any_; }
   [[nodiscard]] bool is_missing(std::size_t taxel) const noexcept { return missing_[taxel] != 0; }
 
   /// A frame is one older than the last, whose values are stale after 50 ms.
@@ -71,6 +72,7 @@ class MissingTaxels {
   std::vector<double> unloaded_siemens_;  // [taxels]; empty: unknown
   std::vector<std::uint8_t> absent_;      // [taxels]
   std::vector<std::uint8_t> missing_;     // [taxels]
+  bool any_ = false;                      // of them
   std::vector<double> last_siemens_;      // [taxels]
   std::vector<std::uint8_t> frames_ago_;  // of it, at most a few [taxels]
   Nanos last_time_{};

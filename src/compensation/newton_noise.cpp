@@ -63,8 +63,8 @@ class ExactNoise final : public NewtonNoise {
   void add_drivers(std::span<double> variance) noexcept {
     const std::size_t taxels = variance.size();
     const std::size_t drivers = errors_.drivers();
-    multiply({inverse_.matrix().data(), taxels, 1}, errors_.slope().data(), taxels, taxels, drivers,
-             drive_change_.data());
+    multiply(StridedMatrix<double>{inverse_.matrix().data(), taxels, 1}, errors_.slope().data(), taxels, taxels,
+             drivers, drive_change_.data());
     for (std::size_t k = 0; k < taxels; ++k) {
       double common = 0.0;
       double square = 0.0;

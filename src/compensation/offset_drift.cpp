@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "dermis/core/neighbours.hpp"
+#include "dermis/core/processor_clones.hpp"
 
 namespace dermis::compensation {
 namespace {
@@ -153,7 +154,7 @@ bool OffsetDrift::Implementation::observe(const ConductanceFrame& frame) noexcep
   return was_taring && !taring_;
 }
 
-void OffsetDrift::Implementation::correct(ConductanceFrame& frame) const noexcept {
+DERMIS_PROCESSOR_CLONES void OffsetDrift::Implementation::correct(ConductanceFrame& frame) const noexcept {
   if (!corrects_ || !fits(frame)) return;
   double* const siemens = frame.siemens.data();
   const double* const offset = zero_.offset.data();
@@ -207,7 +208,7 @@ void OffsetDrift::Implementation::forget_history() noexcept {
   std::fill(has_candidate_.begin(), has_candidate_.end(), std::uint8_t{0});
 }
 
-void OffsetDrift::Implementation::accumulate(const ConductanceFrame& frame) noexcept {
+DERMIS_PROCESSOR_CLONES void OffsetDrift::Implementation::accumulate(const ConductanceFrame& frame) noexcept {
   const TemperatureSpan& calibrated = unloaded_.law.temperature;
   block_.temperature_sum += calibrated.offset(frame.temperature_celsius.value_or(calibrated.centre_celsius));
   const double* const siemens = frame.siemens.data();

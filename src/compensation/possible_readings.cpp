@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "compensation/readout_parts.hpp"
 #include "compensation/sensed_line.hpp"
 #include "dermis/core/axis.hpp"
+#include "dermis/core/processor_clones.hpp"
 
 namespace dermis::compensation {
 namespace {
@@ -24,7 +27,7 @@ constexpr double kStillShort = 4.0;     // times as many ohm, where the last rea
 constexpr double kStillShare = 0.03;    // likewise, of the supply
 constexpr double kLeastOfShort = 0.25;  // of the supply: where up to three short one column
 constexpr double kLittleLeft = 0.6;     // readings of a line together, over what a taxel of 0 ohm reads alone
-constexpr std::size_t kAtOnce = 4;      // sums that do not wait for each other
+constexpr std::size_t kAtOnce = 8;      // sums that do not wait for each other
 
 /// Most impossible readings of a line of so many taxels: with more, none of its readings counts.
 std::size_t most_bad(std::size_t taxels) {
@@ -51,6 +54,10 @@ PossibleReadings::PossibleReadings(const ArrayDescription& array)
     const double short_ohm = std::clamp(kShortOfLoad * sensed.rho, kShortOhm, kMostShortOhm);
     heads_.push_back({1.0 / sensed.gain, -sensed.offset / sensed.gain, sensed.rho, sensed.emf, short_ohm,
                       sensed.rho / (sensed.rho + weakest_driver + short_ohm)});
+    limits_.current.push_back(heads_.back().current);
+    limits_.offset.push_back(heads_.back().offset);
+    limits_.ohm.push_back(sensed.rho + short_ohm);
+    limits_.emf.push_back(sensed.emf);
     for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
       const double series = drive_ohm_[driven] + sensed.rho;
       if (!(series > 0.0)) continue;
@@ -78,31 +85,42 @@ void PossibleReadings::check(std::span<const double> ratio, double sigma_ratio,
 bool PossibleReadings::any_may_exceed(std::span<const double> ratio) noexcept {
   std::fill(sums_.begin(), sums_.end(), 0.0);
   bool any = false;
-  for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
-    for (std::size_t sensed = 0; sensed < sums_.size(); ++sensed) sums_[sensed] += ratio[taxel_of(driven, sensed)];
-    any = any || driven_may_exceed(driven, ratio);
-  }
-  for (std::size_t sensed = 0; sensed < sums_.size() && sums_are_bounded_; ++sensed) {
+  for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) any = driven_may_exceed(driven, ratio) || any;
+  for (std::size_t sensed = 0; sensed < heads_.size() && sums_are_bounded_; ++sensed) {
     any = any || sums_[sensed] > heads_[sensed].most_sum;
   }
   return any;
 }
 
-/// Nothing on the line is above its limits, as the sum and the largest of its readings show.
-bool PossibleReadings::driven_may_exceed(std::size_t driven, std::span<const double> ratio) const noexcept {
-  double sums[kAtOnce] = {};
-  double most[kAtOnce] = {};
-  for (std::size_t sensed = 0; sensed < heads_.size(); ++sensed) {
-    const Head& head = heads_[sensed];
-    const double own = head.current * ratio[taxel_of(driven, sensed)] + head.offset;
-    const double volts = (head.ohm + head.short_ohm) * own + head.emf;
-    sums[sensed % kAtOnce] += one_loaded_ ? 0.0 : own;
-    double& largest = most[sensed % kAtOnce];
-    const double taken = one_loaded_ ? volts + drive_ohm_[driven] * own : volts;
-    largest = taken > largest ? taken : largest;
+/// Nothing on the line is above its limits, as the sum and the largest of its readings show. Adds these to the sums.
+DERMIS_PROCESSOR_CLONES bool PossibleReadings::driven_may_exceed(std::size_t driven,
+                                                                 std::span<const double> ratio) noexcept {
+  const std::size_t sensed_lines = heads_.size();
+  const std::size_t step = rows_are_driven_ ? 1 : cols_;
+  const double* const readings = ratio.data() + taxel_of(driven, 0);
+  const double* const current = limits_.current.data();
+  const double* const offset = limits_.offset.data();
+  const double* const ohm = limits_.ohm.data();
+  const double* const emf = limits_.emf.data();
+  double* const sums = sums_.data();
+  for (std::size_t sensed = 0; sensed < sensed_lines; ++sensed) sums[sensed] += readings[sensed * step];
+  double parts[kAtOnce] = {};
+  std::size_t first = 0;
+  for (; first + kAtOnce <= sensed_lines; first += kAtOnce) {
+    for (std::size_t k = 0; k < kAtOnce; ++k) {
+      parts[k] += current[first + k] * readings[(first + k) * step] + offset[first + k];
+    }
   }
-  const double total = (sums[0] + sums[1]) + (sums[2] + sums[3]);
-  return drive_ohm_[driven] * total + *std::max_element(most, most + kAtOnce) > 1.0;
+  for (; first < sensed_lines; ++first) parts[0] += current[first] * readings[first * step] + offset[first];
+  const double total = std::accumulate(parts, parts + kAtOnce, 0.0);
+  const double own_ohm = one_loaded_ ? drive_ohm_[driven] : 0.0;
+  const double left = one_loaded_ ? 1.0 : 1.0 - drive_ohm_[driven] * total;
+  std::uint64_t exceeds = 0;
+  for (std::size_t sensed = 0; sensed < sensed_lines; ++sensed) {
+    const double own = current[sensed] * readings[sensed * step] + offset[sensed];
+    exceeds |= (ohm[sensed] + own_ohm) * own + emf[sensed] > left ? 1 : 0;
+  }
+  return exceeds != 0 || left < 0.0;
 }
 
 void PossibleReadings::doubt_bad_lines(std::span<ReadingVerdict> verdicts) const noexcept {

@@ -67,6 +67,14 @@ class PossibleReadings {
     double most_sum = 0.0;   ///< Sum of its readings below which none is a short.
   };
 
+  /// Where no reading of a frame is near its limits, these suffice [sensed].
+  struct Limits {
+    std::vector<double> current;  ///< of a ratio of 1
+    std::vector<double> offset;   ///< the current of a ratio of 0
+    std::vector<double> ohm;      ///< of the head and a taxel of short_ohm
+    std::vector<double> emf;
+  };
+
   [[nodiscard]] std::size_t taxel_of(std::size_t driven, std::size_t sensed) const noexcept {
     return rows_are_driven_ ? driven * cols_ + sensed : sensed * cols_ + driven;
   }
@@ -75,7 +83,7 @@ class PossibleReadings {
   }
   [[nodiscard]] bool was_taken(std::size_t taxel) const noexcept { return last_taken_[taxel] != 0; }
   [[nodiscard]] bool any_may_exceed(std::span<const double> ratio) noexcept;
-  [[nodiscard]] bool driven_may_exceed(std::size_t driven, std::span<const double> ratio) const noexcept;
+  [[nodiscard]] bool driven_may_exceed(std::size_t driven, std::span<const double> ratio) noexcept;
   void judge_driven(std::size_t driven, std::span<const double> ratio, double sigma_ratio,
                     std::span<ReadingVerdict> verdicts) const noexcept;
   void judge_sensed(std::size_t sensed, std::span<const double> ratio, double sigma_ratio,
@@ -95,11 +103,12 @@ class PossibleReadings {
   std::size_t cols_;
   bool rows_are_driven_;
   bool one_loaded_;
-  bool sums_are_bounded_;                 // of the readings of a column
-  std::vector<double> most_ratio_;        // [taxels]; infinite where nothing limits it
-  std::vector<double> drive_ohm_;         // [driven]; empty: the circuit is not known
-  std::vector<Head> heads_;               // [sensed]
-  std::vector<double> sums_;              // [sensed]
+  bool sums_are_bounded_;           // of the readings of a column
+  std::vector<double> most_ratio_;  // [taxels]; infinite where nothing limits it
+  std::vector<double> drive_ohm_;   // [driven]; empty: the circuit is not known
+  std::vector<Head> heads_;         // [sensed]
+  Limits limits_;
+  std::vector<double> sums_;              // of readings [sensed]
   std::vector<ReadingVerdict> verdicts_;  // [taxels]
   std::vector<std::uint8_t> taken_;       // from this frame [taxels]
   std::vector<std::uint8_t> last_taken_;  // from the one before [taxels]

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "compensation/readout_parts.hpp"
+#include "dermis/core/processor_clones.hpp"
 
 namespace dermis::compensation {
 namespace {
@@ -81,7 +82,8 @@ void Spikes::renew(std::span<const double> ratio, std::span<const TaxelStatus> t
 }
 
 /// The mean of readings that change by no more than noise, without those that are not believed.
-void Spikes::follow(std::span<const double> ratio, double sigma_ratio, std::span<const TaxelStatus> taxels) noexcept {
+DERMIS_PROCESSOR_CLONES void Spikes::follow(std::span<const double> ratio, double sigma_ratio,
+                                            std::span<const TaxelStatus> taxels) noexcept {
   const double noise = kSeenSigmas * sigma_ratio;
   const auto is_reading = [&](std::size_t taxel) { return taxels[taxel] != TaxelStatus::invalid; };
   const bool all_are_read = std::find(taxels.begin(), taxels.end(), TaxelStatus::invalid) == taxels.end();
@@ -101,7 +103,7 @@ void Spikes::follow(std::span<const double> ratio, double sigma_ratio, std::span
                  });
 }
 
-bool Spikes::any_jump(std::span<const double> ratio) const noexcept {
+DERMIS_PROCESSOR_CLONES bool Spikes::any_jump(std::span<const double> ratio) const noexcept {
   double most[kAtOnce] = {};
   std::size_t taxel = 0;
   for (; taxel + kAtOnce <= ratio.size(); taxel += kAtOnce) {
@@ -116,7 +118,7 @@ bool Spikes::any_jump(std::span<const double> ratio) const noexcept {
 
 /// Most of the loads are about what they were, those that have just jumped aside: they may fall back. Where there are
 /// no others, there is no evidence.
-bool Spikes::follows_last(std::span<const double> ratio, double sigma_ratio) const noexcept {
+DERMIS_PROCESSOR_CLONES bool Spikes::follows_last(std::span<const double> ratio, double sigma_ratio) const noexcept {
   double loads[kAtOnce] = {};
   double changed[kAtOnce] = {};
   double jumped[kAtOnce] = {};

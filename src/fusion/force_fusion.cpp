@@ -10,6 +10,7 @@
 #include <numbers>
 #include <utility>
 
+#include "dermis/core/processor_clones.hpp"
 #include "fusion/force_kernels.hpp"
 
 namespace dermis::fusion {
@@ -108,6 +109,7 @@ ForceFusion::ForceFusion(ForceNetworks networks)
       table_variance_(networks_.taxel_count()),
       noise_newtons_(networks_.taxel_count()) {
   assert(networks_.is_consistent());
+  for (const float siemens : networks_.reference_siemens) per_reference_siemens_.push_back(1.0F / siemens);
   for (const float gain : networks_.gain) log_gain_.push_back(std::log(gain));
   for (const float sigma : networks_.relative_sigma) relative_variance_.push_back(sigma * sigma);
   for (std::size_t table = 0; table < networks_.tables.taxels.size(); ++table) {
@@ -166,7 +168,8 @@ ForceFusion::Temperature ForceFusion::temperature(const ConductanceFrame& conduc
   return {clamped, std::hypot(networks_.temperature_sigma_celsius, outside, in_gap), outside};
 }
 
-void ForceFusion::prepare_inputs(const ConductanceFrame& conductance, double temperature_offset) noexcept {
+DERMIS_PROCESSOR_CLONES void ForceFusion::prepare_inputs(const ConductanceFrame& conductance,
+                                                         double temperature_offset) noexcept {
   const std::size_t taxels = networks_.taxel_count();
   for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
     const double unloaded = networks_.unloaded.at(taxel, temperature_offset);
@@ -175,7 +178,8 @@ void ForceFusion::prepare_inputs(const ConductanceFrame& conductance, double tem
     const float offset_sigma = networks_.offset_sigma_siemens[taxel];
     sigma_siemens_[taxel] = std::sqrt(noise * noise + offset_sigma * offset_sigma);
   }
-  conductance_inputs({networks_.reference_siemens, networks_.heaviest_siemens, excess_siemens_, sigma_siemens_},
+  conductance_inputs({networks_.reference_siemens, per_reference_siemens_, networks_.heaviest_siemens, excess_siemens_,
+                      sigma_siemens_},
                      std::span(inputs_).first(2 * taxels));
   if (!uses_temperature()) return;
   const auto t = static_cast<float>(temperature_offset / networks_.unloaded.temperature.half_span_celsius);
@@ -208,7 +212,8 @@ void ForceFusion::compute_forces(const Temperature& temperature, ForceFrame& for
   const float first = std::log(networks_.sigma_knots_newtons[0]);
   const float last = std::log(networks_.sigma_knots_newtons[1]);
   ForceSources sources;
-  sources.excess = {networks_.reference_siemens, networks_.heaviest_siemens, excess_siemens_, sigma_siemens_};
+  sources.excess = {networks_.reference_siemens, per_reference_siemens_, networks_.heaviest_siemens, excess_siemens_,
+                    sigma_siemens_};
   sources.log_gain = log_gain_;
   sources.inputs = inputs_;
   sources.log_newtons = outputs_;
@@ -231,7 +236,7 @@ void ForceFusion::compute_forces(const Temperature& temperature, ForceFrame& for
   sums.gain_sigma = std::sqrt(static_cast<double>(sources.unlearned_variance));
 }
 
-void ForceFusion::compute_signals(double temperature_sigma, ForceFrame& force) const noexcept {
+DERMIS_PROCESSOR_CLONES void ForceFusion::compute_signals(double temperature_sigma, ForceFrame& force) const noexcept {
   const float common = kCommonSigmas * static_cast<float>(temperature_sigma);
   for (std::size_t taxel = 0; taxel < networks_.taxel_count(); ++taxel) {
     const float noise = sigma_siemens_[taxel] + common * std::abs(offset_per_celsius_[taxel]);
@@ -252,7 +257,8 @@ void ForceFusion::apply_status(ForceFrame& force) const noexcept {
   }
 }
 
-bool ForceFusion::are_plain(std::size_t from, std::size_t to, const ForceFrame& force) const noexcept {
+DERMIS_PROCESSOR_CLONES bool ForceFusion::are_plain(std::size_t from, std::size_t to,
+                                                    const ForceFrame& force) const noexcept {
   const float* const excess = excess_siemens_.data();
   const float* const most_siemens = networks_.heaviest_siemens.data();
   const float* const most_newtons = networks_.heaviest_newtons.data();

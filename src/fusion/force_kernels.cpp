@@ -28,7 +28,7 @@ void for_all_lanes(std::size_t taxels, Work work) {
   for (; first < taxels; ++first) work(hn::CappedTag<float, 1>(), first);
 }
 
-void compute_inputs(const ExcessConductance& excess, float* inputs) {
+void compute_inputs(const ExcessConductance excess, float* inputs) {
   constexpr float kLeastShare = 1e-20F;  // of the reference: keeps ln(e) finite
   const std::size_t taxels = excess.siemens.size();
   for_all_lanes(taxels, [&](auto d, std::size_t first) {
@@ -63,7 +63,8 @@ hn::Vec<D> material_variance(D d, const ForceSources& sources, hn::Vec<D> log_ne
   return variance;
 }
 
-void compute_forces(const ForceSources& sources, const FusedForces& fused) {
+/// By value: stores of vectors may alias what is reached through a reference.
+void compute_forces(const ForceSources sources, const FusedForces fused) {
   constexpr float kLargestLog = 88.0F;  // of a float
   const std::size_t taxels = sources.log_gain.size();
   for_all_lanes(taxels, [&](auto d, std::size_t first) {
@@ -71,7 +72,7 @@ void compute_forces(const ForceSources& sources, const FusedForces& fused) {
       return hn::LoadU(d, values.data() + row * taxels + first);
     };
     const auto one = hn::Set(d, 1.0F);
-    const auto reference = load(sources.excess.reference_siemens);
+    const auto per_reference = load(sources.excess.per_reference_siemens);
     const auto log_share = load(sources.inputs);
     const auto share = hn::Add(load(sources.inputs, 1), one);
     const auto exponent = hn::MulAdd(load(sources.gradient, 1), share, load(sources.gradient));  // p
@@ -84,12 +85,15 @@ void compute_forces(const ForceSources& sources, const FusedForces& fused) {
     hn::StoreU(hn::IfThenElseZero(is_loaded, magnitude), d, fused.newtons.data() + first);
 
     // Where the standard deviation is taken: at e, or at one standard deviation of e where that is more.
-    const auto noise_share = hn::Div(load(sources.excess.sigma_siemens), reference);
+    const auto noise_share = hn::Mul(load(sources.excess.sigma_siemens), per_reference);
     const auto reached = hn::Max(hn::IfThenElse(is_loaded, share, noise_share), noise_share);
     const auto log_reached = hn::MulAdd(exponent, hn::Sub(hn::Log(d, reached), log_share), log_newtons);
 
-    const auto noise = hn::Div(hn::Mul(exponent, noise_share), reached);
-    const auto offset_drift = hn::Div(hn::Mul(exponent, load(sources.offset_per_celsius)), hn::Mul(reached, reference));
+    const auto per_reached = hn::Div(one, reached);
+    const auto per_excess = hn::Mul(per_reached, per_reference);
+    const auto chord = hn::Mul(noise_share, per_reached);
+    const auto noise = hn::Mul(exponent, chord);
+    const auto offset_drift = hn::Mul(hn::Mul(exponent, load(sources.offset_per_celsius)), per_excess);
     auto of_temperature = hn::Zero(d);
     if (sources.temperature_per_celsius > 0.0F) {
       of_temperature = hn::Mul(load(sources.gradient, 2), hn::Set(d, sources.temperature_per_celsius));
@@ -114,9 +118,8 @@ void compute_forces(const ForceSources& sources, const FusedForces& fused) {
     const auto kept = hn::Max(hn::NegMulAdd(bend, hn::Mul(noise_part, noise_part), one), hn::Zero(d));
     const auto signed_newtons = hn::CopySign(hn::IfThenZeroElse(is_zero, hn::Mul(magnitude, kept)), excess);
     // Within the noise the chord from zero stands for the slope.
-    const auto chord = hn::Div(noise_share, reached);
     const auto slope = hn::MulAdd(hn::Sub(one, exponent), hn::Mul(chord, chord), exponent);
-    const auto per_siemens = hn::Div(hn::Mul(at_reached, slope), hn::Mul(reached, reference));
+    const auto per_siemens = hn::Mul(hn::Mul(at_reached, slope), per_excess);
     const auto of_zero = hn::Mul(per_siemens, load(sources.offset_sigma));
     const auto own_variance = hn::MulAdd(hn::Mul(signed_newtons, signed_newtons), of_law, hn::Mul(of_zero, of_zero));
     const auto of_offset = hn::Mul(per_siemens, load(sources.offset_per_celsius));

@@ -11,6 +11,7 @@ namespace dermis::fusion {
 /// Conductance above the unloaded one, each [taxels] [S].
 struct ExcessConductance {
   std::span<const float> reference_siemens;
+  std::span<const float> per_reference_siemens;  ///< 1 / reference_siemens [1/S]
   std::span<const float> heaviest_siemens;
   std::span<const float> siemens;
   std::span<const float> sigma_siemens;

@@ -28,23 +28,16 @@ bool MemoryLaw::is_consistent() const noexcept {
 }
 
 MaterialMemory::MaterialMemory(const MemoryLaw& law, std::size_t taxels)
-    : law_(law),
-      newtons_(taxels),
-      logarithm_(taxels),
-      late_(law.creep.size() * taxels),
-      stops_(law.gap.size() * taxels) {
+    : law_(law), taxels_(taxels), states_((taxels + kTile - 1) / kTile * kTile * kStates) {
   assert(law.is_consistent());
 }
 
 void MaterialMemory::process(ForceFrame& force, std::span<const float> noise_newtons) noexcept {
-  assert(force.newtons.size() == newtons_.size() && noise_newtons.size() == newtons_.size());
+  assert(force.newtons.size() == taxels_ && noise_newtons.size() == taxels_);
   if (has(force.status, FrameStatus::rejected)) return;
   if (time_ && force.time < *time_) forget();
   MemoryStep step;
-  step.newtons = newtons_;
-  step.logarithm = logarithm_;
-  step.late_newtons = late_;
-  step.stops = stops_;
+  step.states = states_;
   for (std::size_t k = 0; k < law_.creep.size(); ++k) {
     double approach = 1.0;
     if (time_) {
@@ -63,9 +56,7 @@ void MaterialMemory::process(ForceFrame& force, std::span<const float> noise_new
 
 void MaterialMemory::forget() noexcept {
   time_.reset();
-  for (std::vector<float>* state : {&newtons_, &logarithm_, &late_, &stops_}) {
-    std::fill(state->begin(), state->end(), 0.0F);
-  }
+  std::fill(states_.begin(), states_.end(), 0.0F);
 }
 
 }  // namespace dermis::fusion

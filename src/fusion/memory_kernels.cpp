@@ -39,38 +39,39 @@ hn::Vec<D> signed_material(D d, const MemoryStep& step, std::size_t first, hn::V
 }
 
 template <class D>
-void step_lanes(D d, const MemoryStep& step, std::size_t first, float* newtons, float* sigma_newtons) {
-  const std::size_t taxels = step.newtons.size();
+HWY_INLINE void step_lanes(D d, const MemoryStep& step, std::size_t first, float* newtons, float* sigma_newtons) {
+  float* const states = step.states.data() + first / kTile * kTile * kStates + first % kTile;
+  const auto state = [&](std::size_t which) { return hn::LoadU(d, states + which * kTile); };
+  const auto remember = [&](std::size_t which, hn::Vec<D> value) { hn::StoreU(value, d, states + which * kTile); };
+  constexpr std::size_t kCreeps = MemoryLaw::kCreepSeconds.size();
   const auto one = hn::Set(d, 1.0F);
   const auto material = hn::LoadU(d, newtons + first);
   const auto is_known = hn::Eq(material, material);
   auto late = hn::Zero(d);
   float of_load = 1.0F;
-  for (std::size_t k = 0; k < step.late.size(); ++k) {
-    late = hn::MulAdd(hn::Set(d, step.late[k]), hn::LoadU(d, step.late_newtons.data() + k * taxels + first), late);
+  hn::Vec<D> creep[kCreeps];
+  for (std::size_t k = 0; k < kCreeps; ++k) {
+    creep[k] = state(kLate + k);
+    late = hn::MulAdd(hn::Set(d, step.late[k]), creep[k], late);
     of_load -= step.late[k];
   }
   const auto gain = hn::Set(d, 1.0F / of_load);
   const auto most = hn::Set(d, kMostNewtons);
   const auto limited = hn::Mul(hn::Sub(signed_material(d, step, first, material), late), gain);
-  const auto last = hn::LoadU(d, step.newtons.data() + first);
-  const auto signed_load = hn::IfThenElse(is_known, hn::Clamp(limited, hn::Neg(most), most), last);
+  const auto signed_load = hn::IfThenElse(is_known, hn::Clamp(limited, hn::Neg(most), most), state(kLoad));
   const auto load = hn::Max(signed_load, hn::Zero(d));
-  hn::StoreU(load, d, step.newtons.data() + first);
-  for (std::size_t k = 0; k < step.approach.size(); ++k) {
-    float* const at = step.late_newtons.data() + k * taxels + first;
-    const auto state = hn::LoadU(d, at);
-    hn::StoreU(hn::MulAdd(hn::Set(d, step.approach[k]), hn::Sub(signed_load, state), state), d, at);
+  const auto logarithm = hn::Log(d, hn::Add(load, one));
+  const auto change = hn::Sub(logarithm, state(kLogarithm));
+  remember(kLoad, load);
+  remember(kLogarithm, logarithm);
+  for (std::size_t k = 0; k < kCreeps; ++k) {
+    remember(kLate + k, hn::MulAdd(hn::Set(d, step.approach[k]), hn::Sub(signed_load, creep[k]), creep[k]));
   }
-  const auto logarithm = hn::Log1p(d, load);
-  const auto change = hn::Sub(logarithm, hn::LoadU(d, step.logarithm.data() + first));
-  hn::StoreU(logarithm, d, step.logarithm.data() + first);
   auto share = one;
   for (std::size_t j = 0; j < step.half_gap.size(); ++j) {
-    float* const at = step.stops.data() + j * taxels + first;
-    const auto moved = hn::MulAdd(change, hn::Set(d, 1.0F / MemoryLaw::kStopReach[j]), hn::LoadU(d, at));
+    const auto moved = hn::MulAdd(change, hn::Set(d, 1.0F / MemoryLaw::kStopReach[j]), state(kStops + j));
     const auto stop = hn::Clamp(moved, hn::Neg(one), one);
-    hn::StoreU(stop, d, at);
+    remember(kStops + j, stop);
     share = hn::MulAdd(hn::Set(d, step.half_gap[j]), stop, share);
   }
   const auto freed = hn::Mul(load, share);
@@ -87,9 +88,10 @@ void step_lanes(D d, const MemoryStep& step, std::size_t first, float* newtons, 
   if (step.sums != nullptr) free_sums(d, *step.sums, first, late, by_noise, growth);
 }
 
-void step_all(const MemoryStep& step, float* newtons, float* sigma_newtons) {
+/// By value: stores of vectors may alias what is reached through a reference.
+void step_all(const MemoryStep step, std::size_t taxels, float* newtons, float* sigma_newtons) {
   const hn::ScalableTag<float> d;
-  const std::size_t taxels = step.newtons.size();
+  static_assert(kTile % hn::MaxLanes(d) == 0);
   const std::size_t lanes = hn::Lanes(d);
   std::size_t first = 0;
   for (; first + lanes <= taxels; first += lanes) step_lanes(d, step, first, newtons, sigma_newtons);
@@ -105,7 +107,7 @@ namespace dermis::fusion {
 HWY_EXPORT(step_all);
 
 void step_memory(const MemoryStep& step, std::span<float> newtons, std::span<float> sigma_newtons) noexcept {
-  HWY_DYNAMIC_DISPATCH(step_all)(step, newtons.data(), sigma_newtons.data());
+  HWY_DYNAMIC_DISPATCH(step_all)(step, newtons.size(), newtons.data(), sigma_newtons.data());
 }
 
 }  // namespace dermis::fusion

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <span>
 
 #include "dermis/fusion/material_memory.hpp"
@@ -10,16 +11,26 @@
 // The arithmetic of MaterialMemory with the taxels in SIMD lanes (single precision, Highway).
 namespace dermis::fusion {
 
-/// One step in time; vectors [taxels] where nothing else is said.
+/// What is remembered of a taxel stands in tiles [tiles, kStates, kTile], which are read from front to back: rows of
+/// all taxels would lie a power of two apart, and displace each other from the cache.
+inline constexpr std::size_t kTile = 16;  // as many as the widest vectors have lanes
+
+/// The states of a taxel, in this order.
+enum MemoryState : std::size_t {
+  kLoad,                                             ///< f of the last step
+  kLogarithm,                                        ///< ln(1 + f) of the last step
+  kLate,                                             ///< s_k, four
+  kStops = kLate + MemoryLaw::kCreepSeconds.size(),  ///< m_j, three
+  kStates = kStops + MemoryLaw::kStopReach.size(),
+};
+
+/// One step in time.
 struct MemoryStep {
   std::array<float, MemoryLaw::kCreepSeconds.size()> approach{};  ///< a_k
   std::array<float, MemoryLaw::kCreepSeconds.size()> late{};      ///< c_k (1 - a_k)
   std::array<float, MemoryLaw::kStopReach.size()> half_gap{};     ///< h_j / 2
-  std::span<const float> noise_newtons;                           ///< Of u.
-  std::span<float> newtons;                                       ///< f, then the one of this step
-  std::span<float> logarithm;                                     ///< ln(1 + f), likewise
-  std::span<float> late_newtons;                                  ///< s_k [4, taxels], likewise
-  std::span<float> stops;                                         ///< m_j [3, taxels], likewise
+  std::span<const float> noise_newtons;                           ///< Of u [taxels].
+  std::span<float> states;                                        ///< Of the last step, then of this one; in tiles.
   ForceSums* sums = nullptr;                                      ///< Sums of the felt forces, then of the freed ones.
 };
 

@@ -4,6 +4,15 @@
 
 #include <cassert>
 
+// Parameters stand in tiles [tiles, parameter_count, kTile], which are read from front to back: rows of all networks
+// would lie a power of two apart, and displace each other from the cache.
+#ifndef DERMIS_NETWORK_TILE
+#define DERMIS_NETWORK_TILE
+namespace dermis::network {
+inline constexpr std::size_t kTile = 16;  // as many as the widest vectors have lanes
+}
+#endif
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "network/perceptron_bank.cpp"
 #include "hwy/foreach_target.h"
@@ -16,21 +25,24 @@ namespace dermis::network::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 struct BankView {
-  const PerceptronShape& shape;
+  PerceptronShape shape;
   std::size_t networks;
-  const float* parameters;
+  const float* parameters;  // in tiles
   const float* inputs;
   float* outputs;
   float* gradient;  // null where nobody asks
+
+  [[nodiscard]] const float* parameters_of(std::size_t network) const {
+    return parameters + network / kTile * kTile * shape.parameter_count() + network % kTile;
+  }
 };
 
 /// Outputs of the networks first ... first + lanes(d) - 1.
 template <class D>
-void evaluate_lanes(D d, const BankView& bank, std::size_t first) {
+HWY_INLINE void evaluate_lanes(D d, const BankView& bank, std::size_t first) {
   const PerceptronShape& shape = bank.shape;
-  const auto load = [&](std::size_t parameter) {
-    return hn::LoadU(d, bank.parameters + parameter * bank.networks + first);
-  };
+  const float* const parameters = bank.parameters_of(first);
+  const auto load = [&](std::size_t parameter) { return hn::LoadU(d, parameters + parameter * kTile); };
   const auto load_input = [&](std::size_t input) { return hn::LoadU(d, bank.inputs + input * bank.networks + first); };
   auto y = load(shape.output_bias());
   for (std::size_t input = 0; input < shape.inputs; ++input) {
@@ -46,41 +58,49 @@ void evaluate_lanes(D d, const BankView& bank, std::size_t first) {
   hn::StoreU(y, d, bank.outputs + first);
 }
 
-/// The same with d y / d x_i = s_i + sum_h v_h f'(z_h) w_hi.
-template <class D>
-void evaluate_lanes_with_gradient(D d, const BankView& bank, std::size_t first) {
+/// The same with d y / d x_i = s_i + sum_h v_h f'(z_h) w_hi, all in registers.
+template <std::size_t Inputs, class D>
+HWY_INLINE void evaluate_lanes_with_gradient(D d, const BankView& bank, std::size_t first) {
   const PerceptronShape& shape = bank.shape;
-  const auto load = [&](std::size_t parameter) {
-    return hn::LoadU(d, bank.parameters + parameter * bank.networks + first);
-  };
-  const auto load_input = [&](std::size_t input) { return hn::LoadU(d, bank.inputs + input * bank.networks + first); };
-  const auto gradient_of = [&](std::size_t input) { return bank.gradient + input * bank.networks + first; };
+  const float* const parameters = bank.parameters_of(first);
+  const auto load = [&](std::size_t parameter) { return hn::LoadU(d, parameters + parameter * kTile); };
+  hn::Vec<D> x[Inputs];
+  hn::Vec<D> gradient[Inputs];
   auto y = load(shape.output_bias());
-  for (std::size_t input = 0; input < shape.inputs; ++input) {
-    const auto weight = load(shape.direct_weight(input));
-    y = hn::MulAdd(weight, load_input(input), y);
-    hn::StoreU(weight, d, gradient_of(input));
+  for (std::size_t input = 0; input < Inputs; ++input) {
+    x[input] = hn::LoadU(d, bank.inputs + input * bank.networks + first);
+    gradient[input] = load(shape.direct_weight(input));
+    y = hn::MulAdd(gradient[input], x[input], y);
   }
   for (std::size_t unit = 0; unit < shape.hidden; ++unit) {
     auto sum = load(shape.bias(unit));
-    for (std::size_t input = 0; input < shape.inputs; ++input) {
-      sum = hn::MulAdd(load(shape.weight(unit, input)), load_input(input), sum);
+    hn::Vec<D> weight[Inputs];
+    for (std::size_t input = 0; input < Inputs; ++input) {
+      weight[input] = load(shape.weight(unit, input));
+      sum = hn::MulAdd(weight[input], x[input], sum);
     }
     const auto activation = log_sigmoid(d, sum);
     const auto output_weight = load(shape.output_weight(unit));
     y = hn::MulAdd(output_weight, activation, y);
     const auto slope = hn::Mul(output_weight, slope_from_output(d, Activation::log_sigmoid, activation));
-    for (std::size_t input = 0; input < shape.inputs; ++input) {
-      float* place = gradient_of(input);
-      hn::StoreU(hn::MulAdd(slope, load(shape.weight(unit, input)), hn::LoadU(d, place)), d, place);
+    for (std::size_t input = 0; input < Inputs; ++input) {
+      gradient[input] = hn::MulAdd(slope, weight[input], gradient[input]);
     }
+  }
+  for (std::size_t input = 0; input < Inputs; ++input) {
+    hn::StoreU(gradient[input], d, bank.gradient + input * bank.networks + first);
   }
   hn::StoreU(y, d, bank.outputs + first);
 }
 
 template <class D>
-void evaluate_some(D d, const BankView& bank, std::size_t first) {
-  bank.gradient == nullptr ? evaluate_lanes(d, bank, first) : evaluate_lanes_with_gradient(d, bank, first);
+HWY_INLINE void evaluate_some(D d, const BankView& bank, std::size_t first) {
+  if (bank.gradient == nullptr) return evaluate_lanes(d, bank, first);
+  switch (bank.shape.inputs) {
+    case 1: return evaluate_lanes_with_gradient<1>(d, bank, first);
+    case 2: return evaluate_lanes_with_gradient<2>(d, bank, first);
+    default: return evaluate_lanes_with_gradient<3>(d, bank, first);
+  }
 }
 
 void evaluate_bank(const PerceptronShape& shape, std::size_t networks, const float* parameters, const float* inputs,
@@ -89,6 +109,7 @@ void evaluate_bank(const PerceptronShape& shape, std::size_t networks, const flo
   const hn::ScalableTag<float> d;
   const std::size_t lanes = hn::Lanes(d);
   std::size_t first = 0;
+  static_assert(kTile % hn::MaxLanes(hn::ScalableTag<float>()) == 0);
   for (; first + lanes <= bank.networks; first += lanes) evaluate_some(d, bank, first);
   for (; first < bank.networks; ++first) evaluate_some(hn::CappedTag<float, 1>(), bank, first);
 }
@@ -102,8 +123,16 @@ namespace dermis::network {
 HWY_EXPORT(evaluate_bank);
 
 PerceptronBank::PerceptronBank(const PerceptronShape& shape, std::size_t networks, std::span<const float> parameters)
-    : shape_(shape), networks_(networks), parameters_(parameters.begin(), parameters.end()) {
-  assert(parameters.size() == shape.parameter_count() * networks);
+    : shape_(shape), networks_(networks) {
+  const std::size_t count = shape.parameter_count();
+  assert(parameters.size() == count * networks);
+  parameters_.resize((networks + kTile - 1) / kTile * kTile * count);
+  for (std::size_t parameter = 0; parameter < count; ++parameter) {
+    for (std::size_t network = 0; network < networks; ++network) {
+      parameters_[(network / kTile * count + parameter) * kTile + network % kTile] =
+          parameters[parameter * networks + network];
+    }
+  }
 }
 
 void PerceptronBank::evaluate(std::span<const float> inputs, std::span<float> outputs) const noexcept {

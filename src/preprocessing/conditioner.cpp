@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "dermis/core/neighbours.hpp"
+#include "dermis/core/processor_clones.hpp"
 
 namespace dermis::preprocessing {
 namespace {
@@ -82,7 +83,7 @@ std::string Conditioner::why_rejected() const {
 }
 
 /// Taxels of the sheet without a reading.
-std::size_t Conditioner::count_missing(const RawFrame& raw) const noexcept {
+DERMIS_PROCESSOR_CLONES std::size_t Conditioner::count_missing(const RawFrame& raw) const noexcept {
   const float least = least_counts_;
   const float most = full_scale_counts_;
   std::uint32_t readings = 0;
@@ -138,7 +139,7 @@ void Conditioner::process(const RawFrame& raw, ConditionedFrame& conditioned) no
   if (raw.supply_v && !supply_bounds_.trusted().contains(*raw.supply_v)) doubt_supply(*raw.supply_v, conditioned);
 }
 
-void Conditioner::convert(const RawFrame& raw, ConditionedFrame& conditioned) noexcept {
+DERMIS_PROCESSOR_CLONES void Conditioner::convert(const RawFrame& raw, ConditionedFrame& conditioned) noexcept {
   const Readout& readout = array_.readout;
   const std::optional<double> supply_v = raw.supply_v ? supply_bounds_.used(*raw.supply_v) : readout.supply_v;
   const double reference = readout.adc_reference_v && supply_v ? *readout.adc_reference_v / *supply_v : 1.0;

@@ -130,17 +130,18 @@ class ForceFusion {
 
   ForceNetworks networks_;
   network::PerceptronBank bank_;
-  std::vector<float> log_gain_;            // [taxels]
-  std::vector<float> offset_per_celsius_;  // [taxels]
-  std::vector<float> relative_variance_;   // [kSigmaKnots, taxels]
-  std::vector<float> excess_siemens_;      // [taxels]
-  std::vector<float> sigma_siemens_;       // of the excess [taxels]
-  std::vector<float> inputs_;              // [inputs, taxels]
-  std::vector<float> outputs_;             // [taxels]
-  std::vector<float> gradient_;            // of the outputs [inputs, taxels]
-  std::vector<float> line_end_siemens_;    // ForceTables::line_end_siemens() [tables]
-  std::vector<float> table_variance_;      // ForceSources::table_variance [taxels]
-  std::vector<float> noise_newtons_;       // [taxels]
+  std::vector<float> per_reference_siemens_;  // [taxels]
+  std::vector<float> log_gain_;               // [taxels]
+  std::vector<float> offset_per_celsius_;     // [taxels]
+  std::vector<float> relative_variance_;      // [kSigmaKnots, taxels]
+  std::vector<float> excess_siemens_;         // [taxels]
+  std::vector<float> sigma_siemens_;          // of the excess [taxels]
+  std::vector<float> inputs_;                 // [inputs, taxels]
+  std::vector<float> outputs_;                // [taxels]
+  std::vector<float> gradient_;               // of the outputs [inputs, taxels]
+  std::vector<float> line_end_siemens_;       // ForceTables::line_end_siemens() [tables]
+  std::vector<float> table_variance_;         // ForceSources::table_variance [taxels]
+  std::vector<float> noise_newtons_;          // [taxels]
 };
 
 }  // namespace dermis::fusion

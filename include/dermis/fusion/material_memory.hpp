@@ -60,11 +60,9 @@ class MaterialMemory {
   void forget() noexcept;
 
   MemoryLaw law_;
-  std::optional<Nanos> time_;     // of the frame before
-  std::vector<float> newtons_;    // f [taxels]
-  std::vector<float> logarithm_;  // ln(1 + f) [taxels]
-  std::vector<float> late_;       // s_k [4, taxels]
-  std::vector<float> stops_;      // m_j [3, taxels]
+  std::optional<Nanos> time_;  // of the frame before
+  std::size_t taxels_;
+  std::vector<float> states_;  // f, ln(1 + f), s_k, m_j of each taxel
 };
 
 }  // namespace dermis::fusion

@@ -18,7 +18,8 @@ const Matrix& DropPairs::sum(std::span<const double> change) noexcept {
   const auto rows = static_cast<std::size_t>(forward.rows());
   const auto cols = static_cast<std::size_t>(adjoint.rows());
   weighted_.noalias() = forward * step.asDiagonal();
-  multiply({weighted_.data(), change.size(), 1}, adjoint_by_taxel_.data(), rows, change.size(), cols, sums_.data());
+  multiply(StridedMatrix<double>{weighted_.data(), change.size(), 1}, adjoint_by_taxel_.data(), rows, change.size(),
+           cols, sums_.data());
   return sums_;
 }
 

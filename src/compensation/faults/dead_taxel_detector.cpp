@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "dermis/core/processor_clones.hpp"
+
 namespace dermis::compensation {
 namespace {
 
@@ -33,7 +35,7 @@ void DeadTaxelDetector::judge(const Observation& seen, FaultList& faults) noexce
   for (std::size_t taxel = block.from; taxel < block.to; ++taxel) judge_taxel(seen, taxel, faults);
 }
 
-void DeadTaxelDetector::weigh(const Observation& seen, const TaxelBlock& block) noexcept {
+DERMIS_PROCESSOR_CLONES void DeadTaxelDetector::weigh(const Observation& seen, const TaxelBlock& block) noexcept {
   const auto [from, to] = block;
   const FloorEvidence floor = floor_;
   const double* const siemens = seen.conductance.siemens.data();
@@ -55,7 +57,7 @@ void DeadTaxelDetector::weigh(const Observation& seen, const TaxelBlock& block) 
 }
 
 /// The largest of the block's sums.
-float DeadTaxelDetector::add_up(std::size_t frame, const TaxelBlock& block) noexcept {
+DERMIS_PROCESSOR_CLONES float DeadTaxelDetector::add_up(std::size_t frame, const TaxelBlock& block) noexcept {
   const auto [from, to] = block;
   const auto next_frame = static_cast<std::int32_t>(frame) + 1;
   const float* const evidence = evidence_.data();

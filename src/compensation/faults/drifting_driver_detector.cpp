@@ -9,6 +9,7 @@
 
 #include "compensation/faults/untouched.hpp"
 #include "dermis/core/axis.hpp"
+#include "dermis/core/processor_clones.hpp"
 
 namespace dermis::compensation {
 namespace {
@@ -50,7 +51,8 @@ double DriftingDriverDetector::Fit::typical_siemens() const {
 DriftingDriverDetector::DriftingDriverDetector(const ArrayDescription& array)
     : array_(array),
       drivers_(array.driven_lines()),
-      touched_(array.sensed_lines()),
+      touched_(array.sensed_lines() + 2 * kContactReach),
+      near_touch_(array.sensed_lines()),
       last_siemens_(array.taxel_count()),
       last_line_siemens_(array.driven_lines()) {}
 
@@ -87,11 +89,11 @@ DriftingDriverDetector::Pair DriftingDriverDetector::untouched_pair(const Observ
   find_touched(seen, line);
   const Axis driven = driven_axis(array_);
   Pair pair;
-  for (std::size_t place = 0; place < touched_.size(); ++place) {
+  for (std::size_t place = 0; place < near_touch_.size(); ++place) {
     const std::size_t taxel = taxel_on_line(array_, driven, line, place);
     const double unloaded_siemens = seen.unloaded.siemens()[taxel];
     pair.unloaded_siemens += unloaded_siemens;
-    if (!(unloaded_siemens > 0.0) || touched_[place] != 0) continue;
+    if (!(unloaded_siemens > 0.0) || near_touch_[place] != 0) continue;
     const double sigma_siemens = seen.conductance.sigma_siemens[taxel];
     pair.now += seen.conductance.siemens[taxel];
     pair.last += last_siemens_[taxel];
@@ -100,25 +102,38 @@ DriftingDriverDetector::Pair DriftingDriverDetector::untouched_pair(const Observ
   return pair;
 }
 
-/// Finds where a line or one beside it is touched: a taxel reads more than an unloaded one, in this frame or the last.
+/// Finds where a line or one beside it is touched, or nearly: a taxel reads more than an unloaded one, in this frame or
+/// the last.
 void DriftingDriverDetector::find_touched(const Observation& seen, std::size_t line) noexcept {
-  const Axis driven = driven_axis(array_);
-  const std::size_t places = touched_.size();
-  const double* const siemens = seen.conductance.siemens.data();
-  const double* const sigma_siemens = seen.conductance.sigma_siemens.data();
   std::fill(touched_.begin(), touched_.end(), std::uint8_t{0});
-  const std::size_t first = line - std::min<std::size_t>(line, 1);
-  const std::size_t last = std::min(line + 1, drivers_.size() - 1);
-  for (std::size_t near = first; near <= last; ++near) {
-    for (std::size_t place = 0; place < places; ++place) {
-      const std::size_t taxel = taxel_on_line(array_, driven, near, place);
-      const double most = seen.unloaded.most_siemens(taxel, sigma_siemens[taxel]);
-      if (!(siemens[taxel] > most || last_siemens_[taxel] > most)) continue;
-      const std::size_t from = place - std::min(place, kContactReach);
-      const std::size_t to = std::min(place + kContactReach + 1, places);
-      std::fill(touched_.begin() + static_cast<std::ptrdiff_t>(from),
-                touched_.begin() + static_cast<std::ptrdiff_t>(to), std::uint8_t{1});
-    }
+  for (std::size_t near = line - std::min<std::size_t>(line, 1); near <= std::min(line + 1, drivers_.size() - 1);
+       ++near) {
+    add_touched(seen, near);
+  }
+  const std::size_t places = array_.sensed_lines();
+  std::uint8_t* const near_touch = near_touch_.data();
+  const std::uint8_t* const touched = touched_.data();  // of places -kContactReach ...
+  std::fill_n(near_touch, places, std::uint8_t{0});
+  for (std::size_t shift = 0; shift <= 2 * kContactReach; ++shift) {
+    for (std::size_t place = 0; place < places; ++place) near_touch[place] |= touched[place + shift];
+  }
+}
+
+DERMIS_PROCESSOR_CLONES void DriftingDriverDetector::add_touched(const Observation& seen, std::size_t line) noexcept {
+  const Axis driven = driven_axis(array_);
+  const std::size_t places = array_.sensed_lines();
+  const std::size_t from = taxel_on_line(array_, driven, line, 0);
+  const std::size_t step = driven == Axis::row ? 1 : array_.cols;
+  const double* const siemens = seen.conductance.siemens.data() + from;
+  const double* const sigma_siemens = seen.conductance.sigma_siemens.data() + from;
+  const double* const unloaded = seen.unloaded.siemens().data() + from;
+  const double* const last = last_siemens_.data() + from;
+  std::uint8_t* const touched = touched_.data() + kContactReach;
+  for (std::size_t place = 0; place < places; ++place) {
+    const std::size_t taxel = place * step;
+    const double most = UnloadedTaxels::most_siemens(unloaded[taxel], sigma_siemens[taxel]);
+    const double larger = siemens[taxel] > last[taxel] ? siemens[taxel] : last[taxel];
+    touched[place] = static_cast<std::uint8_t>(touched[place] | (larger > most ? 1 : 0));
   }
 }
 

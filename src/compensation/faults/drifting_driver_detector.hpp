@@ -55,12 +55,14 @@ class DriftingDriverDetector {
   void compare_with_last(const Observation& seen, std::size_t line, FaultList& faults) noexcept;
   [[nodiscard]] Pair untouched_pair(const Observation& seen, std::size_t line) noexcept;
   void find_touched(const Observation& seen, std::size_t line) noexcept;
+  void add_touched(const Observation& seen, std::size_t line) noexcept;
   void judge_driver(std::size_t line, FaultList& faults) noexcept;
   void remember(const Observation& seen) noexcept;
 
   const ArrayDescription& array_;
-  std::vector<Driver> drivers_;        // [driven lines]
-  std::vector<std::uint8_t> touched_;  // or near a touch; places of one line [sensed lines]
+  std::vector<Driver> drivers_;           // [driven lines]
+  std::vector<std::uint8_t> touched_;     // places of one line, with kContactReach more at either end
+  std::vector<std::uint8_t> near_touch_;  // places of one line [sensed lines]
   bool has_last_ = false;
   std::vector<double> last_siemens_;       // [taxels]
   std::vector<double> last_line_siemens_;  // [driven lines]

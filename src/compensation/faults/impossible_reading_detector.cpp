@@ -5,9 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <optional>
+#include <span>
+#include <utility>
 
+#include "compensation/faults/any_reading.hpp"
 #include "compensation/readout_parts.hpp"
+#include "dermis/core/processor_clones.hpp"
 
 namespace dermis::compensation {
 namespace {
@@ -74,13 +79,9 @@ void ImpossibleReadingDetector::watch_new(const Observation& seen, const FaultLi
   const auto& before = seen.conditioned.taxels;
   const auto& after = seen.conductance.taxels;
   const auto is_bad = [&](std::size_t taxel) { return verdict(seen, taxel) >= ReadingVerdict::shorted; };
-  bool is_suspicious = !watched_.empty();
-  for (std::size_t taxel = 0; taxel < before.size(); ++taxel) {
-    const bool is_taken = after[taxel] == TaxelStatus::invalid && before[taxel] != TaxelStatus::invalid;
-    is_suspicious = is_suspicious || is_taken || (rows_tell_ && before[taxel] == TaxelStatus::saturated);
-  }
-  std::fill(verdicts_.begin(), verdicts_.end(), ReadingVerdict::possible);
-  if (!is_suspicious) return;
+  if (std::exchange(any_verdict_, false)) std::fill(verdicts_.begin(), verdicts_.end(), ReadingVerdict::possible);
+  if (watched_.empty() && !any_is_suspicious(before, after)) return;
+  any_verdict_ = true;
   possible_.judge(seen.conditioned.ratio, seen.conditioned.sigma_ratio, before, verdicts_);
   std::size_t bad = 0;
   for (std::size_t taxel = 0; taxel < before.size(); ++taxel) bad += is_bad(taxel) ? 1 : 0;
@@ -90,7 +91,23 @@ void ImpossibleReadingDetector::watch_new(const Observation& seen, const FaultLi
   }
 }
 
+/// A reading was taken away, or is at the end of the ADC where that tells something.
+DERMIS_PROCESSOR_CLONES bool ImpossibleReadingDetector::any_is_suspicious(
+    std::span<const TaxelStatus> before, std::span<const TaxelStatus> after) const noexcept {
+  const TaxelStatus* const status = before.data();
+  const TaxelStatus* const kept = after.data();
+  const std::uint8_t rail_tells = rows_tell_ ? 1 : 0;
+  std::uint8_t any = 0;
+  for (std::size_t taxel = 0; taxel < before.size(); ++taxel) {
+    const std::uint8_t is_taken = kept[taxel] == TaxelStatus::invalid && status[taxel] != TaxelStatus::invalid ? 1 : 0;
+    const std::uint8_t is_at_rail = status[taxel] == TaxelStatus::saturated ? rail_tells : 0;
+    any = static_cast<std::uint8_t>(any | is_taken | is_at_rail);
+  }
+  return any != 0;
+}
+
 void ImpossibleReadingDetector::watch_columns(const Observation& seen, const FaultList& faults) noexcept {
+  if (!any_is_above(seen.conditioned.ratio, kHigh)) return;
   std::array<std::size_t, kMostFound> found{};
   std::size_t count = 0;
   for (std::size_t taxel = 0; taxel < array_.taxel_count(); ++taxel) {

@@ -40,6 +40,8 @@ class ImpossibleReadingDetector {
   void watch_new(const Observation& seen, const FaultList& faults) noexcept;
   void watch(std::size_t taxel, const FaultList& faults) noexcept;
   [[nodiscard]] ReadingVerdict verdict(const Observation& seen, std::size_t taxel) const noexcept;
+  [[nodiscard]] bool any_is_suspicious(std::span<const TaxelStatus> before,
+                                       std::span<const TaxelStatus> after) const noexcept;
   void watch_columns(const Observation& seen, const FaultList& faults) noexcept;
   [[nodiscard]] ReadingVerdict verdict_of_column(const Observation& seen, std::size_t taxel) const noexcept;
   [[nodiscard]] bool others_are_unloaded(const Observation& seen, std::size_t col) const noexcept;
@@ -55,6 +57,7 @@ class ImpossibleReadingDetector {
   bool columns_tell_;
   bool rows_tell_;
   std::vector<ReadingVerdict> verdicts_;  // of this frame [taxels]
+  bool any_verdict_ = false;              // some may be other than possible
   std::vector<Watched> watched_;
 };
 

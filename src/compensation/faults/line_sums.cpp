@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "dermis/core/processor_clones.hpp"
+
 namespace dermis::compensation {
 namespace {
 
@@ -32,7 +34,7 @@ void LineSums::sum(const ConditionedFrame& conditioned, const ConductanceFrame& 
   if (solved) sum_conductances(conductance.siemens);
 }
 
-void LineSums::sum_readings(std::span<const double> ratio) noexcept {
+DERMIS_PROCESSOR_CLONES void LineSums::sum_readings(std::span<const double> ratio) noexcept {
   const std::size_t cols = array_.cols;
   double* const columns = ratio_.column.data();
   std::fill_n(columns, cols, 0.0);
@@ -43,7 +45,7 @@ void LineSums::sum_readings(std::span<const double> ratio) noexcept {
   }
 }
 
-void LineSums::sum_conductances(std::span<const double> siemens) noexcept {
+DERMIS_PROCESSOR_CLONES void LineSums::sum_conductances(std::span<const double> siemens) noexcept {
   const std::size_t cols = array_.cols;
   const bool by_row = driven_axis(array_) == Axis::row;
   for (std::size_t row = 0; row < array_.rows; ++row) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dermis/core/processor_clones.hpp"
+
 namespace dermis::compensation {
 namespace {
 
@@ -49,7 +51,7 @@ bool SilentLineDetector::sees(Axis axis, std::size_t line) const noexcept {
   return last_sigma_ratio_ > 0.0 && per_frame >= kEvidence / kFoundWithinFrames;
 }
 
-void SilentLineDetector::weigh_taxels(const Observation& seen) noexcept {
+DERMIS_PROCESSOR_CLONES void SilentLineDetector::weigh_taxels(const Observation& seen) noexcept {
   const std::size_t taxels = evidence_.size();
   const double per_sigma = 1.0 / seen.conditioned.sigma_ratio;
   const FloorEvidence floor = floor_;
@@ -62,7 +64,7 @@ void SilentLineDetector::weigh_taxels(const Observation& seen) noexcept {
   }
 }
 
-void SilentLineDetector::sum_over_lines(const FaultList& faults) noexcept {
+DERMIS_PROCESSOR_CLONES void SilentLineDetector::sum_over_lines(const FaultList& faults) noexcept {
   const std::size_t cols = array_.cols;
   float* const columns = line_evidence_.column.data();
   std::fill_n(columns, cols, 0.0F);

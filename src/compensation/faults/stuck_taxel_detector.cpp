@@ -6,14 +6,17 @@
 #include <cmath>
 #include <numbers>
 
+#include "compensation/faults/any_reading.hpp"
+#include "dermis/core/processor_clones.hpp"
+
 namespace dermis::compensation {
 namespace {
 
 constexpr double kSameCount = 1e-3;
-constexpr double kLeastOthers = 4.0;  // interior readings that show how often a reading repeats
-constexpr double kLonger = 3.0;       // than any of those repeats
-constexpr double kFades = 0.999;      // a visit
-constexpr double kMaybeRail = 0.95;   // of the largest rise
+constexpr std::int64_t kLeastOthers = 4;  // interior readings that show how often a reading repeats
+constexpr double kLonger = 3.0;           // than any of those repeats
+constexpr double kFades = 0.999;          // a visit
+constexpr double kMaybeRail = 0.95;       // of the largest rise
 constexpr int kHealChanges = 5;
 
 /// Probability that a reading repeats, at least: `noise_counts` with the rounding of the ADC.
@@ -37,7 +40,7 @@ void StuckTaxelDetector::judge(const Observation& seen, FaultList& faults) noexc
   const CountScale scale = count_scale(seen.conditioned.sigma_ratio);
   follow_largest_rise(seen, scale, block);
   heal(seen, scale, block, faults);
-  if (count_repetitions(seen, scale, block) >= kEvidence) find(seen, block, faults);
+  if (count_repetitions(seen, scale, block)) find(seen, block, faults);
 }
 
 StuckTaxelDetector::CountScale StuckTaxelDetector::count_scale(double sigma_ratio) const noexcept {
@@ -47,11 +50,10 @@ StuckTaxelDetector::CountScale StuckTaxelDetector::count_scale(double sigma_rati
 
 void StuckTaxelDetector::follow_largest_rise(const Observation& seen, const CountScale& scale,
                                              const TaxelBlock& block) noexcept {
-  double largest = 0.0;
-  for (std::size_t taxel = block.from; taxel < block.to; ++taxel) {
-    largest = std::max(largest, seen.conditioned.ratio[taxel]);
-  }
-  largest_rise_ = std::max(largest_rise_, std::abs(scale.per_ratio) * largest);
+  const double per_ratio = std::abs(scale.per_ratio);
+  const std::span<const double> readings = std::span(seen.conditioned.ratio).subspan(block.from, block.to - block.from);
+  if (!any_is_above(readings, largest_rise_ / per_ratio)) return;
+  largest_rise_ = std::max(largest_rise_, per_ratio * *std::max_element(readings.begin(), readings.end()));
 }
 
 void StuckTaxelDetector::heal(const Observation& seen, const CountScale& scale, const TaxelBlock& block,
@@ -68,49 +70,55 @@ void StuckTaxelDetector::heal(const Observation& seen, const CountScale& scale, 
   }
 }
 
-/// The largest evidence of the block.
-double StuckTaxelDetector::count_repetitions(const Observation& seen, const CountScale& scale,
-                                             const TaxelBlock& block) noexcept {
+/// Whether the evidence of any taxel of the block decides.
+DERMIS_PROCESSOR_CLONES bool StuckTaxelDetector::count_repetitions(const Observation& seen, const CountScale& scale,
+                                                                   const TaxelBlock& block) noexcept {
   const auto [from, to] = block;
+  const auto [zero, per_ratio] = scale;
   const double most = readout_.full_scale_counts() - 0.5;
-  const double most_pressed = kMaybeRail * largest_rise_ / std::abs(scale.per_ratio);
+  const double most_pressed = kMaybeRail * largest_rise_ / std::abs(per_ratio);
   const double least_pressed = kPressedSigmas * seen.conditioned.sigma_ratio;
   const double chance = chance_;
   const double* const ratios = seen.conditioned.ratio.data();
   const double* const unloaded = seen.unloaded.ratio().data();
   double* const last_counts = last_counts_.data();
   double* const evidence = evidence_.data();
-  double* const repetitions = repetitions_.data();
-  double idle = 0.0;  // interior readings that nothing presses
-  double idle_repeated = 0.0;
-  double idle_repetitions = 0.0;
-  double most_evidence = 0.0;
+  std::int64_t* const repetitions = repetitions_.data();
+  std::int64_t idle = 0;  // interior readings that nothing presses
+  std::int64_t idle_repeated = 0;
+  std::int64_t idle_repetitions = 0;
+  std::int64_t any_decides = 0;
   for (std::size_t taxel = from; taxel < to; ++taxel) {
     const double ratio = ratios[taxel];
-    const double count = scale.zero + scale.per_ratio * ratio;
-    const double interior = (count > 0.5 ? 1.0 : 0.0) * (count < most ? 1.0 : 0.0);
-    const double repeated = std::abs(count - last_counts[taxel]) < kSameCount ? interior : 0.0;
-    const double pressed = ratio > kTouchedShare * unloaded[taxel] + least_pressed ? 1.0 : 0.0;
+    const double count = zero + per_ratio * ratio;
+    const std::int64_t is_interior = (count > 0.5 ? 1 : 0) & (count < most ? 1 : 0);
+    const std::int64_t is_repeated = std::abs(count - last_counts[taxel]) < kSameCount ? is_interior : 0;
+    const std::int64_t is_pressed = ratio > kTouchedShare * unloaded[taxel] + least_pressed ? 1 : 0;
+    const std::int64_t is_below_rail = ratio < most_pressed ? 1 : 0;
+    const std::int64_t is_idle = 1 - is_pressed;
     last_counts[taxel] = count;
-    idle += interior * (1.0 - pressed);
-    idle_repeated += repeated * (1.0 - pressed);
-    const double below_rail = ratio < most_pressed ? 1.0 : 0.0;
-    evidence[taxel] = repeated * pressed * below_rail * (evidence[taxel] + chance);
-    repetitions[taxel] = repeated * (repetitions[taxel] + 1.0);
-    const double of_idle = (1.0 - pressed) * repetitions[taxel];
+    idle += is_interior & is_idle;
+    idle_repeated += is_repeated & is_idle;
+    const double added = evidence[taxel] + chance;
+    const double sum = (is_repeated & is_pressed & is_below_rail) != 0 ? added : 0.0;
+    evidence[taxel] = sum;
+    any_decides |= sum >= kEvidence ? 1 : 0;
+    const std::int64_t in_a_row = is_repeated != 0 ? repetitions[taxel] + 1 : 0;
+    repetitions[taxel] = in_a_row;
+    const std::int64_t of_idle = is_idle != 0 ? in_a_row : 0;
     idle_repetitions = of_idle > idle_repetitions ? of_idle : idle_repetitions;
-    most_evidence = evidence[taxel] > most_evidence ? evidence[taxel] : most_evidence;
   }
-  idle_repetitions_ = std::max(kFades * idle_repetitions_, idle_repetitions);
-  chance_ = idle < kLeastOthers ? 0.0 : -std::log(std::max(repeats_by_noise_, idle_repeated / idle));
+  idle_repetitions_ = std::max(kFades * idle_repetitions_, static_cast<double>(idle_repetitions));
+  const double share = static_cast<double>(idle_repeated) / static_cast<double>(idle);
+  chance_ = idle < kLeastOthers ? 0.0 : -std::log(std::max(repeats_by_noise_, share));
   chance_ = std::min(chance_, static_cast<double>(kMostForTaxel));
-  return most_evidence;
+  return any_decides != 0;
 }
 
 void StuckTaxelDetector::find(const Observation& seen, const TaxelBlock& block, FaultList& faults) noexcept {
   for (std::size_t taxel = block.from; taxel < block.to; ++taxel) {
     if (evidence_[taxel] < kEvidence || (faults.causes(taxel) & kStuckCause) != 0) continue;
-    if (repetitions_[taxel] < kLonger * idle_repetitions_) continue;
+    if (static_cast<double>(repetitions_[taxel]) < kLonger * idle_repetitions_) continue;
     const std::size_t frames = static_cast<std::size_t>(repetitions_[taxel]) * TaxelBlock::count(evidence_.size());
     faults.add({.kind = LineFaultKind::stuck_taxel,
                 .place = taxel,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "compensation/faults/fault_list.hpp"
@@ -31,19 +32,19 @@ class StuckTaxelDetector {
   [[nodiscard]] CountScale count_scale(double sigma_ratio) const noexcept;
   void follow_largest_rise(const Observation& seen, const CountScale& scale, const TaxelBlock& block) noexcept;
   void heal(const Observation& seen, const CountScale& scale, const TaxelBlock& block, FaultList& faults) noexcept;
-  [[nodiscard]] double count_repetitions(const Observation& seen, const CountScale& scale,
-                                         const TaxelBlock& block) noexcept;
+  [[nodiscard]] bool count_repetitions(const Observation& seen, const CountScale& scale,
+                                       const TaxelBlock& block) noexcept;
   void find(const Observation& seen, const TaxelBlock& block, FaultList& faults) noexcept;
 
   const Readout& readout_;
-  double repeats_by_noise_;          // probability that a reading repeats, at least
-  double chance_ = 0.0;              // minus logarithm of that probability, as other taxels show it
-  double largest_rise_ = 0.0;        // of a reading above its zero, of all frames [counts]
-  double idle_repetitions_ = 0.0;    // in a row, the most of an interior reading that nothing presses; fades
-  std::vector<double> evidence_;     // Page's sum [taxels]
-  std::vector<double> repetitions_;  // in a row [taxels]
-  std::vector<double> last_counts_;  // [taxels]
-  std::vector<int> changes_;         // since it was found to be stuck [taxels]
+  double repeats_by_noise_;                // probability that a reading repeats, at least
+  double chance_ = 0.0;                    // minus logarithm of that probability, as other taxels show it
+  double largest_rise_ = 0.0;              // of a reading above its zero, of all frames [counts]
+  double idle_repetitions_ = 0.0;          // in a row, the most of an interior reading that nothing presses; fades
+  std::vector<double> evidence_;           // Page's sum [taxels]
+  std::vector<std::int64_t> repetitions_;  // in a row [taxels]
+  std::vector<double> last_counts_;        // [taxels]
+  std::vector<int> changes_;               // since it was found to be stuck [taxels]
 };
 
 }  // namespace dermis::compensation

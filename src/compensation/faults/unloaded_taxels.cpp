@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstdint>
 
 #include "compensation/lumped_circuit.hpp"
+#include "dermis/core/processor_clones.hpp"
 
 namespace dermis::compensation {
 namespace {
@@ -62,9 +64,17 @@ void UnloadedTaxels::expect(const ConditionedFrame& conditioned, const LineSums&
   forget_what_may_be_cut_off(conditioned.sigma_ratio);
 }
 
-void UnloadedTaxels::follow_smallest_reading(std::span<const double> ratio, const TaxelBlock& block) noexcept {
+DERMIS_PROCESSOR_CLONES void UnloadedTaxels::follow_smallest_reading(std::span<const double> ratio,
+                                                                     const TaxelBlock& block) noexcept {
+  const double* const readings = ratio.data();
+  const double smallest = smallest_reading_;
+  std::uint64_t any_is_smaller = 0;
   for (std::size_t taxel = block.from; taxel < block.to; ++taxel) {
-    if (ratio[taxel] > 0.0) smallest_reading_ = std::min(smallest_reading_, ratio[taxel]);
+    any_is_smaller |= (readings[taxel] > 0.0 ? 1U : 0U) & (readings[taxel] < smallest ? 1U : 0U);
+  }
+  if (any_is_smaller == 0) return;
+  for (std::size_t taxel = block.from; taxel < block.to; ++taxel) {
+    if (readings[taxel] > 0.0) smallest_reading_ = std::min(smallest_reading_, readings[taxel]);
   }
 }
 
@@ -75,7 +85,7 @@ void UnloadedTaxels::take_off(double sigma_ratio) noexcept {
   }
 }
 
-void UnloadedTaxels::forget_what_may_be_cut_off(double sigma_ratio) noexcept {
+DERMIS_PROCESSOR_CLONES void UnloadedTaxels::forget_what_may_be_cut_off(double sigma_ratio) noexcept {
   const Readout& readout = array_.readout;
   const double count_ratio = sigma_ratio / readout.adc_noise_counts;
   const bool sends_one_count = readout.quantity == Quantity::counts && smallest_reading_ < kOneCount * count_ratio;
@@ -86,7 +96,8 @@ void UnloadedTaxels::forget_what_may_be_cut_off(double sigma_ratio) noexcept {
 
 /// Pressed taxels on the sensed line of an unloaded one take the share of the supply that they read themselves. Pressed
 /// taxels on its driven line pull the line down.
-void UnloadedTaxels::expect_beside_presses(const LineSums& sums, double sigma_ratio, bool solved) noexcept {
+DERMIS_PROCESSOR_CLONES void UnloadedTaxels::expect_beside_presses(const LineSums& sums, double sigma_ratio,
+                                                                   bool solved) noexcept {
   const Readout& readout = array_.readout;
   const Axis driven = driven_axis(array_);
   const bool shares = readout.circuit == Circuit::divider || readout.circuit == Circuit::flexitac;

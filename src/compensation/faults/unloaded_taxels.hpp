@@ -46,8 +46,11 @@ class UnloadedTaxels {
   [[nodiscard]] double smallest_reading() const noexcept { return smallest_reading_; }
 
   /// The largest conductance of an unloaded taxel, at this standard deviation of it.
+  [[nodiscard]] static double most_siemens(double unloaded_siemens, double sigma_siemens) noexcept {
+    return touched_above(unloaded_siemens, sigma_siemens, kMostSigmas);
+  }
   [[nodiscard]] double most_siemens(std::size_t taxel, double sigma_siemens) const noexcept {
-    return touched_above(siemens_[taxel], sigma_siemens, kMostSigmas);
+    return most_siemens(siemens_[taxel], sigma_siemens);
   }
 
  private:
