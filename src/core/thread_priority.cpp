@@ -7,9 +7,9 @@
 
 namespace dermis {
 
-void raise_thread_priority() noexcept {
-  constexpr int kNice = -10;
-  static_cast<void>(::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kNice));
+void raise_thread_priority(ThreadPriority priority) noexcept {
+  const int nice = priority == ThreadPriority::frames ? -10 : -5;
+  static_cast<void>(::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), nice));
 }
 
 }  // namespace dermis

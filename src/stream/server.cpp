@@ -12,7 +12,6 @@
 #include <thread>
 #include <utility>  // Asio 1.74 forgets it
 
-#include "dermis/core/thread_priority.hpp"
 #include "stream/access.hpp"
 #include "stream/budget.hpp"
 #include "stream/client.hpp"
@@ -180,10 +179,7 @@ void Server::Implementation::start(Handlers handlers, std::vector<Service> servi
   offer_.handlers = std::move(handlers);
   offer_.services = std::move(services);
   accept();
-  thread_ = std::thread([this] {
-    raise_thread_priority();  // arrays wait for the locks that it holds
-    context_.run();
-  });
+  thread_ = std::thread([this] { context_.run(); });
 }
 
 void Server::Implementation::stop() {
