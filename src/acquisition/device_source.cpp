@@ -73,7 +73,7 @@ class DeviceSource final : public FrameSource {
   [[nodiscard]] std::optional<Readiness> readiness() const override {
     const int descriptor = connection_.descriptor();
     if (descriptor < 0) return std::nullopt;
-    return Readiness{descriptor, last_read_ + kTick};
+    return Readiness{descriptor, last_read_.at + kTick};
   }
 
   Result<Polled> poll(RawFrame& frame) override {
@@ -81,7 +81,7 @@ class DeviceSource final : public FrameSource {
       if (decoder_->next(frame)) return polled(deliver(frame));
       if (is_stopped()) return Polled::end;
       if (connection_.state() == State::over) return polled(finished());
-      if (connection_.state() != State::open || std::exchange(has_read_all_, false)) return Polled::nothing;
+      if (connection_.state() != State::open || std::exchange(last_read_.has_all, false)) return Polled::nothing;
       if (const Status received = receive(Nanos{}); !received) return received.error();
     }
   }
@@ -138,7 +138,7 @@ class DeviceSource final : public FrameSource {
 
   void start() {
     last_activity_ = now().steady;
-    silence_noticed_ = false;
+    noticed_.is_silence = false;
     clock_.restart();
     undecoded_.clear();
     request();
@@ -192,8 +192,7 @@ class DeviceSource final : public FrameSource {
     request_after_damage();
     const Result<std::size_t> read = connection_.read(buffer_, timeout, frames_ > 0);
     const Stamp stamp = now();
-    last_read_ = stamp.steady;
-    has_read_all_ = !read || *read == 0 || (uri_.transport != Transport::udp && *read < buffer_.size());
+    last_read_ = {stamp.steady, !read || *read == 0 || (uri_.transport != Transport::udp && *read < buffer_.size())};
     if (read && *read > 0) decode(std::span(buffer_).first(*read), stamp);
     if (!read || connection_.state() != State::open) {
       decoder_->finish();
@@ -210,17 +209,17 @@ class DeviceSource final : public FrameSource {
     decoder_->push(bytes);
     undecoded_.add(bytes, stamp.steady);
     last_activity_ = stamp.steady;
-    pause_noticed_ = silence_noticed_ = false;
+    noticed_ = {};
   }
 
   void wait_on(Nanos at) {
-    if (!pause_noticed_ && at - last_activity_ >= kPause) {
-      pause_noticed_ = true;
+    if (!noticed_.is_pause && at - last_activity_ >= kPause) {
+      noticed_.is_pause = true;
       decoder_->idle();
     }
     if (!decoder_->request().empty() && at - last_request_ >= kRepeatRequest) request();
-    if (silence_noticed_ || at - last_activity_ < kSilence) return;
-    silence_noticed_ = true;
+    if (noticed_.is_silence || at - last_activity_ < kSilence) return;
+    noticed_.is_silence = true;
     const bool is_serial = uri_.transport == Transport::serial;
     notify("no bytes from " + connection_.name() + " for 2 s: is the device powered and sending" +
            (is_serial ? ", and is baud=" + std::to_string(uri_.baud) + " its baud?" : "?"));
@@ -238,11 +237,15 @@ class DeviceSource final : public FrameSource {
   std::uint64_t frames_ = 0;
   std::uint64_t damaged_frames_ = 0;  // when last asked for
   Nanos last_activity_{};
-  Nanos last_read_{};
   Nanos last_request_{};
-  bool pause_noticed_ = false;  // since the last byte
-  bool silence_noticed_ = false;
-  bool has_read_all_ = false;  // that had come; of a datagram nobody knows
+  struct {
+    bool is_pause = false;  // since the last byte
+    bool is_silence = false;
+  } noticed_;
+  struct {
+    Nanos at{};
+    bool has_all = false;  // that had come; of datagrams nobody knows
+  } last_read_;
 };
 
 /// A file without times has the rate of its layout.

@@ -28,7 +28,7 @@ class ArrayWorker {
                                                                    const LiveOptions& options);
 
   [[nodiscard]] std::size_t taxel_count() const noexcept { return array_.model->array.taxel_count(); }
-  /// What to wait for before acquire() has work; empty where await() must wait.
+  /// That of the source; empty where await() must wait.
   [[nodiscard]] std::optional<Readiness> readiness() const { return array_.source->readiness(); }
   /// Takes the frames that have come, without waiting.
   void acquire();

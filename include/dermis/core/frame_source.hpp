@@ -58,7 +58,7 @@ class FrameSource {
   /// Fills `frame` with the next frame, reusing its buffers. Returns false at the end of the source.
   [[nodiscard]] virtual Result<bool> next(RawFrame& frame) = 0;
 
-  /// What to wait for before the next poll(). Empty where only next() can wait: of files, and of devices that are away.
+  /// The next poll() is worth its while then. Empty where only next() can wait: of files, and of devices that are away.
   [[nodiscard]] virtual std::optional<Readiness> readiness() const { return std::nullopt; }
 
   /// Does the same as next() without waiting, where readiness() is known. Call it until it gives nothing.

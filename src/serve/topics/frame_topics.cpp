@@ -116,17 +116,17 @@ void FrameTopics::hear(const live::ArrayResult& result) {
 /// is for somebody who has not seen it.
 bool FrameTopics::is_due(Array& array, Nanos time) const noexcept {
   const Nanos period(static_cast<std::int64_t>(1e9 / rate_hz_));
-  if (array.last == time) return true;
-  const bool went_back = array.last && time < *array.last;
-  const bool due = !array.last || went_back || time >= array.due;
-  if (due) array.due = !went_back && time - array.due < period ? array.due + period : time + period;
-  array.last = time;
+  if (array.pace.last == time) return true;
+  const bool went_back = array.pace.last && time < *array.pace.last;
+  const bool due = !array.pace.last || went_back || time >= array.pace.due;
+  if (due) array.pace.due = !went_back && time - array.pace.due < period ? array.pace.due + period : time + period;
+  array.pace.last = time;
   return due;
 }
 
 /// Contacts go before viewers: these get fewer of the frames that are late already.
 bool FrameTopics::has_time_for(Array& array, const live::ArrayResult& result) {
-  if (result.latency < kLate || ++array.late % kShownOfLate == 0) return true;
+  if (result.latency < kLate || ++array.pace.late % kShownOfLate == 0) return true;
   topics_.thin();
   return false;
 }

@@ -41,6 +41,13 @@ class FrameTopics final : public Part {
     Wrench in_suit{};
   };
 
+  /// Which frames of an array are streamed.
+  struct Pace {
+    std::optional<Nanos> last{};  // frame that came
+    Nanos due{};
+    std::uint64_t late = 0;  // frames that were due
+  };
+
   /// An array, touched by one thread at a time but for its last press.
   struct Array {
     const ServedArray& served;
@@ -53,9 +60,7 @@ class FrameTopics final : public Part {
     Topic force{};
     Topic force_sigma{};
     Topic wrench{};
-    std::optional<Nanos> last{};  // frame that came
-    Nanos due{};
-    std::uint64_t late = 0;  // frames that were due
+    Pace pace{};
     std::vector<std::uint8_t> message{};
     std::mutex press_mutex{};
     Press press{};
