@@ -17,6 +17,13 @@
 
 namespace dermis::live {
 
+namespace {
+
+/// A thread that another program puts off makes all of its arrays late.
+constexpr std::size_t kMostArraysOfThread = 8;
+
+}  // namespace
+
 class LiveSuit::Implementation {
  public:
   explicit Implementation(LiveOptions options) : options_(std::move(options)) {}
@@ -31,7 +38,9 @@ class LiveSuit::Implementation {
 
   /// The arrays, the largest first, each to the thread that has the fewest taxels so far.
   void start() {
-    const std::size_t threads = std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, workers_.size());
+    const std::size_t needed = (workers_.size() + kMostArraysOfThread - 1) / kMostArraysOfThread;
+    const std::size_t threads =
+        std::min(std::max<std::size_t>(std::thread::hardware_concurrency(), needed), workers_.size());
     std::vector<std::size_t> taxels(threads);
     std::vector<ArrayWorker*> largest_first;
     for (const auto& worker : workers_) largest_first.push_back(worker.get());

@@ -23,7 +23,7 @@
 #include "dermis/pipeline/standing_load.hpp"
 #include "dermis/pipeline/tare.hpp"
 
-/// A suit at work: arrays share a thread a core, one clock, one stream of results.
+/// A suit at work: arrays share threads, one clock, one stream of results.
 namespace dermis::live {
 
 /// One array of the suit, ready to work.
