@@ -19,9 +19,9 @@ inline std::string in_quotes(const std::string& text) {
 }
 
 inline ByteStream::End end_of(const error_code& error, ByteStream::End at_end) {
-  if (!error || error == asio::error::operation_aborted || error == asio::error::interrupted) {
-    return ByteStream::End::none;
-  }
+  const bool goes_on = !error || error == asio::error::operation_aborted || error == asio::error::interrupted ||
+                       error == asio::error::would_block;
+  if (goes_on) return ByteStream::End::none;
   const bool is_end = error == asio::error::eof || error == asio::error::broken_pipe;
   return is_end ? at_end : ByteStream::End::lost;
 }

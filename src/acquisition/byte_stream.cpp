@@ -52,11 +52,15 @@ class TcpStream : public AsioStream {
   explicit TcpStream(const SourceUri& uri) : uri_(uri) {}
 
   Transferred read(std::span<std::uint8_t> into, Nanos timeout) override {
-    return read_some(socket_, into, timeout, End::closed);
+    if (timeout > Nanos{}) return read_some(socket_, into, timeout, End::closed);
+    error_code error;
+    const std::size_t bytes = socket_.read_some(asio::buffer(into.data(), into.size()), error);
+    return {bytes, end_of(error, End::closed)};
   }
   Transferred write(std::span<const std::uint8_t> bytes, Nanos timeout) override {
     return write_some(socket_, bytes, timeout, End::closed);
   }
+  [[nodiscard]] int descriptor() const override { return descriptor_; }
   [[nodiscard]] std::string name() const override { return host_and_port(uri_.host, uri_.port); }
 
  protected:
@@ -67,6 +71,9 @@ class TcpStream : public AsioStream {
     if (pending_) return false;
     if (outcome_) return error_of(outcome_);
     watch_peer(socket_);
+    error_code ignored;
+    socket_.non_blocking(true, ignored);
+    descriptor_ = socket_.native_handle();
     return true;
   }
 
@@ -84,6 +91,7 @@ class TcpStream : public AsioStream {
 
   SourceUri uri_;
   tcp::socket socket_{context_};
+  int descriptor_ = -1;
   bool pending_ = false;
   error_code outcome_;
 };
@@ -190,10 +198,16 @@ class UdpStream final : public AsioStream {
       return reason;
     }
     socket_.set_option(asio::socket_base::receive_buffer_size(kReceiveBuffer), error);
+    socket_.non_blocking(true, error);
+    descriptor_ = socket_.native_handle();
     if (role_ == Role::receiver) uri_.port = socket_.local_endpoint(error).port();
     return true;
   }
   Transferred read(std::span<std::uint8_t> into, Nanos timeout) override {
+    if (timeout <= Nanos{}) {
+      error_code ignored;
+      return {socket_.receive_from(asio::buffer(into.data(), into.size()), peer_, 0, ignored)};
+    }
     return ignoring_unheard(transfer(socket_, timeout, End::none, [&](auto handler) {
       socket_.async_receive_from(asio::buffer(into.data(), into.size()), peer_, handler);
     }));
@@ -207,6 +221,7 @@ class UdpStream final : public AsioStream {
       if (role_ == Role::receiver) socket_.async_send_to(buffer, peer_, handler);
     }));
   }
+  [[nodiscard]] int descriptor() const override { return descriptor_; }
   [[nodiscard]] std::string name() const override { return host_and_port(uri_.host, uri_.port); }
 
  private:
@@ -217,6 +232,7 @@ class UdpStream final : public AsioStream {
   SourceUri uri_;
   Role role_;
   udp::socket socket_{context_};
+  int descriptor_ = -1;
   udp::endpoint peer_;
 };
 

@@ -36,8 +36,8 @@ Status DeviceConnection::try_open() {
   return state_ == State::away ? wait_for_return() : wait_for_first();
 }
 
-Result<std::size_t> DeviceConnection::read(std::span<std::uint8_t> into, bool device_was_here) {
-  const ByteStream::Transferred read = stream_->read(into, kTick);
+Result<std::size_t> DeviceConnection::read(std::span<std::uint8_t> into, Nanos timeout, bool device_was_here) {
+  const ByteStream::Transferred read = stream_->read(into, timeout);
   if (is_returning_ && (read.bytes > 0 || now().steady - opened_ >= kLongestPause)) come_back();
   if (read.end != ByteStream::End::none) {
     if (const Status ended = end(read.end, device_was_here); !ended) return ended.error();

@@ -35,9 +35,11 @@ class DeviceConnection {
   /// One try to open a stream that is waiting or away. Fails where it can never open, and where it was away too long.
   [[nodiscard]] Status try_open();
 
-  /// Reads the bytes that arrive within 50 ms. Ends the connection where the stream ends. `device_was_here`: who closes
-  /// a connection without a frame before was not the device, so another is waited for.
-  [[nodiscard]] Result<std::size_t> read(std::span<std::uint8_t> into, bool device_was_here);
+  /// Reads the bytes that arrive within the time. Ends the connection where the stream ends. `device_was_here`: who
+  /// closes a connection without a frame before was not the device, so another is waited for.
+  [[nodiscard]] Result<std::size_t> read(std::span<std::uint8_t> into, Nanos timeout, bool device_was_here);
+  /// As that of a stream.
+  [[nodiscard]] int descriptor() const { return state_ == State::open ? stream_->descriptor() : -1; }
 
   /// A request that is lost is no error: it is repeated.
   void write(std::span<const std::uint8_t> bytes);

@@ -25,6 +25,7 @@ using namespace std::chrono_literals;  // NOLINT(google-build-using-namespace): 
 using State = DeviceConnection::State;
 
 constexpr Nanos kConnectTimeout = 5s;
+constexpr Nanos kTick = 50ms;    // without bytes, a connection is looked after so often
 constexpr Nanos kPause = 100ms;  // then the decoder gets a pause
 constexpr Nanos kSilence = 2s;   // then the user gets a notice
 constexpr Nanos kRepeatRequest = 1s;
@@ -64,8 +65,24 @@ class DeviceSource final : public FrameSource {
       if (decoder_->next(frame)) return deliver(frame);
       if (is_stopped()) return false;
       if (connection_.state() == State::over) return finished();
-      const Status step = connection_.state() == State::open ? receive() : try_open();
+      const Status step = connection_.state() == State::open ? receive(kTick) : try_open();
       if (!step) return step.error();
+    }
+  }
+
+  [[nodiscard]] std::optional<Readiness> readiness() const override {
+    const int descriptor = connection_.descriptor();
+    if (descriptor < 0) return std::nullopt;
+    return Readiness{descriptor, last_read_.at + kTick};
+  }
+
+  Result<Polled> poll(RawFrame& frame) override {
+    for (;;) {
+      if (decoder_->next(frame)) return polled(deliver(frame));
+      if (is_stopped()) return Polled::end;
+      if (connection_.state() == State::over) return polled(finished());
+      if (connection_.state() != State::open || std::exchange(last_read_.has_all, false)) return Polled::nothing;
+      if (const Status received = receive(Nanos{}); !received) return received.error();
     }
   }
 
@@ -94,6 +111,11 @@ class DeviceSource final : public FrameSource {
  private:
   [[nodiscard]] bool is_stopped() const { return options_.stop != nullptr && options_.stop->load(); }
 
+  [[nodiscard]] static Result<Polled> polled(const Result<bool>& more) {
+    if (!more) return more.error();
+    return *more ? Polled::frame : Polled::end;
+  }
+
   [[nodiscard]] Result<bool> finished() const {
     const bool never_comes_back = uri_.transport == Transport::file || uri_.transport == Transport::standard_input;
     const std::string advice = decoder_->advice();
@@ -116,7 +138,7 @@ class DeviceSource final : public FrameSource {
 
   void start() {
     last_activity_ = now().steady;
-    silence_noticed_ = false;
+    noticed_.is_silence = false;
     clock_.restart();
     undecoded_.clear();
     request();
@@ -166,10 +188,11 @@ class DeviceSource final : public FrameSource {
     if (std::exchange(damaged_frames_, damaged) != damaged) request();
   }
 
-  Status receive() {
+  Status receive(Nanos timeout) {
     request_after_damage();
-    const Result<std::size_t> read = connection_.read(buffer_, frames_ > 0);
+    const Result<std::size_t> read = connection_.read(buffer_, timeout, frames_ > 0);
     const Stamp stamp = now();
+    last_read_ = {stamp.steady, !read || *read == 0 || (uri_.transport != Transport::udp && *read < buffer_.size())};
     if (read && *read > 0) decode(std::span(buffer_).first(*read), stamp);
     if (!read || connection_.state() != State::open) {
       decoder_->finish();
@@ -186,17 +209,17 @@ class DeviceSource final : public FrameSource {
     decoder_->push(bytes);
     undecoded_.add(bytes, stamp.steady);
     last_activity_ = stamp.steady;
-    pause_noticed_ = silence_noticed_ = false;
+    noticed_ = {};
   }
 
   void wait_on(Nanos at) {
-    if (!pause_noticed_ && at - last_activity_ >= kPause) {
-      pause_noticed_ = true;
+    if (!noticed_.is_pause && at - last_activity_ >= kPause) {
+      noticed_.is_pause = true;
       decoder_->idle();
     }
     if (!decoder_->request().empty() && at - last_request_ >= kRepeatRequest) request();
-    if (silence_noticed_ || at - last_activity_ < kSilence) return;
-    silence_noticed_ = true;
+    if (noticed_.is_silence || at - last_activity_ < kSilence) return;
+    noticed_.is_silence = true;
     const bool is_serial = uri_.transport == Transport::serial;
     notify("no bytes from " + connection_.name() + " for 2 s: is the device powered and sending" +
            (is_serial ? ", and is baud=" + std::to_string(uri_.baud) + " its baud?" : "?"));
@@ -215,8 +238,14 @@ class DeviceSource final : public FrameSource {
   std::uint64_t damaged_frames_ = 0;  // when last asked for
   Nanos last_activity_{};
   Nanos last_request_{};
-  bool pause_noticed_ = false;  // since the last byte
-  bool silence_noticed_ = false;
+  struct {
+    bool is_pause = false;  // since the last byte
+    bool is_silence = false;
+  } noticed_;
+  struct {
+    Nanos at{};
+    bool has_all = false;  // that had come; of datagrams nobody knows
+  } last_read_;
 };
 
 /// A file without times has the rate of its layout.

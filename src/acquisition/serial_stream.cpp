@@ -5,6 +5,7 @@
 #include <linux/serial.h>
 #include <sys/file.h>
 #include <sys/ioctl.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
@@ -60,6 +61,14 @@ void ask_for_low_latency(int descriptor, const std::string& path) {
   latency_timer << 1;
 }
 
+/// Asio has opened the port without blocking.
+ByteStream::Transferred read_now(int descriptor, std::span<std::uint8_t> into) {
+  const ssize_t count = ::read(descriptor, into.data(), into.size());
+  if (count > 0) return {static_cast<std::size_t>(count), ByteStream::End::none};
+  const bool goes_on = count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR);
+  return {0, goes_on ? ByteStream::End::none : ByteStream::End::lost};
+}
+
 class SerialStream final : public AsioStream {
  public:
   SerialStream(std::string path, unsigned baud) : path_(std::move(path)), baud_(baud) {}
@@ -78,14 +87,17 @@ class SerialStream final : public AsioStream {
       return give_up(errno);
     }
     ask_for_low_latency(descriptor, path_);
+    descriptor_ = descriptor;
     return true;
   }
   Transferred read(std::span<std::uint8_t> into, Nanos timeout) override {
-    return read_some(port_, into, timeout, End::lost);
+    if (timeout > Nanos{}) return read_some(port_, into, timeout, End::lost);
+    return read_now(port_.native_handle(), into);
   }
   Transferred write(std::span<const std::uint8_t> bytes, Nanos timeout) override {
     return write_some(port_, bytes, timeout, End::lost);
   }
+  [[nodiscard]] int descriptor() const override { return descriptor_; }
   [[nodiscard]] std::string name() const override { return path_; }
 
  private:
@@ -103,6 +115,7 @@ class SerialStream final : public AsioStream {
 
   std::string path_;
   unsigned baud_;
+  int descriptor_ = -1;
   asio::serial_port port_{context_};
 };
 

@@ -17,15 +17,17 @@ class TurnedSource final : public FrameSource {
   Result<bool> next(RawFrame& frame) override {
     Result<bool> more = source_->next(frame);
     if (!more || !*more) return more;
-    if (Status known = learn_shape(); !known) return known.error();
-    if (frame.counts.size() != shape_->taxel_count()) {
-      return bad_input("'" + name_ + "': a frame has " + std::to_string(frame.counts.size()) +
-                       " readings, its source says " + std::to_string(shape_->taxel_count()));
-    }
-    sent_.swap(frame.counts);
-    frame.counts.resize(places_.size());
-    for (std::size_t taxel = 0; taxel < places_.size(); ++taxel) frame.counts[taxel] = sent_[places_[taxel]];
+    if (Status turned = turn(frame); !turned) return turned.error();
     return true;
+  }
+
+  [[nodiscard]] std::optional<Readiness> readiness() const override { return source_->readiness(); }
+
+  Result<Polled> poll(RawFrame& frame) override {
+    Result<Polled> polled = source_->poll(frame);
+    if (!polled || *polled != Polled::frame) return polled;
+    if (Status turned = turn(frame); !turned) return turned.error();
+    return polled;
   }
 
   [[nodiscard]] std::optional<FrameShape> shape() const override {
@@ -40,6 +42,18 @@ class TurnedSource final : public FrameSource {
   [[nodiscard]] std::string place() const override { return source_->place(); }
 
  private:
+  Status turn(RawFrame& frame) {
+    if (Status known = learn_shape(); !known) return known;
+    if (frame.counts.size() != shape_->taxel_count()) {
+      return bad_input("'" + name_ + "': a frame has " + std::to_string(frame.counts.size()) +
+                       " readings, its source says " + std::to_string(shape_->taxel_count()));
+    }
+    sent_.swap(frame.counts);
+    frame.counts.resize(places_.size());
+    for (std::size_t taxel = 0; taxel < places_.size(); ++taxel) frame.counts[taxel] = sent_[places_[taxel]];
+    return Done{};
+  }
+
   /// A source knows its shape with its first frame, and keeps it.
   Status learn_shape() {
     if (shape_) return Done{};

@@ -89,19 +89,46 @@ AgeingMonitor::AgeingMonitor(const pipeline::Model& model)
       cols_(model.array.cols),
       calibrated_spread_(calibrated_spread(model.networks)),
       blocks_((rows_ - 1) * (cols_ - 1)),
-      log_newtons_(rows_ * cols_) {}
+      log_newtons_(rows_ * cols_),
+      is_pressed_(rows_),
+      is_compared_(rows_) {}
 
 void AgeingMonitor::add(const ForceFrame& force) noexcept {
   if (has(force.status, FrameStatus::rejected)) return;
   assert(force.newtons.size() == log_newtons_.size());
-  for (std::size_t taxel = 0; taxel < log_newtons_.size(); ++taxel) {
+  for (std::size_t row = 0; row < rows_; ++row) take_row(force, row);
+  for (std::size_t row = 0; row + 1 < rows_; ++row) compare_row(row);
+}
+
+/// Most rows are not pressed, which is known at a glance.
+void AgeingMonitor::take_row(const ForceFrame& force, std::size_t row) noexcept {
+  const std::size_t begin = row * cols_;
+  const std::size_t end = begin + cols_;
+  int pressed = 0;
+  for (std::size_t taxel = begin; taxel < end; ++taxel) {
+    pressed |= static_cast<int>(force.sigma_newtons[taxel] < kMostRelativeSigma * force.newtons[taxel]);
+  }
+  is_pressed_[row] = pressed != 0;
+  if (pressed == 0) return;
+  for (std::size_t taxel = begin; taxel < end; ++taxel) {
     const bool is_pressed = force.taxels[taxel] == TaxelStatus::ok && force.newtons[taxel] > 0.0F &&
                             force.sigma_newtons[taxel] < kMostRelativeSigma * force.newtons[taxel];
     log_newtons_[taxel] = is_pressed ? std::log(force.newtons[taxel]) : std::numeric_limits<float>::quiet_NaN();
   }
-  std::size_t block = 0;
-  for (std::size_t row = 0; row + 1 < rows_; ++row) {
-    for (std::size_t col = 0; col + 1 < cols_; ++col) compare(blocks_[block++], row * cols_ + col);
+}
+
+/// The squares between this row and the next.
+void AgeingMonitor::compare_row(std::size_t row) noexcept {
+  const bool are_pressed = is_pressed_[row] && is_pressed_[row + 1];
+  if (!are_pressed && !is_compared_[row]) return;
+  is_compared_[row] = are_pressed;
+  Block* const blocks = blocks_.data() + row * (cols_ - 1);
+  for (std::size_t col = 0; col + 1 < cols_; ++col) {
+    if (are_pressed) {
+      compare(blocks[col], row * cols_ + col);
+    } else if (blocks[col].frames > 0) {
+      end_touch(blocks[col]);
+    }
   }
 }
 

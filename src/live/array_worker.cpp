@@ -15,7 +15,9 @@ constexpr Nanos kPublishInterval = std::chrono::milliseconds(100);
 constexpr Nanos kLate = std::chrono::milliseconds(500);
 constexpr Nanos kSilence = std::chrono::seconds(2);  // without a frame, the rate is 0
 constexpr Nanos kStandingForLong = std::chrono::minutes(1);
-constexpr double kSilentIntervals = 3.0;  // of slow sources
+constexpr double kSilentIntervals = 3.0;                        // of slow sources
+constexpr Nanos kLongestWait = std::chrono::milliseconds(100);  // of a frame for its contacts
+constexpr std::size_t kMostWaiting = 1024;
 
 Nanos steady_now() {
   return std::chrono::steady_clock::now().time_since_epoch();
@@ -65,14 +67,6 @@ ArrayWorker::ArrayWorker(std::size_t index, LiveArray array, std::unique_ptr<pip
       tracker_(array_.model->array, settings_.contacts, array_.model->strip),
       standing_{.watch = pipeline::StandingLoadWatch(*array_.model)} {
   pipeline_->drift().set_options(settings_.drift);
-}
-
-void ArrayWorker::start() {
-  thread_ = std::thread([this] { run(); });
-}
-
-void ArrayWorker::join() {
-  if (thread_.joinable()) thread_.join();
 }
 
 template <typename Change>
@@ -133,52 +127,98 @@ void ArrayWorker::set_zero_now(ZeroRequest zero) {
   }
 }
 
-void ArrayWorker::run() {
-  Result<bool> more = true;
-  while (more && *more && !stopping_.load(std::memory_order_relaxed)) more = step();
-  finish(more ? Status(Done{}) : Status(more.error()));
+void ArrayWorker::acquire() {
+  while (!outcome_) {
+    RawFrame& frame = waiting_.room();
+    const Result<Polled> polled = array_.source->poll(frame);
+    if (!polled) return end(polled.error());
+    if (*polled == Polled::end) return end(Done{});
+    if (*polled == Polled::nothing) return;
+    take(frame);
+  }
 }
 
-Result<bool> ArrayWorker::step() {
-  Result<bool> more = array_.source->next(frame_.raw);
-  if (!more || !*more) return more;
+void ArrayWorker::await() {
+  if (outcome_) return;
+  RawFrame& frame = waiting_.room();
+  const Result<bool> more = array_.source->next(frame);
+  if (!more) return end(more.error());
+  if (!*more) return end(Done{});
+  take(frame);
+}
+
+/// Where frames come faster than their contacts can be found, the newest one counts.
+void ArrayWorker::take(const RawFrame& frame) {
+  if (options_.on_frame) options_.on_frame(index_, frame);
+  waiting_.push();
+  const Nanos waited = frame.acquisition.arrival_steady - waiting_.front().acquisition.arrival_steady;
+  if (waited <= kLongestWait && waiting_.size() <= kMostWaiting) return;
+  counts_.skipped += waiting_.size() - 1;
+  while (waiting_.size() > 1) waiting_.pop();
+}
+
+void ArrayWorker::end(Status outcome) {
+  outcome_ = std::move(outcome);
+  if (waiting_.empty()) finish();
+}
+
+bool ArrayWorker::process() {
+  if (waiting_.empty()) return false;
+  find_contacts(waiting_.front());
+  waiting_.pop();
+  if (!waiting_.empty()) return true;
+  if (outcome_) finish();
+  return false;
+}
+
+void ArrayWorker::stop() {
+  if (!ended()) finish();
+}
+
+void ArrayWorker::find_contacts(const RawFrame& frame) {
   take_requests();
-  pipeline_->process(frame_.raw, frame_.force);
-  if (pipeline_->rejection() == preprocessing::Rejection::time_going_backwards && was_sought_back()) begin_anew();
-  last_time_ = frame_.raw.time;
-  tracker_.process(frame_.force, frame_.report);
+  pipeline_->process(frame, results_.force);
+  if (pipeline_->rejection() == preprocessing::Rejection::time_going_backwards && was_sought_back(frame)) {
+    begin_anew(frame);
+  }
+  last_time_ = frame.time;
+  tracker_.process(results_.force, results_.report);
   place_contacts();
   follow_standing();
-  meter(steady_now());
-  if (options_.on_result) {
-    options_.on_result({index_, frame_.raw, pipeline_->conductance(), frame_.force, frame_.report, frame_.contacts});
-  }
-  return true;
+  results_.temperature_celsius = frame.temperature_celsius;
+  results_.supply_v = frame.supply_v;
+  const Nanos now = steady_now();
+  meter(frame, now);
+  if (!options_.on_result) return;
+  const Nanos arrival = frame.acquisition.arrival_steady;
+  const Nanos latency = arrival > Nanos{} ? now - arrival : Nanos{};
+  options_.on_result(
+      {index_, frame, pipeline_->conductance(), results_.force, results_.report, results_.contacts, latency});
 }
 
 /// A frame of a device that comes a little late is rejected and no more.
-bool ArrayWorker::was_sought_back() const noexcept {
-  return last_time_ - frame_.raw.time > kLate;
+bool ArrayWorker::was_sought_back(const RawFrame& frame) const noexcept {
+  return last_time_ - frame.time > kLate;
 }
 
 /// A recording was sought back: the frame counts, and touches from before are not followed on.
-void ArrayWorker::begin_anew() {
-  pipeline_->process(frame_.raw, frame_.force);
+void ArrayWorker::begin_anew(const RawFrame& frame) {
+  pipeline_->process(frame, results_.force);
   tracker_.forget();
 }
 
 void ArrayWorker::place_contacts() {
-  frame_.contacts.resize(frame_.report.contacts.size());
-  for (std::size_t k = 0; k < frame_.contacts.size(); ++k) {
-    const Contact& contact = frame_.report.contacts[k];
-    frame_.contacts[k] = {index_, contact, array_.surface.at(contact.position),
-                          array_.surface.along(contact.position, contact.velocity)};
+  results_.contacts.resize(results_.report.contacts.size());
+  for (std::size_t k = 0; k < results_.contacts.size(); ++k) {
+    const Contact& contact = results_.report.contacts[k];
+    results_.contacts[k] = {index_, contact, array_.surface.at(contact.position),
+                            array_.surface.along(contact.position, contact.velocity)};
   }
 }
 
 /// A load that is put there later counts from when nothing stood there.
 void ArrayWorker::follow_standing() {
-  standing_.watch.add(pipeline_->conductance(), frame_.force);
+  standing_.watch.add(pipeline_->conductance(), results_.force);
   if (standing_.watch.is_any_loaded()) return;
   standing_.watch.begin_anew();
   standing_.since_first = false;
@@ -189,10 +229,10 @@ std::optional<pipeline::StandingLoad> ArrayWorker::standing_load() const {
   return standing_.watch.load();
 }
 
-void ArrayWorker::meter(Nanos now) {
+void ArrayWorker::meter(const RawFrame& frame, Nanos now) {
   ++counts_.frames;
-  if (has(frame_.force.status, FrameStatus::rejected)) ++counts_.rejected;
-  const Nanos arrival = frame_.raw.acquisition.arrival_steady;
+  if (has(results_.force.status, FrameStatus::rejected)) ++counts_.rejected;
+  const Nanos arrival = frame.acquisition.arrival_steady;
   if (arrival > Nanos{}) counts_.latencies.add(now, now - arrival);
   if (now - published_.at < kPublishInterval) return;
   const std::unique_lock lock(published_.mutex, std::try_to_lock);
@@ -205,17 +245,19 @@ void ArrayWorker::publish(Nanos now) {
   published_.statistics.source = array_.source->statistics();
   published_.statistics.frames = counts_.frames;
   published_.statistics.rejected = counts_.rejected;
+  published_.statistics.skipped = counts_.skipped;
   published_.statistics.latency_p50 = counts_.latencies.quantile(now, 0.5);
   published_.statistics.latency_p99 = counts_.latencies.quantile(now, 0.99);
   const auto faults = pipeline_->line_faults().faults();
   published_.statistics.faults.assign(faults.begin(), faults.end());
   published_.statistics.tare = pipeline_->last_tare();
   published_.statistics.standing = standing_load();
-  published_.statistics.temperature_celsius = frame_.raw.temperature_celsius;
-  published_.statistics.supply_v = frame_.raw.supply_v;
+  published_.statistics.temperature_celsius = results_.temperature_celsius;
+  published_.statistics.supply_v = results_.supply_v;
 }
 
-void ArrayWorker::finish(const Status& outcome) {
+void ArrayWorker::finish() {
+  const Status outcome = outcome_.value_or(Done{});
   {
     const std::lock_guard lock(published_.mutex);
     publish(steady_now());

@@ -7,29 +7,37 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "dermis/live/live_suit.hpp"
 #include "dermis/pipeline/pipeline.hpp"
 #include "dermis/pipeline/standing_load.hpp"
 #include "live/latency_meter.hpp"
+#include "live/waiting_frames.hpp"
 
 namespace dermis::live {
 
 /// The next step for the zero of an array.
 enum class ZeroRequest { keep, tare, tare_over_load, undo, reset };
 
-/// One array at work on a thread of its own. Thread-safe.
+/// One array at work. acquire(), await() and process() are called by one thread at a time, the rest by any.
 class ArrayWorker {
  public:
   /// `options` must outlive the worker.
   [[nodiscard]] static Result<std::unique_ptr<ArrayWorker>> create(std::size_t index, LiveArray array,
                                                                    const LiveOptions& options);
 
-  void start();
-  void ask_to_stop() noexcept { stopping_.store(true, std::memory_order_relaxed); }
-  void join();
+  [[nodiscard]] std::size_t taxel_count() const noexcept { return array_.model->array.taxel_count(); }
+  /// That of the source; empty where await() must wait.
+  [[nodiscard]] std::optional<Readiness> readiness() const { return array_.source->readiness(); }
+  /// Takes the frames that have come, without waiting.
+  void acquire();
+  /// Takes the next frame, and waits for it.
+  void await();
+  /// Finds the contacts of the oldest frame that waits, if one does. Returns whether more wait.
+  bool process();
+  /// The frames that still wait are left out.
+  void stop();
   [[nodiscard]] bool ended() const noexcept { return ended_.load(std::memory_order_acquire); }
 
   void set_settings(const LiveSettings& settings);
@@ -53,18 +61,20 @@ class ArrayWorker {
     std::atomic<bool> is_any = false;
   };
 
-  /// The frame at hand, from its readings to its contacts.
-  struct Frame {
-    RawFrame raw;
+  /// Results of the frame at hand.
+  struct Results {
     ForceFrame force;
     ContactReport report;
     std::vector<SuitContact> contacts;
+    std::optional<double> temperature_celsius;
+    std::optional<double> supply_v;
   };
 
   struct Counts {
     LatencyMeter latencies;
     std::uint64_t frames = 0;
     std::uint64_t rejected = 0;
+    std::uint64_t skipped = 0;
   };
 
   /// The load that rests on the array.
@@ -84,34 +94,35 @@ class ArrayWorker {
               const LiveOptions& options);
   template <typename Change>
   void request(const Change& change);
-  void run();
-  [[nodiscard]] Result<bool> step();
+  void take(const RawFrame& frame);
+  void end(Status outcome);
+  void find_contacts(const RawFrame& frame);
   void take_requests();
   void set_zero_now(ZeroRequest zero);
-  [[nodiscard]] bool was_sought_back() const noexcept;
-  void begin_anew();
+  [[nodiscard]] bool was_sought_back(const RawFrame& frame) const noexcept;
+  void begin_anew(const RawFrame& frame);
   void place_contacts();
   void follow_standing();
   [[nodiscard]] std::optional<pipeline::StandingLoad> standing_load() const;
-  void meter(Nanos now);
+  void meter(const RawFrame& frame, Nanos now);
   void publish(Nanos now);
-  void finish(const Status& outcome);
+  void finish();
 
   const std::size_t index_;
   LiveArray array_;
   const LiveOptions& options_;
-  std::thread thread_;
-  std::atomic<bool> stopping_ = false;
   std::atomic<bool> ended_ = false;
 
   Requests requests_;
 
-  // Used by the worker's thread alone.
+  // Used by the thread alone that works for the array.
+  WaitingFrames waiting_;
+  std::optional<Status> outcome_;  // of a source that has no more
   std::unique_ptr<pipeline::Pipeline> pipeline_;
   LiveSettings settings_;
   contacts::ContactTracker tracker_;
   Nanos last_time_{};
-  Frame frame_;
+  Results results_;
   Counts counts_;
   Standing standing_;
 

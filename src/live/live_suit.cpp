@@ -6,12 +6,23 @@
 
 #include <algorithm>
 #include <cassert>
+#include <deque>
+#include <functional>
 #include <mutex>
+#include <thread>
 #include <utility>
 
 #include "live/array_worker.hpp"
+#include "live/work_loop.hpp"
 
 namespace dermis::live {
+
+namespace {
+
+/// A thread that another program puts off makes all of its arrays late.
+constexpr std::size_t kMostArraysOfThread = 8;
+
+}  // namespace
 
 class LiveSuit::Implementation {
  public:
@@ -25,9 +36,27 @@ class LiveSuit::Implementation {
     return Done{};
   }
 
+  /// The arrays, the largest first, each to the thread that has the fewest taxels so far.
+  void start() {
+    const std::size_t needed = (workers_.size() + kMostArraysOfThread - 1) / kMostArraysOfThread;
+    const std::size_t threads =
+        std::min(std::max<std::size_t>(std::thread::hardware_concurrency(), needed), workers_.size());
+    std::vector<std::size_t> taxels(threads);
+    std::vector<ArrayWorker*> largest_first;
+    for (const auto& worker : workers_) largest_first.push_back(worker.get());
+    std::ranges::stable_sort(largest_first, std::greater<>(), &ArrayWorker::taxel_count);
+    loops_.resize(threads);
+    for (ArrayWorker* const worker : largest_first) {
+      const auto lightest = std::ranges::min_element(taxels);
+      loops_[static_cast<std::size_t>(lightest - taxels.begin())].add(*worker);
+      *lightest += worker->taxel_count();
+    }
+    for (WorkLoop& loop : loops_) loop.start();
+  }
+
   void stop() {
-    for (const auto& worker : workers_) worker->ask_to_stop();
-    for (const auto& worker : workers_) worker->join();
+    for (WorkLoop& loop : loops_) loop.ask_to_stop();
+    for (WorkLoop& loop : loops_) loop.stop();
   }
 
   void set_settings(const LiveSettings& settings) {
@@ -54,6 +83,7 @@ class LiveSuit::Implementation {
  private:
   LiveOptions options_;
   std::vector<std::unique_ptr<ArrayWorker>> workers_;
+  std::deque<WorkLoop> loops_;
   mutable std::mutex mutex_;  // Of the settings.
 };
 
@@ -74,7 +104,7 @@ LiveSuit::~LiveSuit() {
 }
 
 void LiveSuit::start() {
-  for (const auto& worker : implementation_->workers()) worker->start();
+  implementation_->start();
 }
 
 void LiveSuit::stop() {

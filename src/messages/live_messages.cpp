@@ -72,6 +72,7 @@ void write_array_statistics(CdrWriter& writer, const ArrayStatistics& array) {
                              array.temperature_celsius, array.supply_v}) {
     writer.write(value);
   }
+  writer.write(array.skipped);
 }
 
 }  // namespace
@@ -133,6 +134,7 @@ void encode_statistics(const Statistics& statistics, std::string_view frame_id, 
   writer.write(statistics.clients);
   writer.write(statistics.client_drops);
   writer.write(statistics.recording_left_out);
+  writer.write(statistics.frames_not_streamed);
 }
 
 void encode_calibration_state(const CalibrationState& state, std::string_view frame_id,

@@ -12,6 +12,7 @@
 #include <thread>
 #include <utility>
 
+#include "dermis/core/thread_priority.hpp"
 #include "dermis/core/version.hpp"
 #include "dermis/files/text.hpp"
 #include "dermis/recordings/suit_recording.hpp"
@@ -214,6 +215,7 @@ void SuitRecordingWriter::Implementation::seal_chunk() {
 }
 
 void SuitRecordingWriter::Implementation::write_chunks(const std::stop_token& stop) {
+  raise_thread_priority(ThreadPriority::recording);
   std::unique_lock lock(mutex_);
   while (status_ && !stop.stop_requested()) {
     const auto has_work = [this] { return waiting_chunks_ > 0; };

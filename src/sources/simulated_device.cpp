@@ -19,16 +19,31 @@ SimulatedDevice::SimulatedDevice(MakeFrame make_frame, const FrameShape& shape, 
     : make_frame_(std::move(make_frame)), shape_(shape), rate_hz_(rate_hz), stop_(stop) {}
 
 Result<bool> SimulatedDevice::next(RawFrame& frame) {
+  for (;;) {
+    const Result<Polled> polled = poll(frame);
+    if (!polled) return polled.error();
+    if (*polled != Polled::nothing) return *polled == Polled::frame;
+    if (!pacer_->wait_until(moment_of(next_))) return false;
+  }
+}
+
+std::optional<Readiness> SimulatedDevice::readiness() const {
+  return Readiness{.due = pacer_ ? begin_steady_ + moment_of(next_) : Nanos{}};
+}
+
+Result<Polled> SimulatedDevice::poll(RawFrame& frame) {
+  if (stop_ != nullptr && stop_->load()) return Polled::end;
   if (!pacer_) begin();
-  const std::uint64_t lost = frames_overdue();
+  const Nanos now = pacer_->elapsed();
+  const std::uint64_t lost = frames_overdue(now);
+  const Nanos taken = moment_of(next_ + lost);
+  if (taken > now) return Polled::nothing;
   next_ += lost;
   lost_ += lost;
-  const Nanos taken = moment_of(next_);
-  if (!pacer_->wait_until(taken)) return false;
   make_frame_(next_, frame);
-  stamp(frame, taken, lost);
+  stamp(frame, taken, now, lost);
   ++next_;
-  return true;
+  return Polled::frame;
 }
 
 void SimulatedDevice::begin() {
@@ -37,13 +52,12 @@ void SimulatedDevice::begin() {
   begin_utc_ = std::chrono::system_clock::now().time_since_epoch();
 }
 
-void SimulatedDevice::stamp(RawFrame& frame, Nanos taken, std::uint64_t lost) {
+void SimulatedDevice::stamp(RawFrame& frame, Nanos taken, Nanos arrival, std::uint64_t lost) {
   frame.time = begin_utc_ + taken;
   frame.acquisition = {};
   frame.acquisition.sequence = next_;
   frame.acquisition.device_time = taken;
   frame.acquisition.lost_before = static_cast<std::uint32_t>(std::min<std::uint64_t>(lost, ~std::uint32_t{0}));
-  const Nanos arrival = pacer_->elapsed();
   frame.acquisition.arrival_steady = begin_steady_ + arrival;
   frame.acquisition.arrival_utc = begin_utc_ + arrival;
   if (frames_ == 0) first_arrival_ = arrival;
@@ -52,8 +66,8 @@ void SimulatedDevice::stamp(RawFrame& frame, Nanos taken, std::uint64_t lost) {
 }
 
 /// Older than the buffer is long.
-std::uint64_t SimulatedDevice::frames_overdue() const {
-  const Nanos oldest = pacer_->elapsed() - kDeviceBuffer;
+std::uint64_t SimulatedDevice::frames_overdue(Nanos now) const {
+  const Nanos oldest = now - kDeviceBuffer;
   const auto first_kept =
       static_cast<std::uint64_t>(std::max(0.0, 1e-9 * static_cast<double>(oldest.count()) * rate_hz_));
   return first_kept > next_ ? first_kept - next_ : 0;

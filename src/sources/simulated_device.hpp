@@ -25,14 +25,16 @@ class SimulatedDevice final : public FrameSource {
   SimulatedDevice(MakeFrame make_frame, const FrameShape& shape, double rate_hz, const std::atomic<bool>* stop);
 
   [[nodiscard]] Result<bool> next(RawFrame& frame) override;
+  [[nodiscard]] std::optional<Readiness> readiness() const override;
+  [[nodiscard]] Result<Polled> poll(RawFrame& frame) override;
   [[nodiscard]] std::optional<FrameShape> shape() const override { return shape_; }
   [[nodiscard]] SourceStatistics statistics() const override;
   [[nodiscard]] bool is_live() const override { return true; }
 
  private:
   void begin();
-  void stamp(RawFrame& frame, Nanos taken, std::uint64_t lost);
-  [[nodiscard]] std::uint64_t frames_overdue() const;
+  void stamp(RawFrame& frame, Nanos taken, Nanos arrival, std::uint64_t lost);
+  [[nodiscard]] std::uint64_t frames_overdue(Nanos now) const;
   [[nodiscard]] Nanos moment_of(std::uint64_t frame) const;
 
   MakeFrame make_frame_;

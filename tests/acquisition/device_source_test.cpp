@@ -3,6 +3,7 @@
 #include "dermis/acquisition/device_source.hpp"
 
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -68,6 +69,28 @@ void expect_end(FrameSource& source) {
   const Result<bool> more = source.next(frame);
   ASSERT_TRUE(more) << more.error().message;
   EXPECT_FALSE(*more);
+}
+
+/// The next frames, as one gets them who waits for several sources; next() where that cannot be.
+void expect_polled_frames(FrameSource& source, const std::vector<RawFrame>& expected) {
+  RawFrame frame;
+  for (std::size_t i = 0; i < expected.size();) {
+    const std::optional<Readiness> readiness = source.readiness();
+    if (!readiness) {
+      expect_frames(source, {expected[i++]});
+      continue;
+    }
+    EXPECT_LE(readiness->due, Nanos(std::chrono::steady_clock::now().time_since_epoch()) + 50ms);
+    pollfd request{readiness->descriptor, POLLIN, 0};
+    ::poll(&request, 1, 50);
+    for (;;) {
+      const Result<Polled> polled = source.poll(frame);
+      ASSERT_TRUE(polled) << polled.error().message;
+      ASSERT_NE(*polled, Polled::end) << i;
+      if (*polled == Polled::nothing) break;
+      ASSERT_EQ(frame.counts, expected[i++].counts) << i;
+    }
+  }
 }
 
 std::string error_of(FrameSource& source) {
@@ -299,6 +322,53 @@ TEST(DeviceSource, takes_datagrams) {
   const std::vector<RawFrame> frames = random_frames(50, 5);
   send(*device, encoded(frames));
   expect_frames(*source, frames);
+}
+
+TEST(DeviceSource, can_be_waited_for_beside_others_and_polled) {
+  const std::vector<RawFrame> frames = random_frames(300, 21);
+  const auto terminal = target("pty:");
+  const auto serial = open("serial://" + terminal->name() + "?protocol=dermis");
+  const auto listener = target("tcp-listen://127.0.0.1:0");
+  ASSERT_TRUE(listener->open(0ms));
+  const auto tcp = open("tcp://" + listener->name() + "?protocol=dermis");
+  ASSERT_TRUE(*listener->open(kLong));
+  for (const auto& [device, source] : {std::pair(terminal.get(), serial.get()), std::pair(listener.get(), tcp.get())}) {
+    ASSERT_TRUE(source->readiness());
+    RawFrame frame;
+    EXPECT_EQ(*source->poll(frame), Polled::nothing) << "does not wait";
+    std::thread sender([&to = *device, &frames] { send(to, encoded(frames)); });
+    expect_polled_frames(*source, frames);
+    sender.join();
+  }
+}
+
+TEST(DeviceSource, a_polled_device_that_comes_back_is_read_on) {
+  const auto listener = target("tcp-listen://127.0.0.1:0");
+  ASSERT_TRUE(listener->open(0ms));
+  const std::vector<RawFrame> frames = random_frames(4, 22);
+  const auto source = open("tcp://" + listener->name() + "?protocol=dermis&reconnect_s=20");
+  std::thread peer([&] {
+    ASSERT_TRUE(*listener->open(kLong));
+    send(*listener, encoded({frames[0], frames[1]}));
+    while (!*listener->open(kLong)) {
+    }
+    send(*listener, encoded({frames[2], frames[3]}));
+  });
+  expect_polled_frames(*source, frames);
+  peer.join();
+  EXPECT_EQ(source->statistics().reconnections, 1U);
+}
+
+TEST(DeviceSource, a_polled_source_ends_by_the_flag) {
+  const auto device = target("pty:");
+  std::atomic<bool> stop = false;
+  DeviceOptions options;
+  options.stop = &stop;
+  const auto source = open("serial://" + device->name() + "?protocol=dermis", options);
+  RawFrame frame;
+  EXPECT_EQ(*source->poll(frame), Polled::nothing);
+  stop = true;
+  EXPECT_EQ(*source->poll(frame), Polled::end);
 }
 
 TEST(DeviceSource, reads_files_to_their_end) {

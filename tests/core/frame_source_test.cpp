@@ -35,6 +35,11 @@ TEST(FrameSource, is_read_to_its_end_through_the_interface) {
   EXPECT_EQ(counts, (std::vector<float>{0.0F, 1.0F}));
 }
 
+TEST(FrameSource, cannot_be_waited_for_beside_others_unless_it_says_so) {
+  const std::unique_ptr<FrameSource> source = std::make_unique<TwoFrames>();
+  EXPECT_FALSE(source->readiness());
+}
+
 TEST(FrameSource, is_a_file_of_numbered_frames_unless_it_says_otherwise) {
   const std::unique_ptr<FrameSource> source = std::make_unique<TwoFrames>();
   EXPECT_FALSE(source->is_live());

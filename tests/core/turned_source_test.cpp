@@ -23,6 +23,9 @@ class NumberedFrames final : public FrameSource {
     frame.counts = {0, 1, 2, 3, 4, 5};
     return true;
   }
+  [[nodiscard]] std::optional<Readiness> readiness() const override {
+    return Readiness{.due = std::chrono::seconds(5)};
+  }
   [[nodiscard]] std::optional<FrameShape> shape() const override { return shape_; }
   [[nodiscard]] SourceStatistics statistics() const override {
     SourceStatistics statistics;
@@ -54,6 +57,15 @@ TEST(TurnedSource, gives_the_frames_turned_and_everything_else_as_it_was) {
   EXPECT_EQ(source->statistics().frames, 7U);
   EXPECT_TRUE(source->is_live());
   EXPECT_EQ(source->place(), "here");
+}
+
+TEST(TurnedSource, turns_the_frames_that_it_is_polled_for) {
+  const auto source = turned_source(std::make_unique<NumberedFrames>(1), {.transpose = true, .flip_cols = true}, "mat");
+  RawFrame frame;
+  EXPECT_EQ(source->readiness()->due, std::chrono::seconds(5));
+  EXPECT_EQ(*source->poll(frame), Polled::frame);
+  EXPECT_EQ(frame.counts, (std::vector<float>{3, 0, 4, 1, 5, 2}));
+  EXPECT_EQ(*source->poll(frame), Polled::end);
 }
 
 TEST(TurnedSource, is_the_source_itself_where_nothing_is_turned) {

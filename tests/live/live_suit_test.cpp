@@ -10,8 +10,10 @@
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
+#include <map>
 #include <mutex>
 #include <numbers>
+#include <set>
 #include <thread>
 
 #include "dermis/core/random.hpp"
@@ -410,6 +412,120 @@ TEST(LiveSuit, a_recording_that_is_sought_back_begins_anew_with_its_first_frame)
   for (std::size_t k = 0; k < phases.size(); ++k) {
     EXPECT_EQ(phases[k], k % 600 == 0 ? ContactPhase::onset : ContactPhase::held) << k;
   }
+}
+
+/// Can be polled. Its frames have come already, a millisecond after each other.
+struct PolledSource final : FrameSource {
+  explicit PolledSource(SharedModel model_given)
+      : model(std::move(model_given)), counts(counts_under(*model, press_around(*model, 2, 2))) {}
+
+  Result<bool> next(RawFrame&) override { return failed("nobody waits for this source"); }
+  [[nodiscard]] std::optional<Readiness> readiness() const override { return Readiness{}; }
+  Result<Polled> poll(RawFrame& frame) override {
+    if (delivered == frames) return Polled::end;
+    if (delivered > 0 && delivered % at_once == 0 && !std::exchange(has_paused, true)) return Polled::nothing;
+    has_paused = false;
+    ++delivered;
+    frame.time = Nanos(static_cast<std::int64_t>(delivered) * 1'000'000);
+    frame.temperature_celsius = kCelsius;
+    frame.supply_v = 5.0;
+    frame.counts = counts;
+    frame.acquisition = {};
+    frame.acquisition.arrival_steady = Nanos(std::chrono::hours(1)) + frame.time;
+    return Polled::frame;
+  }
+  [[nodiscard]] std::optional<FrameShape> shape() const override {
+    return FrameShape{model->array.rows, model->array.cols};
+  }
+
+  SharedModel model;
+  std::vector<float> counts;
+  std::uint64_t frames = 1000;
+  std::uint64_t at_once = 1;
+  std::uint64_t delivered = 0;
+  bool has_paused = false;
+};
+
+TEST(LiveSuit, arrays_that_can_be_polled_share_a_thread_a_core) {
+  const SharedModel model = model_of(6, 6);
+  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+  std::vector<LiveArray> arrays;
+  for (std::size_t k = 0; k < cores + 2; ++k) {
+    arrays.push_back(array_of("a" + std::to_string(k), std::make_unique<PolledSource>(model), model));
+  }
+  std::mutex mutex;
+  std::map<std::thread::id, std::set<std::size_t>> arrays_of_thread;
+  LiveOptions options;
+  options.on_result = [&](const ArrayResult& result) {
+    const std::lock_guard lock(mutex);
+    arrays_of_thread[std::this_thread::get_id()].insert(result.array);
+  };
+  const auto suit = start_suit(std::move(arrays), std::move(options));
+  wait_until_ended(*suit);
+  EXPECT_EQ(arrays_of_thread.size(), cores);
+  for (std::size_t k = 0; k < cores + 2; ++k) {
+    EXPECT_EQ(suit->statistics(k).frames, 1000U) << k;
+    EXPECT_EQ(suit->statistics(k).skipped, 0U) << k;
+  }
+}
+
+TEST(LiveSuit, a_machine_that_does_not_follow_acquires_every_frame_and_finds_contacts_in_the_newest) {
+  const SharedModel model = model_of(6, 6);
+  auto source = std::make_unique<PolledSource>(model);
+  source->at_once = 500;
+  std::vector<Nanos> acquired;
+  std::vector<Nanos> processed;
+  LiveOptions options;
+  options.on_frame = [&](std::size_t, const RawFrame& frame) { acquired.push_back(frame.time); };
+  options.on_result = [&](const ArrayResult& result) { processed.push_back(result.raw.time); };
+  const auto suit = start_suit(arrays_of(array_of("a", std::move(source), model)), std::move(options));
+  wait_until_ended(*suit);
+  EXPECT_EQ(acquired.size(), 1000U);
+  EXPECT_TRUE(std::ranges::is_sorted(acquired));
+  EXPECT_TRUE(std::ranges::is_sorted(processed));
+  EXPECT_LE(processed.size(), 201U) << "no more wait than those of 100 ms";
+  EXPECT_EQ(processed.back(), acquired.back());
+  EXPECT_EQ(suit->statistics(0).frames, processed.size());
+  EXPECT_EQ(suit->statistics(0).skipped, 1000U - processed.size());
+}
+
+/// Can be polled for some frames, and then must be waited for as long.
+struct SometimesPolledSource final : FrameSource {
+  explicit SometimesPolledSource(std::unique_ptr<ScriptedSource> frames) : source(std::move(frames)) {}
+
+  Result<bool> next(RawFrame& frame) override { return source->next(frame); }
+  [[nodiscard]] std::optional<Readiness> readiness() const override {
+    return source->delivered / 10 % 2 == 0 ? std::optional(Readiness{}) : std::nullopt;
+  }
+  Result<Polled> poll(RawFrame& frame) override {
+    if (!readiness() || !std::exchange(is_asked_first, !is_asked_first)) return Polled::nothing;
+    return FrameSource::poll(frame);
+  }
+  [[nodiscard]] std::optional<FrameShape> shape() const override { return source->shape(); }
+
+  std::unique_ptr<ScriptedSource> source;
+  bool is_asked_first = true;
+};
+
+TEST(LiveSuit, a_source_that_must_be_waited_for_meanwhile_holds_no_other_up_and_loses_nothing) {
+  const SharedModel model = model_of(6, 6);
+  auto source = source_of(model, press_around(*model, 2, 2));
+  source->frames = 95;
+  std::vector<Nanos> times;
+  LiveOptions options;
+  options.on_result = [&](const ArrayResult& result) {
+    if (result.array == 0) times.push_back(result.raw.time);
+  };
+  const auto suit =
+      start_suit(arrays_of(array_of("sometimes", std::make_unique<SometimesPolledSource>(std::move(source)), model),
+                           array_of("polled", std::make_unique<PolledSource>(model), model)),
+                 std::move(options));
+  wait_until_ended(*suit);
+  ASSERT_EQ(times.size(), 95U);
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    EXPECT_EQ(times[k], Nanos(static_cast<std::int64_t>(k) * 1'000'000));
+  }
+  EXPECT_EQ(suit->statistics(1).frames, 1000U);
 }
 
 TEST(LiveSuit, allocates_nothing_after_the_first_frames) {

@@ -202,13 +202,14 @@ TEST(LiveMessages, what_is_not_known_of_a_calibration_is_told) {
 TEST(LiveMessages, statistics_have_all_of_their_fields) {
   Statistics statistics;
   statistics.time = kTime;
-  statistics.arrays = {{"chest", true, "the port is gone", 1, 2, 3, 4, 999.5, 2e-5, 1.5e-5, 6e-5, 31.5, 5.02}};
+  statistics.arrays = {{"chest", true, "the port is gone", 1, 2, 3, 4, 999.5, 2e-5, 1.5e-5, 6e-5, 31.5, 5.02, 7}};
   statistics.recording = true;
   statistics.recording_file = "r.mcap";
   statistics.recording_frames = 1ULL << 40U;
   statistics.clients = 3;
   statistics.client_drops = 5;
   statistics.recording_left_out = 6;
+  statistics.frames_not_streamed = 8;
   std::vector<std::uint8_t> message;
   encode_statistics(statistics, "suit", message);
   EXPECT_EQ(read_by_definition(statistics_type(), message), json({{"header", header()},
@@ -225,13 +226,15 @@ TEST(LiveMessages, statistics_have_all_of_their_fields) {
                                                                      {"latency_p50_s", 1.5e-5},
                                                                      {"latency_p99_s", 6e-5},
                                                                      {"temperature_celsius", 31.5},
-                                                                     {"supply_v", 5.02}}}},
+                                                                     {"supply_v", 5.02},
+                                                                     {"skipped", 7}}}},
                                                                   {"recording", true},
                                                                   {"recording_file", "r.mcap"},
                                                                   {"recording_frames", 1ULL << 40U},
                                                                   {"clients", 3},
                                                                   {"client_drops", 5},
-                                                                  {"recording_left_out", 6}}));
+                                                                  {"recording_left_out", 6},
+                                                                  {"frames_not_streamed", 8}}));
 }
 
 TEST(LiveMessages, diagnoses_and_transforms_read_back) {

@@ -47,7 +47,9 @@ struct Frame {
     report.contacts.push_back(contact);
     contacts.push_back({0, contact, {}, {}});
   }
-  [[nodiscard]] live::ArrayResult result() const { return {0, raw, conductance, force, report, contacts}; }
+  [[nodiscard]] live::ArrayResult result(Nanos latency = {}) const {
+    return {0, raw, conductance, force, report, contacts, latency};
+  }
 };
 
 /// The topics of one array, and the channel "/end" behind all that it publishes.
@@ -91,6 +93,18 @@ class TopicsOfFrames : public testing::Test {
   stream::ChannelId end_ = 0;
   std::unique_ptr<StreamClient> client_;
 };
+
+TEST_F(TopicsOfFrames, frames_that_are_late_already_are_thinned_and_counted) {
+  listen_to({"/chest/force"});
+  for (std::int64_t k = 0; k < 100; ++k) frame_topics_->hear(Frame(k * 100 * kMillisecond).result(Nanos(1'000'000)));
+  EXPECT_EQ(heard()["/chest/force"].size(), 100U);
+  EXPECT_EQ(topics_->frames_not_streamed(), 0U);
+  for (std::int64_t k = 100; k < 200; ++k) {
+    frame_topics_->hear(Frame(k * 100 * kMillisecond).result(Nanos(50'000'000)));
+  }
+  EXPECT_EQ(heard()["/chest/force"].size(), 10U);
+  EXPECT_EQ(topics_->frames_not_streamed(), 90U);
+}
 
 TEST_F(TopicsOfFrames, a_fast_array_is_streamed_evenly_at_the_rate_that_is_set) {
   listen_to({"/chest/force"});

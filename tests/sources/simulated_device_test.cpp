@@ -60,6 +60,21 @@ TEST(SimulatedDevice, loses_frames_that_are_not_fetched_within_500_ms) {
   EXPECT_LE(last_lost, late.acquisition.arrival_utc - 500ms) << "nothing younger is lost";
 }
 
+TEST(SimulatedDevice, gives_what_is_due_when_it_is_polled) {
+  std::atomic<bool> stop = false;
+  SimulatedDevice device(count, kShape, 1e-3, &stop);
+  RawFrame frame;
+  ASSERT_TRUE(device.readiness());
+  EXPECT_EQ(device.readiness()->due, Nanos{}) << "the first frame is there at once";
+  EXPECT_EQ(*device.poll(frame), Polled::frame);
+  EXPECT_EQ(device.readiness()->due,
+            frame.acquisition.device_time.value() +
+                (frame.acquisition.arrival_steady - (frame.acquisition.arrival_utc - frame.time)) + 1000s);
+  EXPECT_EQ(*device.poll(frame), Polled::nothing) << "the next is due in a quarter of an hour";
+  stop = true;
+  EXPECT_EQ(*device.poll(frame), Polled::end);
+}
+
 TEST(SimulatedDevice, ends_where_the_stop_flag_is_set) {
   std::atomic<bool> stop = false;
   SimulatedDevice device(count, kShape, 1e-3, &stop);

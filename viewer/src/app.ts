@@ -44,6 +44,7 @@ export class App implements ViewContext {
   #noticeTimer = 0;
 
   constructor() {
+    this.stream.connect(); // the server answers while the views are made
     this.#views = VIEWS.map((create) => create(this));
     this.#bar = new Bar(this, this.#views, {
       toggleRecording: () => this.#toggle("/recording"),
@@ -90,7 +91,6 @@ export class App implements ViewContext {
       (array) => array !== undefined && this.#shown !== undefined && this.open(this.#shown.name),
     );
     this.#route();
-    this.stream.connect();
     requestAnimationFrame(this.#drawNext);
   }
 

@@ -36,11 +36,14 @@ class ByteStream {
   /// place and the remedy.
   [[nodiscard]] virtual Result<bool> open(Nanos timeout) = 0;
 
-  /// Reads the bytes that have come, or waits for some.
+  /// Reads the bytes that have come, or waits for some. Without a timeout it does not wait.
   [[nodiscard]] virtual Transferred read(std::span<std::uint8_t> into, Nanos timeout) = 0;
 
   /// Writes the bytes that the other side accepts within the time.
   [[nodiscard]] virtual Transferred write(std::span<const std::uint8_t> bytes, Nanos timeout) = 0;
+
+  /// Readable while read() has bytes of an open stream; below 0 where that cannot be told.
+  [[nodiscard]] virtual int descriptor() const { return -1; }
 
   /// Readable name of the opened place: "/dev/ttyACM0", "127.0.0.1:7000", the name of a new pty.
   [[nodiscard]] virtual std::string name() const = 0;

@@ -37,6 +37,15 @@ struct SourceStatistics {
   bool operator==(const SourceStatistics&) const = default;
 };
 
+/// A caller of several sources waits for the earlier of these, and polls then.
+struct Readiness {
+  int descriptor = -1;  ///< Readable when bytes have come; below 0: there is none.
+  Nanos due{};          ///< A moment by the steady clock.
+};
+
+/// Outcome of FrameSource::poll().
+enum class Polled { frame, nothing, end };
+
 /// Where frames come from: a device, a recording or the simulator. Callers never ask which.
 /// Not thread-safe: one reader.
 class FrameSource {
@@ -48,6 +57,16 @@ class FrameSource {
 
   /// Fills `frame` with the next frame, reusing its buffers. Returns false at the end of the source.
   [[nodiscard]] virtual Result<bool> next(RawFrame& frame) = 0;
+
+  /// The next poll() is worth its while then. Empty where only next() can wait: of files, and of devices that are away.
+  [[nodiscard]] virtual std::optional<Readiness> readiness() const { return std::nullopt; }
+
+  /// Does the same as next() without waiting, where readiness() is known. Call it until it gives nothing.
+  [[nodiscard]] virtual Result<Polled> poll(RawFrame& frame) {
+    const Result<bool> more = next(frame);
+    if (!more) return more.error();
+    return *more ? Polled::frame : Polled::end;
+  }
 
   /// Empty if it is known only with the first frame.
   [[nodiscard]] virtual std::optional<FrameShape> shape() const = 0;

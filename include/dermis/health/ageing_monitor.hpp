@@ -68,6 +68,8 @@ class AgeingMonitor {
     double sum_weight = 0.0;
   };
 
+  void take_row(const ForceFrame& force, std::size_t row) noexcept;
+  void compare_row(std::size_t row) noexcept;
   void compare(Block& block, std::size_t taxel) noexcept;
   void end_touch(Block& block) noexcept;
 
@@ -75,7 +77,9 @@ class AgeingMonitor {
   std::size_t cols_;
   double calibrated_spread_;
   std::vector<Block> blocks_;       // [rows - 1, cols - 1]
-  std::vector<float> log_newtons_;  // NaN: not pressed [taxels]
+  std::vector<float> log_newtons_;  // NaN: not pressed [taxels]; as before in rows that are not pressed
+  std::vector<bool> is_pressed_;    // a taxel of the row
+  std::vector<bool> is_compared_;   // the row with the next one
   std::size_t comparisons_ = 0;
 };
 

@@ -23,7 +23,7 @@
 #include "dermis/pipeline/standing_load.hpp"
 #include "dermis/pipeline/tare.hpp"
 
-/// A suit at work: every array on its own thread, one clock, one stream of results.
+/// A suit at work: arrays share threads, one clock, one stream of results.
 namespace dermis::live {
 
 /// One array of the suit, ready to work.
@@ -42,6 +42,7 @@ struct ArrayResult {
   const ForceFrame& force;
   const ContactReport& report;
   std::span<const SuitContact> contacts;
+  Nanos latency{};  ///< From the arrival of the last byte to now; 0 where the source does not know when that was.
 };
 
 /// How an array is doing.
@@ -49,6 +50,7 @@ struct ArrayStatistics {
   SourceStatistics source;
   std::uint64_t frames = 0;    ///< Through the pipeline.
   std::uint64_t rejected = 0;  ///< Of them.
+  std::uint64_t skipped = 0;   ///< Acquired, but left out by the pipeline: the machine did not follow.
   Nanos latency_p50{};         ///< From the arrival of the last byte to the contacts, over the last seconds;
   Nanos latency_p99{};         ///< 0 where the source does not know when its frames came.
   bool ended = false;          ///< The source has no more, or failed:
@@ -72,14 +74,18 @@ struct LiveSettings {
 
 struct LiveOptions {
   LiveSettings settings{};
-  /// Called for every frame of every array, on the thread of that array, several at once. It must be quick and
-  /// thread-safe, and must not call the suit.
+  /// Called for every frame of every array when it has come, before it is processed: for recordings. It may be called
+  /// for several arrays at once, for each by one thread at a time. It must be quick and thread-safe, and must not call
+  /// the suit.
+  std::function<void(std::size_t array, const RawFrame&)> on_frame{};
+  /// The same for the results of every frame that was processed.
   std::function<void(const ArrayResult&)> on_result{};
   std::function<void(const std::string&)> notice{};  ///< One line for the log; on the thread of an array.
 };
 
 /// Runs all arrays until their sources end or stop() is called. A source that fails ends only its array. Settings take
-/// effect with an array's next frame. Thread-safe.
+/// effect with an array's next frame. Where the machine does not follow, all frames are acquired, and old ones are not
+/// processed. Thread-safe.
 class LiveSuit {
  public:
   /// Fails, as "array 'chest': ...", if a model cannot work or does not fit its source or its surface.

@@ -74,6 +74,7 @@ struct ArrayStatistics {
   double latency_p99_s = 0.0;
   double temperature_celsius = std::numeric_limits<double>::quiet_NaN();  ///< NaN: not known.
   double supply_v = std::numeric_limits<double>::quiet_NaN();             ///< NaN: not known.
+  std::uint64_t skipped = 0;
 };
 struct Statistics {
   Nanos time{};
@@ -84,6 +85,7 @@ struct Statistics {
   std::uint32_t clients = 0;
   std::uint64_t client_drops = 0;
   std::uint64_t recording_left_out = 0;
+  std::uint64_t frames_not_streamed = 0;
 };
 void encode_statistics(const Statistics& statistics, std::string_view frame_id, std::vector<std::uint8_t>& message);
 

@@ -58,6 +58,7 @@ class HealthPart final : public Part {
     const stream::ServerStatistics server = host_.server.statistics();
     statistics.clients = static_cast<std::uint32_t>(server.clients);
     statistics.client_drops = server.dropped;
+    statistics.frames_not_streamed = host_.topics.frames_not_streamed();
     messages::encode_statistics(statistics, kSuitFrame, message_);
     statistics_.publish(statistics.time, message_);
   }
@@ -76,10 +77,24 @@ class HealthPart final : public Part {
       host_.tell_error(fmt::format("the disk of the recording does not follow: {} frames are left out of {}",
                                    of_recording, host_.recorder.path()));
     }
+    report_want_of_time();
     const std::uint64_t of_dds = host_.topics.left_out();
     if (of_dds != std::exchange(left_out_of_dds_, of_dds)) {
       host_.tell_error(fmt::format("the network of DDS does not follow: {} messages are left out", of_dds));
     }
+  }
+
+  void report_want_of_time() {
+    std::uint64_t skipped = 0;
+    for (std::size_t k = 0; k < host_.suit.arrays.size(); ++k) skipped += host_.live.statistics(k).skipped;
+    const std::uint64_t not_streamed = host_.topics.frames_not_streamed();
+    const bool is_more =
+        skipped != std::exchange(skipped_, skipped) || not_streamed != std::exchange(not_streamed_, not_streamed);
+    if (!is_more) return;
+    host_.tell_error(
+        fmt::format("the machine does not follow: {} frames have no contacts, {} that were due are not "
+                    "streamed; all are acquired",
+                    skipped, not_streamed));
   }
 
   Host& host_;
@@ -88,6 +103,8 @@ class HealthPart final : public Part {
   AgeingWatch ageing_;
   std::uint64_t left_out_ = 0;  // when it was reported last
   std::uint64_t left_out_of_dds_ = 0;
+  std::uint64_t skipped_ = 0;
+  std::uint64_t not_streamed_ = 0;
   std::vector<std::uint8_t> message_;
 };
 

@@ -28,6 +28,7 @@ messages::ArrayStatistics statistics_message(const std::string& name, const live
   out.frames = array.frames;
   out.rejected = array.rejected;
   out.lost = array.source.lost_frames;
+  out.skipped = array.skipped;
   out.damaged = array.source.damaged_frames;
   out.rate_hz = array.source.rate_hz;
   out.jitter_s = seconds(array.source.jitter);

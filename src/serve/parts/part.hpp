@@ -25,7 +25,8 @@ struct LiveParameter {
 };
 
 /// One subject of the server in one place: its offers to clients, its use of frames, and its response to changes. Parts
-/// know nothing of each other (Host). Ticks and requests each come from one thread, frames from that of their array.
+/// know nothing of each other (Host). Ticks and requests each come from one thread, the frames of an array from one at
+/// a time.
 class Part {
  public:
   static constexpr int kTicksPerSecond = 30;
@@ -41,7 +42,9 @@ class Part {
   /// Does the rest of the work before clients come. Errors end the session.
   [[nodiscard]] virtual Status prepare() { return Done{}; }
 
-  /// Takes every frame of every array with its results.
+  /// Takes every frame of every array when it has come, before it is processed.
+  virtual void keep(std::size_t /*array*/, const RawFrame& /*frame*/) {}
+  /// Takes every frame of every array with its results, but those for which the machine had no time.
   virtual void hear(const live::ArrayResult& /*result*/) {}
   virtual void tick(std::int64_t /*tick*/) {}
   /// The array has another model, which is in Host::models.

@@ -20,6 +20,10 @@ Status PartList::prepare() {
   return Done{};
 }
 
+void PartList::keep(std::size_t array, const RawFrame& frame) const {
+  for (const auto& part : parts_) part->keep(array, frame);
+}
+
 void PartList::hear(const live::ArrayResult& result) const {
   for (const auto& part : parts_) part->hear(result);
 }

@@ -16,6 +16,7 @@ class PartList {
   void add(std::unique_ptr<Part> part);
   [[nodiscard]] Status prepare();
 
+  void keep(std::size_t array, const RawFrame& frame) const;
   void hear(const live::ArrayResult& result) const;
   void tick(std::int64_t tick) const;
   void model_changed(std::size_t array) const;

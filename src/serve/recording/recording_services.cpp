@@ -74,9 +74,9 @@ Status RecordingServices::switch_recorder(bool on) {
   return recorder_.begin();
 }
 
-void RecordingServices::hear(const live::ArrayResult& result) {
-  recorder_.write(result.array, result.raw);
-  last_minute_.keep(result.array, result.raw);
+void RecordingServices::keep(std::size_t array, const RawFrame& frame) {
+  recorder_.write(array, frame);
+  last_minute_.keep(array, frame);
 }
 
 Result<std::string> RecordingServices::begin(const JsonRequest& request) {

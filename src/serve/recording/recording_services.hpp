@@ -34,7 +34,7 @@ class RecordingServices final : public Part {
   /// "/recordings/begin", ... Errors: a request that is wrong; those of a recording.
   [[nodiscard]] std::vector<stream::Service> services() override;
   [[nodiscard]] std::vector<LiveParameter> parameters() override;
-  void hear(const live::ArrayResult& result) override;
+  void keep(std::size_t array, const RawFrame& frame) override;
 
  private:
   [[nodiscard]] Result<std::string> begin(const JsonRequest& request);

@@ -22,6 +22,7 @@ Result<std::unique_ptr<live::LiveSuit>> make_live(ServedSuit& suit, const PartLi
     arrays.push_back({array.name, std::move(array.source), array.model, array.surface});
   }
   live::LiveOptions live_options;
+  live_options.on_frame = [&parts](std::size_t array, const RawFrame& frame) { parts.keep(array, frame); };
   live_options.on_result = [&parts](const live::ArrayResult& result) { parts.hear(result); };
   live_options.notice = options.server.notice;
   return live::LiveSuit::create(std::move(arrays), std::move(live_options));

@@ -17,6 +17,8 @@ using stream::MessageKind;
 constexpr std::size_t kBytesOfHeader = 128;
 constexpr std::size_t kBytesOfAPoint = 20;
 constexpr Nanos kPresent = std::chrono::milliseconds(500);
+constexpr Nanos kLate = std::chrono::milliseconds(20);  // the machine does not follow
+constexpr std::uint64_t kShownOfLate = 10;              // every one of so many
 constexpr double kSlowestHz = 1.0;
 constexpr double kFastestHz = 1000.0;
 
@@ -101,7 +103,7 @@ std::vector<LiveParameter> FrameTopics::parameters() {
 
 void FrameTopics::hear(const live::ArrayResult& result) {
   Array& array = arrays_[result.array];
-  const bool due = is_due(array, result.raw.time);
+  const bool due = is_due(array, result.raw.time) && has_time_for(array, result);
   publish_images(array, result, due);
   if (points_topic_.is_wanted(ends_of(due))) points_.keep(result.array, result.force);
   if (due) stream_time_ns_ = result.raw.time.count();
@@ -114,12 +116,19 @@ void FrameTopics::hear(const live::ArrayResult& result) {
 /// is for somebody who has not seen it.
 bool FrameTopics::is_due(Array& array, Nanos time) const noexcept {
   const Nanos period(static_cast<std::int64_t>(1e9 / rate_hz_));
-  if (array.last == time) return true;
-  const bool went_back = array.last && time < *array.last;
-  const bool due = !array.last || went_back || time >= array.due;
-  if (due) array.due = !went_back && time - array.due < period ? array.due + period : time + period;
-  array.last = time;
+  if (array.pace.last == time) return true;
+  const bool went_back = array.pace.last && time < *array.pace.last;
+  const bool due = !array.pace.last || went_back || time >= array.pace.due;
+  if (due) array.pace.due = !went_back && time - array.pace.due < period ? array.pace.due + period : time + period;
+  array.pace.last = time;
   return due;
+}
+
+/// Contacts go before viewers: these get fewer of the frames that are late already.
+bool FrameTopics::has_time_for(Array& array, const live::ArrayResult& result) {
+  if (result.latency < kLate || ++array.pace.late % kShownOfLate == 0) return true;
+  topics_.thin();
+  return false;
 }
 
 void FrameTopics::publish_images(Array& array, const live::ArrayResult& result, bool is_due) {

@@ -41,7 +41,14 @@ class FrameTopics final : public Part {
     Wrench in_suit{};
   };
 
-  /// An array, touched by its thread alone but for its last press.
+  /// Which frames of an array are streamed.
+  struct Pace {
+    std::optional<Nanos> last{};  // frame that came
+    Nanos due{};
+    std::uint64_t late = 0;  // frames that were due
+  };
+
+  /// An array, touched by one thread at a time but for its last press.
   struct Array {
     const ServedArray& served;
     FrameShape shape;
@@ -53,8 +60,7 @@ class FrameTopics final : public Part {
     Topic force{};
     Topic force_sigma{};
     Topic wrench{};
-    std::optional<Nanos> last{};  // frame that came
-    Nanos due{};
+    Pace pace{};
     std::vector<std::uint8_t> message{};
     std::mutex press_mutex{};
     Press press{};
@@ -66,6 +72,7 @@ class FrameTopics final : public Part {
   [[nodiscard]] Status add_topics();
   [[nodiscard]] Status add_topics_of(Array& array);
   [[nodiscard]] bool is_due(Array& array, Nanos time) const noexcept;
+  [[nodiscard]] bool has_time_for(Array& array, const live::ArrayResult& result);
   void publish_images(Array& array, const live::ArrayResult& result, bool is_due);
   void publish_values(Array& array, const Topic& topic, std::span<const float> values, Nanos time);
   void publish_contacts(Array& array, const live::ArrayResult& result, bool is_due);

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -62,6 +63,9 @@ class Topics {
 
   /// Messages that the network of DDS did not take.
   [[nodiscard]] std::uint64_t left_out() const noexcept { return publisher_ ? publisher_->left_out() : 0; }
+  /// A frame that was due for the stream is not in it, as the machine does not follow.
+  void thin() noexcept { frames_not_streamed_.fetch_add(1, std::memory_order_relaxed); }
+  [[nodiscard]] std::uint64_t frames_not_streamed() const noexcept { return frames_not_streamed_.load(); }
   [[nodiscard]] bool has_dds() const noexcept { return publisher_ != nullptr; }
 
  private:
@@ -69,6 +73,7 @@ class Topics {
 
   stream::Server& server_;
   std::unique_ptr<dds::Publisher> publisher_;  // null: none is wanted
+  std::atomic<std::uint64_t> frames_not_streamed_ = 0;
 };
 
 }  // namespace dermis::serve

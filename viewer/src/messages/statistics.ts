@@ -26,6 +26,7 @@ export function readStatistics(message: DataView) {
     clients: reader.uint32(),
     clientDrops: reader.uint64(),
     recordingLeftOut: reader.uint64(),
+    framesNotStreamed: reader.uint64(),
   };
 }
 
@@ -46,6 +47,7 @@ function readArrayStatistics() {
     latencyP99S: reader.float64(),
     temperatureCelsius: reader.float64(),
     supplyV: reader.float64(),
+    skipped: reader.uint64(),
   };
 }
 

@@ -103,12 +103,10 @@ function compile(gl: WebGL2RenderingContext, type: GLenum, source: string): WebG
   const shader = gl.createShader(type)!;
   gl.shaderSource(shader, source);
   gl.compileShader(shader);
-  if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS) && !gl.isContextLost()) {
-    throw new Error(gl.getShaderInfoLog(shader) ?? "a shader does not compile");
-  }
   return shader;
 }
 
+/** Is compiled and linked in the background, until something is asked of it. */
 function link(gl: WebGL2RenderingContext): WebGLProgram {
   const program = gl.createProgram();
   gl.attachShader(program, compile(gl, gl.VERTEX_SHADER, VERTEX));
@@ -117,13 +115,43 @@ function link(gl: WebGL2RenderingContext): WebGLProgram {
   return program;
 }
 
+function checkLinked(gl: WebGL2RenderingContext, program: WebGLProgram): void {
+  if (gl.getProgramParameter(program, gl.LINK_STATUS) || gl.isContextLost()) return;
+  const logs = gl.getAttachedShaders(program)?.map((shader) => gl.getShaderInfoLog(shader)) ?? [];
+  throw new Error(logs.find((log) => log) ?? gl.getProgramInfoLog(program) ?? "the shaders do not link");
+}
+
+const UNIFORMS = [
+  "size",
+  "area",
+  "scale_end",
+  "interpolated",
+  "line",
+  "fault",
+  "fault_stripe",
+  "pixel_ratio",
+  "from_light",
+] as const;
+type Uniforms = Record<(typeof UNIFORMS)[number], WebGLUniformLocation | null>;
+
+/** The program is in use then. */
+function useProgram(gl: WebGL2RenderingContext, program: WebGLProgram): Uniforms {
+  checkLinked(gl, program);
+  gl.useProgram(program);
+  gl.uniform1i(gl.getUniformLocation(program, "values"), 0);
+  gl.uniform1i(gl.getUniformLocation(program, "statuses"), 1);
+  return Object.fromEntries(UNIFORMS.map((name) => [name, gl.getUniformLocation(program, name)])) as Uniforms;
+}
+
 /** Several heat maps on one canvas, drawn by one shader; each taxel as measured, or interpolated between them. */
 export class HeatMaps {
   readonly canvas: HTMLCanvasElement;
   interpolated = false;
   readonly #gl: WebGL2RenderingContext;
   readonly #maps: Map[] = [];
-  #uniforms: Record<string, WebGLUniformLocation | null> = {};
+  #program!: WebGLProgram;
+  /** From the first map that is drawn on. */
+  #uniforms: Uniforms | undefined;
   #colors: HeatMapColors = { line: [0, 0, 0], fault: [0.5, 0.5, 0.5], faultStripe: [0, 0, 0], fromLight: false };
   #pixelRatio = 1;
 
@@ -142,27 +170,11 @@ export class HeatMaps {
 
   #begin(count: number): void {
     const gl = this.#gl;
-    const program = link(gl);
-    gl.useProgram(program);
+    this.#program = link(gl);
+    this.#uniforms = undefined;
     gl.bindVertexArray(gl.createVertexArray());
     gl.enable(gl.SCISSOR_TEST);
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
-    this.#uniforms = {};
-    for (const name of [
-      "size",
-      "area",
-      "scale_end",
-      "interpolated",
-      "line",
-      "fault",
-      "fault_stripe",
-      "pixel_ratio",
-      "from_light",
-    ]) {
-      this.#uniforms[name] = gl.getUniformLocation(program, name);
-    }
-    gl.uniform1i(gl.getUniformLocation(program, "values"), 0);
-    gl.uniform1i(gl.getUniformLocation(program, "statuses"), 1);
     const areas = this.#maps.splice(0).map(({ area, scaleEnd }) => ({ area, scaleEnd }));
     for (let index = 0; index < count; ++index) {
       this.#maps.push({
@@ -233,16 +245,20 @@ export class HeatMaps {
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT);
-    gl.uniform1i(this.#uniforms.interpolated!, this.interpolated ? 1 : 0);
-    gl.uniform1f(this.#uniforms.pixel_ratio!, this.#pixelRatio);
-    gl.uniform1i(this.#uniforms.from_light!, fromLight ? 1 : 0);
-    gl.uniform3f(this.#uniforms.line!, line[0], line[1], line[2]);
-    gl.uniform3f(this.#uniforms.fault!, fault[0], fault[1], fault[2]);
-    gl.uniform3f(this.#uniforms.fault_stripe!, faultStripe[0], faultStripe[1], faultStripe[2]);
-    for (const map of this.#maps) if (map.rows > 0 && map.area.width > 0) this.#drawMap(map);
+    const maps = this.#maps.filter(({ rows, area }) => rows > 0 && area.width > 0);
+    if (maps.length === 0) return;
+    this.#uniforms ??= useProgram(gl, this.#program);
+    const uniforms = this.#uniforms;
+    gl.uniform1i(uniforms.interpolated, this.interpolated ? 1 : 0);
+    gl.uniform1f(uniforms.pixel_ratio, this.#pixelRatio);
+    gl.uniform1i(uniforms.from_light, fromLight ? 1 : 0);
+    gl.uniform3f(uniforms.line, line[0], line[1], line[2]);
+    gl.uniform3f(uniforms.fault, fault[0], fault[1], fault[2]);
+    gl.uniform3f(uniforms.fault_stripe, faultStripe[0], faultStripe[1], faultStripe[2]);
+    for (const map of maps) this.#drawMap(map, uniforms);
   }
 
-  #drawMap({ values, statuses, rows, cols, area, scaleEnd }: Map): void {
+  #drawMap({ values, statuses, rows, cols, area, scaleEnd }: Map, uniforms: Uniforms): void {
     const gl = this.#gl;
     const left = Math.round(area.left * this.#pixelRatio);
     const width = Math.round(area.width * this.#pixelRatio);
@@ -254,9 +270,9 @@ export class HeatMaps {
     gl.bindTexture(gl.TEXTURE_2D, values);
     gl.activeTexture(gl.TEXTURE1);
     gl.bindTexture(gl.TEXTURE_2D, statuses);
-    gl.uniform2i(this.#uniforms.size!, cols, rows);
-    gl.uniform4f(this.#uniforms.area!, left, bottom, width, height);
-    gl.uniform1f(this.#uniforms.scale_end!, scaleEnd);
+    gl.uniform2i(uniforms.size, cols, rows);
+    gl.uniform4f(uniforms.area, left, bottom, width, height);
+    gl.uniform1f(uniforms.scale_end, scaleEnd);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
   }
 }

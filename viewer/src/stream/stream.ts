@@ -153,9 +153,11 @@ export class Stream {
   async #attempt(): Promise<void> {
     const attempt = ++this.#attempts;
     try {
+      const listen = this.#open();
       const response = await this.#fetchSuit();
       if (attempt !== this.#attempts) return;
       if (response.status === 401 || response.status === 403) {
+        this.#drop();
         this.connection.value = { kind: "wrong token" };
         return;
       }
@@ -163,7 +165,7 @@ export class Stream {
       const suit = (await response.json()) as SuitDescription;
       if (attempt !== this.#attempts) return;
       this.#onSuit(suit);
-      this.#open();
+      listen();
     } catch {
       if (attempt === this.#attempts) this.#retry();
     }
@@ -176,16 +178,23 @@ export class Stream {
     return address;
   }
 
-  #open(): void {
+  /** While the description of the suit is on its way. Messages wait for the call of the answer. */
+  #open(): () => void {
     const address = this.#address("./");
     address.protocol = address.protocol.replace("http", "ws");
     const socket = new WebSocket(address, protocol.SUBPROTOCOLS);
     socket.binaryType = "arraybuffer";
-    socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => this.#receive(event.data);
-    socket.onclose = () => this.#retry();
+    const early: (string | ArrayBuffer)[] = [];
+    socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => early.push(event.data);
     this.#socket = socket;
-    this.#lastMessageMs = performance.now();
-    this.#watch();
+    return () => {
+      if (socket.readyState >= WebSocket.CLOSING) throw new Error("the connection was closed");
+      socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => this.#receive(event.data);
+      socket.onclose = () => this.#retry();
+      this.#lastMessageMs = performance.now();
+      this.#watch();
+      for (const data of early) this.#receive(data);
+    };
   }
 
   /** A server whose machine is gone closes nothing: silence is an end, too. */

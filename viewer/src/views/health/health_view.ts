@@ -16,6 +16,7 @@ const HEADS = [
   "Lost",
   "Damaged",
   "Rejected",
+  "Skipped",
   "Latency p50",
   "p99",
   "Temperature",
@@ -57,13 +58,14 @@ class ArrayRow implements Row<ArrayStatistics> {
       count(array.lost),
       count(array.damaged),
       count(array.rejected),
+      count(array.skipped),
       time(array.latencyP50S),
       time(array.latencyP99S),
       known(array.temperatureCelsius, 1, "\u00b0C"),
       known(array.supplyV, 3, "V"),
     ];
     this.#cells.forEach((cell, index) => setText(cell, texts[index]!));
-    [4, 5, 6].forEach((column) =>
+    [4, 5, 6, 7].forEach((column) =>
       this.#cells[column]!.classList.toggle("attention", this.#cells[column]!.textContent !== "0"),
     );
   }
@@ -135,6 +137,7 @@ class HealthView implements View {
       ["Connections lost", count(Math.max(0, stream.reconnects))],
       ["Clients of the server", server === undefined ? fixed(NaN, 0) : count(server.clients)],
       ["Messages slow clients missed", server === undefined ? fixed(NaN, 0) : count(server.clientDrops)],
+      ["Frames not streamed for want of time", server === undefined ? fixed(NaN, 0) : count(server.framesNotStreamed)],
       ["Recording", recordingWords(server)],
     ];
     this.#showPairs(pairs);
