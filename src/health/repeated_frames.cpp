@@ -4,6 +4,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 namespace dermis::health {
 namespace {
 
@@ -12,6 +14,11 @@ constexpr std::size_t kLongRun = 100;
 constexpr double kNoisyShare = 0.3;     // of readings that change in a frame that is measured
 constexpr double kManyRepeated = 0.25;  // of the frames
 
+/// A readout that cuts small readings off sends the same value of all taxels as long as nothing is pressed.
+bool is_cut_off(std::span<const float> counts) {
+  return std::all_of(counts.begin(), counts.end(), [&](float count) { return count == counts.front(); });
+}
+
 }  // namespace
 
 void RepeatedFrames::add(std::span<const float> counts) {
@@ -19,8 +26,9 @@ void RepeatedFrames::add(std::span<const float> counts) {
   for (std::size_t taxel = 0; taxel < last_.size(); ++taxel) changed += counts[taxel] != last_[taxel] ? 1 : 0;
   last_.assign(counts.begin(), counts.end());
   changed_readings_ += changed;
-  run_ = changed == 0 ? run_ + 1 : 0;
-  repeated_ += changed == 0 ? 1 : 0;
+  const bool is_repeated = changed == 0 && !is_cut_off(counts);
+  run_ = is_repeated ? run_ + 1 : 0;
+  repeated_ += is_repeated ? 1 : 0;
   if (run_ > longest_) {
     longest_ = run_;
     longest_end_ = frames_;

@@ -51,5 +51,15 @@ TEST(RepeatedFrames, an_array_without_noise_may_rest) {
   EXPECT_EQ(frames.remark(), std::nullopt);
 }
 
+TEST(RepeatedFrames, a_readout_that_cuts_off_what_nothing_presses_does_not_hang) {
+  Random random(3);
+  RepeatedFrames frames;
+  for (int k = 0; k < 400; ++k) {
+    frames.add(k / 200 == 0 ? noisy_frame(random) : std::vector<float>(64, 0.0F));
+  }
+  EXPECT_EQ(frames.finding(), std::nullopt);
+  EXPECT_EQ(frames.remark(), std::nullopt);
+}
+
 }  // namespace
 }  // namespace dermis::health
