@@ -38,8 +38,28 @@ hn::Vec<D> signed_material(D d, const MemoryStep& step, std::size_t first, hn::V
   return hn::IfThenElse(hn::Gt(material, hn::Zero(d)), material, hn::LoadU(d, step.sums->newtons.data() + first));
 }
 
+/// What the stops make of a load: 1 + sum_j h_j m_j / 2.
 template <class D>
-void step_lanes(D d, const MemoryStep& step, std::size_t first, float* newtons, float* sigma_newtons) {
+hn::Vec<D> moved_stops(D d, const MemoryStep& step, std::size_t first, hn::Vec<D> load) {
+  const auto one = hn::Set(d, 1.0F);
+  if (!step.has_gap) return one;
+  const std::size_t taxels = step.newtons.size();
+  const auto logarithm = hn::Log1p(d, load);
+  const auto change = hn::Sub(logarithm, hn::LoadU(d, step.logarithm.data() + first));
+  hn::StoreU(logarithm, d, step.logarithm.data() + first);
+  auto share = one;
+  for (std::size_t j = 0; j < step.half_gap.size(); ++j) {
+    float* const at = step.stops.data() + j * taxels + first;
+    const auto moved = hn::MulAdd(change, hn::Set(d, 1.0F / MemoryLaw::kStopReach[j]), hn::LoadU(d, at));
+    const auto stop = hn::Clamp(moved, hn::Neg(one), one);
+    hn::StoreU(stop, d, at);
+    share = hn::MulAdd(hn::Set(d, step.half_gap[j]), stop, share);
+  }
+  return share;
+}
+
+template <class D>
+void step_lanes(D d, const MemoryStep& step, std::size_t first, float* newtons) {
   const std::size_t taxels = step.newtons.size();
   const auto one = hn::Set(d, 1.0F);
   const auto material = hn::LoadU(d, newtons + first);
@@ -62,20 +82,12 @@ void step_lanes(D d, const MemoryStep& step, std::size_t first, float* newtons, 
     const auto state = hn::LoadU(d, at);
     hn::StoreU(hn::MulAdd(hn::Set(d, step.approach[k]), hn::Sub(signed_load, state), state), d, at);
   }
-  const auto logarithm = hn::Log1p(d, load);
-  const auto change = hn::Sub(logarithm, hn::LoadU(d, step.logarithm.data() + first));
-  hn::StoreU(logarithm, d, step.logarithm.data() + first);
-  auto share = one;
-  for (std::size_t j = 0; j < step.half_gap.size(); ++j) {
-    float* const at = step.stops.data() + j * taxels + first;
-    const auto moved = hn::MulAdd(change, hn::Set(d, 1.0F / MemoryLaw::kStopReach[j]), hn::LoadU(d, at));
-    const auto stop = hn::Clamp(moved, hn::Neg(one), one);
-    hn::StoreU(stop, d, at);
-    share = hn::MulAdd(hn::Set(d, step.half_gap[j]), stop, share);
-  }
+  const auto share = moved_stops(d, step, first, load);
   const auto freed = hn::Mul(load, share);
   hn::StoreU(hn::IfThenElse(is_known, freed, material), d, newtons + first);
-  const auto sigma = hn::LoadU(d, sigma_newtons + first);
+  if (step.sigma_newtons.empty()) return;
+  float* const sigma_newtons = step.sigma_newtons.data() + first;
+  const auto sigma = hn::LoadU(d, sigma_newtons);
   const auto noise = hn::LoadU(d, step.noise_newtons.data() + first);
   const auto lasting = hn::Max(hn::MulSub(sigma, sigma, hn::Mul(noise, noise)), hn::Zero(d));
   const auto growth = hn::Max(hn::IfThenElse(hn::Gt(material, hn::Zero(d)), hn::Div(freed, material), one), one);
@@ -83,17 +95,17 @@ void step_lanes(D d, const MemoryStep& step, std::size_t first, float* newtons, 
   const auto noise_now = hn::Mul(noise, by_noise);
   const auto variance = hn::MulAdd(hn::Mul(growth, growth), lasting, hn::Mul(noise_now, noise_now));
   const auto least = hn::Set(d, std::numeric_limits<float>::min());
-  hn::StoreU(hn::IfThenElse(is_known, hn::Max(hn::Sqrt(variance), least), sigma), d, sigma_newtons + first);
+  hn::StoreU(hn::IfThenElse(is_known, hn::Max(hn::Sqrt(variance), least), sigma), d, sigma_newtons);
   if (step.sums != nullptr) free_sums(d, *step.sums, first, late, by_noise, growth);
 }
 
-void step_all(const MemoryStep& step, float* newtons, float* sigma_newtons) {
+void step_all(const MemoryStep& step, float* newtons) {
   const hn::ScalableTag<float> d;
   const std::size_t taxels = step.newtons.size();
   const std::size_t lanes = hn::Lanes(d);
   std::size_t first = 0;
-  for (; first + lanes <= taxels; first += lanes) step_lanes(d, step, first, newtons, sigma_newtons);
-  for (; first < taxels; ++first) step_lanes(hn::CappedTag<float, 1>(), step, first, newtons, sigma_newtons);
+  for (; first + lanes <= taxels; first += lanes) step_lanes(d, step, first, newtons);
+  for (; first < taxels; ++first) step_lanes(hn::CappedTag<float, 1>(), step, first, newtons);
 }
 
 }  // namespace dermis::fusion::HWY_NAMESPACE
@@ -104,8 +116,8 @@ namespace dermis::fusion {
 
 HWY_EXPORT(step_all);
 
-void step_memory(const MemoryStep& step, std::span<float> newtons, std::span<float> sigma_newtons) noexcept {
-  HWY_DYNAMIC_DISPATCH(step_all)(step, newtons.data(), sigma_newtons.data());
+void step_memory(const MemoryStep& step, std::span<float> newtons) noexcept {
+  HWY_DYNAMIC_DISPATCH(step_all)(step, newtons.data());
 }
 
 }  // namespace dermis::fusion

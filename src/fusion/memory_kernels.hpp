@@ -15,7 +15,9 @@ struct MemoryStep {
   std::array<float, MemoryLaw::kCreepSeconds.size()> approach{};  ///< a_k
   std::array<float, MemoryLaw::kCreepSeconds.size()> late{};      ///< c_k (1 - a_k)
   std::array<float, MemoryLaw::kStopReach.size()> half_gap{};     ///< h_j / 2
+  bool has_gap = false;                                           ///< Some h_j is not zero.
   std::span<const float> noise_newtons;                           ///< Of u.
+  std::span<float> sigma_newtons;                                 ///< Grows; empty, as the noise: nobody asks.
   std::span<float> newtons;                                       ///< f, then the one of this step
   std::span<float> logarithm;                                     ///< ln(1 + f), likewise
   std::span<float> late_newtons;                                  ///< s_k [4, taxels], likewise
@@ -24,6 +26,6 @@ struct MemoryStep {
 };
 
 /// Felt forces become those that are freed of the memory; NaN stays.
-void step_memory(const MemoryStep& step, std::span<float> newtons, std::span<float> sigma_newtons) noexcept;
+void step_memory(const MemoryStep& step, std::span<float> newtons) noexcept;
 
 }  // namespace dermis::fusion
