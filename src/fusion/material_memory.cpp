@@ -13,6 +13,7 @@
 namespace dermis::fusion {
 namespace {
 
+constexpr MaterialMemory::Approach kAtOnce{1.0, 1.0, 1.0, 1.0};
 constexpr float kMostRemembered = 0.9F;  // of a load: the inverse multiplies noise by ten there
 
 template <typename Shares>
@@ -32,26 +33,41 @@ MaterialMemory::MaterialMemory(const MemoryLaw& law, std::size_t taxels)
   assert(law.is_consistent());
 }
 
+MaterialMemory::Approach MaterialMemory::approach(Nanos interval) noexcept {
+  const double seconds = std::chrono::duration<double>(interval).count();
+  Approach approach;
+  for (std::size_t k = 0; k < approach.size(); ++k) approach[k] = -std::expm1(-seconds / MemoryLaw::kCreepSeconds[k]);
+  return approach;
+}
+
 void MaterialMemory::process(ForceFrame& force, std::span<const float> noise_newtons) noexcept {
   assert(force.newtons.size() == taxels_ && noise_newtons.size() == taxels_);
   if (has(force.status, FrameStatus::rejected)) return;
   if (time_ && force.time < *time_) forget();
+  MemoryStep step = this->step(time_ ? approach(force.time - *time_) : kAtOnce);
+  step.noise_newtons = noise_newtons;
+  step.sigma_newtons = force.sigma_newtons;
+  if (!force.sums.newtons.empty()) step.sums = &force.sums;
+  step_memory(step, force.newtons);
+  time_ = force.time;
+}
+
+void MaterialMemory::process(std::span<float> newtons, const std::optional<Approach>& approach) noexcept {
+  assert(newtons.size() == taxels_);
+  if (!approach) forget();
+  step_memory(step(approach.value_or(kAtOnce)), newtons);
+}
+
+MemoryStep MaterialMemory::step(const Approach& approach) noexcept {
   MemoryStep step;
   step.states = states_;
-  for (std::size_t k = 0; k < law_.creep.size(); ++k) {
-    double approach = 1.0;
-    if (time_) {
-      const double seconds = std::chrono::duration<double>(force.time - *time_).count();
-      approach = -std::expm1(-seconds / MemoryLaw::kCreepSeconds[k]);
-    }
-    step.approach[k] = static_cast<float>(approach);
-    step.late[k] = static_cast<float>(static_cast<double>(law_.creep[k]) * (1.0 - approach));
+  for (std::size_t k = 0; k < approach.size(); ++k) {
+    step.approach[k] = static_cast<float>(approach[k]);
+    step.late[k] = static_cast<float>(static_cast<double>(law_.creep[k]) * (1.0 - approach[k]));
   }
   for (std::size_t j = 0; j < law_.gap.size(); ++j) step.half_gap[j] = 0.5F * law_.gap[j];
-  step.noise_newtons = noise_newtons;
-  if (!force.sums.newtons.empty()) step.sums = &force.sums;
-  step_memory(step, force.newtons, force.sigma_newtons);
-  time_ = force.time;
+  step.has_gap = law_.gap != decltype(law_.gap){};
+  return step;
 }
 
 void MaterialMemory::forget() noexcept {

@@ -38,11 +38,28 @@ hn::Vec<D> signed_material(D d, const MemoryStep& step, std::size_t first, hn::V
   return hn::IfThenElse(hn::Gt(material, hn::Zero(d)), material, hn::LoadU(d, step.sums->newtons.data() + first));
 }
 
+/// What the stops make of a load: 1 + sum_j h_j m_j / 2.
 template <class D>
-HWY_INLINE void step_lanes(D d, const MemoryStep& step, std::size_t first, float* newtons, float* sigma_newtons) {
+HWY_INLINE hn::Vec<D> moved_stops(D d, const MemoryStep& step, float* states, hn::Vec<D> load) {
+  const auto one = hn::Set(d, 1.0F);
+  if (!step.has_gap) return one;
+  const auto logarithm = hn::Log(d, hn::Add(load, one));
+  const auto change = hn::Sub(logarithm, hn::LoadU(d, states + kLogarithm * kTile));
+  hn::StoreU(logarithm, d, states + kLogarithm * kTile);
+  auto share = one;
+  for (std::size_t j = 0; j < step.half_gap.size(); ++j) {
+    float* const at = states + (kStops + j) * kTile;
+    const auto moved = hn::MulAdd(change, hn::Set(d, 1.0F / MemoryLaw::kStopReach[j]), hn::LoadU(d, at));
+    const auto stop = hn::Clamp(moved, hn::Neg(one), one);
+    hn::StoreU(stop, d, at);
+    share = hn::MulAdd(hn::Set(d, step.half_gap[j]), stop, share);
+  }
+  return share;
+}
+
+template <class D>
+HWY_INLINE void step_lanes(D d, const MemoryStep& step, std::size_t first, float* newtons) {
   float* const states = step.states.data() + first / kTile * kTile * kStates + first % kTile;
-  const auto state = [&](std::size_t which) { return hn::LoadU(d, states + which * kTile); };
-  const auto remember = [&](std::size_t which, hn::Vec<D> value) { hn::StoreU(value, d, states + which * kTile); };
   constexpr std::size_t kCreeps = MemoryLaw::kCreepSeconds.size();
   const auto one = hn::Set(d, 1.0F);
   const auto material = hn::LoadU(d, newtons + first);
@@ -51,32 +68,27 @@ HWY_INLINE void step_lanes(D d, const MemoryStep& step, std::size_t first, float
   float of_load = 1.0F;
   hn::Vec<D> creep[kCreeps];
   for (std::size_t k = 0; k < kCreeps; ++k) {
-    creep[k] = state(kLate + k);
+    creep[k] = hn::LoadU(d, states + (kLate + k) * kTile);
     late = hn::MulAdd(hn::Set(d, step.late[k]), creep[k], late);
     of_load -= step.late[k];
   }
   const auto gain = hn::Set(d, 1.0F / of_load);
   const auto most = hn::Set(d, kMostNewtons);
   const auto limited = hn::Mul(hn::Sub(signed_material(d, step, first, material), late), gain);
-  const auto signed_load = hn::IfThenElse(is_known, hn::Clamp(limited, hn::Neg(most), most), state(kLoad));
+  const auto signed_load =
+      hn::IfThenElse(is_known, hn::Clamp(limited, hn::Neg(most), most), hn::LoadU(d, states + kLoad * kTile));
   const auto load = hn::Max(signed_load, hn::Zero(d));
-  const auto logarithm = hn::Log(d, hn::Add(load, one));
-  const auto change = hn::Sub(logarithm, state(kLogarithm));
-  remember(kLoad, load);
-  remember(kLogarithm, logarithm);
+  hn::StoreU(load, d, states + kLoad * kTile);
   for (std::size_t k = 0; k < kCreeps; ++k) {
-    remember(kLate + k, hn::MulAdd(hn::Set(d, step.approach[k]), hn::Sub(signed_load, creep[k]), creep[k]));
+    const auto moved = hn::MulAdd(hn::Set(d, step.approach[k]), hn::Sub(signed_load, creep[k]), creep[k]);
+    hn::StoreU(moved, d, states + (kLate + k) * kTile);
   }
-  auto share = one;
-  for (std::size_t j = 0; j < step.half_gap.size(); ++j) {
-    const auto moved = hn::MulAdd(change, hn::Set(d, 1.0F / MemoryLaw::kStopReach[j]), state(kStops + j));
-    const auto stop = hn::Clamp(moved, hn::Neg(one), one);
-    remember(kStops + j, stop);
-    share = hn::MulAdd(hn::Set(d, step.half_gap[j]), stop, share);
-  }
+  const auto share = moved_stops(d, step, states, load);
   const auto freed = hn::Mul(load, share);
   hn::StoreU(hn::IfThenElse(is_known, freed, material), d, newtons + first);
-  const auto sigma = hn::LoadU(d, sigma_newtons + first);
+  if (step.sigma_newtons.empty()) return;
+  float* const sigma_newtons = step.sigma_newtons.data() + first;
+  const auto sigma = hn::LoadU(d, sigma_newtons);
   const auto noise = hn::LoadU(d, step.noise_newtons.data() + first);
   const auto lasting = hn::Max(hn::MulSub(sigma, sigma, hn::Mul(noise, noise)), hn::Zero(d));
   const auto growth = hn::Max(hn::IfThenElse(hn::Gt(material, hn::Zero(d)), hn::Div(freed, material), one), one);
@@ -84,18 +96,17 @@ HWY_INLINE void step_lanes(D d, const MemoryStep& step, std::size_t first, float
   const auto noise_now = hn::Mul(noise, by_noise);
   const auto variance = hn::MulAdd(hn::Mul(growth, growth), lasting, hn::Mul(noise_now, noise_now));
   const auto least = hn::Set(d, std::numeric_limits<float>::min());
-  hn::StoreU(hn::IfThenElse(is_known, hn::Max(hn::Sqrt(variance), least), sigma), d, sigma_newtons + first);
+  hn::StoreU(hn::IfThenElse(is_known, hn::Max(hn::Sqrt(variance), least), sigma), d, sigma_newtons);
   if (step.sums != nullptr) free_sums(d, *step.sums, first, late, by_noise, growth);
 }
 
 /// By value: stores of vectors may alias what is reached through a reference.
-void step_all(const MemoryStep step, std::size_t taxels, float* newtons, float* sigma_newtons) {
-  const hn::ScalableTag<float> d;
-  static_assert(kTile % hn::MaxLanes(d) == 0);
+void step_all(const MemoryStep step, std::size_t taxels, float* newtons) {
+  const hn::CappedTag<float, kTile> d;
   const std::size_t lanes = hn::Lanes(d);
   std::size_t first = 0;
-  for (; first + lanes <= taxels; first += lanes) step_lanes(d, step, first, newtons, sigma_newtons);
-  for (; first < taxels; ++first) step_lanes(hn::CappedTag<float, 1>(), step, first, newtons, sigma_newtons);
+  for (; first + lanes <= taxels; first += lanes) step_lanes(d, step, first, newtons);
+  for (; first < taxels; ++first) step_lanes(hn::CappedTag<float, 1>(), step, first, newtons);
 }
 
 }  // namespace dermis::fusion::HWY_NAMESPACE
@@ -106,8 +117,8 @@ namespace dermis::fusion {
 
 HWY_EXPORT(step_all);
 
-void step_memory(const MemoryStep& step, std::span<float> newtons, std::span<float> sigma_newtons) noexcept {
-  HWY_DYNAMIC_DISPATCH(step_all)(step, newtons.size(), newtons.data(), sigma_newtons.data());
+void step_memory(const MemoryStep& step, std::span<float> newtons) noexcept {
+  HWY_DYNAMIC_DISPATCH(step_all)(step, newtons.size(), newtons.data());
 }
 
 }  // namespace dermis::fusion

@@ -29,12 +29,14 @@ struct MemoryStep {
   std::array<float, MemoryLaw::kCreepSeconds.size()> approach{};  ///< a_k
   std::array<float, MemoryLaw::kCreepSeconds.size()> late{};      ///< c_k (1 - a_k)
   std::array<float, MemoryLaw::kStopReach.size()> half_gap{};     ///< h_j / 2
+  bool has_gap = false;                                           ///< Some h_j is not zero.
   std::span<const float> noise_newtons;                           ///< Of u [taxels].
+  std::span<float> sigma_newtons;                                 ///< Grows; empty, as the noise: nobody asks.
   std::span<float> states;                                        ///< Of the last step, then of this one; in tiles.
   ForceSums* sums = nullptr;                                      ///< Sums of the felt forces, then of the freed ones.
 };
 
 /// Felt forces become those that are freed of the memory; NaN stays.
-void step_memory(const MemoryStep& step, std::span<float> newtons, std::span<float> sigma_newtons) noexcept;
+void step_memory(const MemoryStep& step, std::span<float> newtons) noexcept;
 
 }  // namespace dermis::fusion

@@ -106,10 +106,9 @@ HWY_INLINE void evaluate_some(D d, const BankView& bank, std::size_t first) {
 void evaluate_bank(const PerceptronShape& shape, std::size_t networks, const float* parameters, const float* inputs,
                    float* outputs, float* gradient) {
   const BankView bank{shape, networks, parameters, inputs, outputs, gradient};
-  const hn::ScalableTag<float> d;
+  const hn::CappedTag<float, kTile> d;
   const std::size_t lanes = hn::Lanes(d);
   std::size_t first = 0;
-  static_assert(kTile % hn::MaxLanes(hn::ScalableTag<float>()) == 0);
   for (; first + lanes <= bank.networks; first += lanes) evaluate_some(d, bank, first);
   for (; first < bank.networks; ++first) evaluate_some(hn::CappedTag<float, 1>(), bank, first);
 }

@@ -12,6 +12,8 @@
 
 namespace dermis::fusion {
 
+struct MemoryStep;
+
 /// The memory of the material of a sheet: how the force that it feels, which the networks give, follows the load. It is
 /// the same for all taxels, as it belongs to the rubber.
 struct MemoryLaw {
@@ -56,8 +58,17 @@ class MaterialMemory {
   /// the same frame. Allocates nothing.
   void process(ForceFrame& force, std::span<const float> noise_newtons) noexcept;
 
+  using Approach = std::array<double, MemoryLaw::kCreepSeconds.size()>;
+
+  /// a_k of an interval between frames.
+  [[nodiscard]] static Approach approach(Nanos interval) noexcept;
+
+  /// The same for bare forces [taxels], after an interval of this approach. Empty: they are the first of a recording.
+  void process(std::span<float> newtons, const std::optional<Approach>& approach) noexcept;
+
  private:
   void forget() noexcept;
+  [[nodiscard]] MemoryStep step(const Approach& approach) noexcept;
 
   MemoryLaw law_;
   std::optional<Nanos> time_;  // of the frame before

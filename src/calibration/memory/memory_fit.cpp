@@ -61,7 +61,10 @@ std::vector<KnownLoad> some_of(std::span<const KnownLoad> loads) {
 class MemoryProblem {
  public:
   MemoryProblem(const MaterialHistory& material, std::vector<KnownLoad> loads)
-      : material_(material), loads_(std::move(loads)), groups_(gain_groups(loads_, material.taxels)) {
+      : taxels_(material.taxels),
+        loads_(std::move(loads)),
+        groups_(gain_groups(loads_, material.taxels)),
+        felt_(material, loads_) {
     double log_newtons = 0.0;
     for (const KnownLoad& load : loads_) log_newtons += std::log(load.newtons) / static_cast<double>(loads_.size());
     floor_newtons_ = kFloorShare * std::exp(log_newtons);
@@ -71,7 +74,7 @@ class MemoryProblem {
 
   /// The error of each load, about relative.
   void errors(const fusion::MemoryLaw& law, std::span<double> errors) const {
-    const std::vector<FreedLoad> freed = freed_loads(material_, loads_, law);
+    const std::vector<FreedLoad> freed = felt_.freed(law);
     const std::vector<double> gain = gains(freed);
     for (std::size_t k = 0; k < loads_.size(); ++k) {
       const double error = weight(k) * (gain[groups_[k]] * freed[k].newtons - loads_[k].newtons);
@@ -118,8 +121,8 @@ class MemoryProblem {
 
   /// The gain of each taxel, and of the totals.
   [[nodiscard]] std::vector<double> gains(const std::vector<FreedLoad>& freed) const {
-    std::vector<double> above(material_.taxels + 1);
-    std::vector<double> below(material_.taxels + 1);
+    std::vector<double> above(taxels_ + 1);
+    std::vector<double> below(taxels_ + 1);
     for (std::size_t k = 0; k < loads_.size(); ++k) {
       const double square = std::pow(weight(k), 2);
       above[groups_[k]] += square * freed[k].newtons * loads_[k].newtons;
@@ -129,9 +132,10 @@ class MemoryProblem {
     return above;
   }
 
-  const MaterialHistory& material_;
+  std::size_t taxels_;
   std::vector<KnownLoad> loads_;
   std::vector<std::size_t> groups_;  // [loads]
+  FeltLoads felt_;
   double floor_newtons_ = 0.0;
 };
 
@@ -181,39 +185,63 @@ std::vector<KnownLoad> known_loads(const SampleDatabase& database, const Siemens
   return loads;
 }
 
-std::vector<FreedLoad> freed_loads(const MaterialHistory& material, std::span<const KnownLoad> loads,
-                                   const fusion::MemoryLaw& law) {
-  // Only the taxels that are asked for.
-  std::vector<std::size_t> column(material.taxels, material.taxels);
-  std::vector<std::size_t> asked;
+FeltLoads::FeltLoads(const MaterialHistory& material, std::span<const KnownLoad> loads) {
+  const std::size_t frames = loads.empty() ? 0 : loads.back().place + 1;
+  const auto newtons_of = [&](std::size_t frame, std::size_t taxel) {
+    return material.newtons[frame * material.taxels + taxel];
+  };
+  std::vector<bool> is_asked(material.taxels);
   for (const KnownLoad& load : loads) {
+    for (const std::size_t taxel : load.taxels) is_asked[taxel] = true;
+  }
+  std::vector<std::size_t> taxels;
+  std::vector<std::size_t> column(material.taxels, material.taxels);
+  for (std::size_t taxel = 0; taxel < material.taxels; ++taxel) {
+    bool is_felt = false;
+    for (std::size_t frame = 0; is_asked[taxel] && frame < frames && !is_felt; ++frame)
+      is_felt = newtons_of(frame, taxel) > 0.0F;
+    if (!is_felt) continue;
+    column[taxel] = taxels.size();
+    taxels.push_back(taxel);
+  }
+  columns_ = taxels.size();
+  for (std::size_t frame = 0; frame < frames; ++frame) {
+    for (const std::size_t taxel : taxels) newtons_.push_back(newtons_of(frame, taxel));
+    const bool is_first = frame == 0 || material.time[frame] < material.time[frame - 1];
+    approach_.emplace_back();
+    if (!is_first) approach_.back() = fusion::MaterialMemory::approach(material.time[frame] - material.time[frame - 1]);
+  }
+  for (const KnownLoad& load : loads) {
+    Felt& felt = loads_.emplace_back(Felt{load.place, {}, 0.0});
     for (const std::size_t taxel : load.taxels) {
-      if (column[taxel] != material.taxels) continue;
-      column[taxel] = asked.size();
-      asked.push_back(taxel);
+      const float newtons = newtons_of(load.place, taxel);
+      if (std::isnan(newtons)) continue;
+      felt.material_newtons += static_cast<double>(newtons);
+      if (column[taxel] != material.taxels) felt.columns.push_back(column[taxel]);
     }
   }
-  fusion::MaterialMemory memory(law, asked.size());
-  ForceFrame frame;
-  frame.sigma_newtons.assign(asked.size(), 0.0F);
-  const std::vector<float> no_noise(asked.size());
-  std::vector<FreedLoad> freed(loads.size());
-  std::size_t next = 0;
-  for (std::size_t place = 0; place < material.time.size() && next < loads.size(); ++place) {
-    const float* const row = material.newtons.data() + place * material.taxels;
-    frame.time = material.time[place];
-    frame.newtons.clear();
-    for (const std::size_t taxel : asked) frame.newtons.push_back(row[taxel]);
-    memory.process(frame, no_noise);
-    for (; next < loads.size() && loads[next].place == place; ++next) {
-      for (const std::size_t taxel : loads[next].taxels) {
-        if (std::isnan(row[taxel])) continue;
-        freed[next].material_newtons += static_cast<double>(row[taxel]);
-        freed[next].newtons += static_cast<double>(frame.newtons[column[taxel]]);
-      }
+}
+
+std::vector<FreedLoad> FeltLoads::freed(const fusion::MemoryLaw& law) const {
+  fusion::MaterialMemory memory(law, columns_);
+  std::vector<float> newtons(columns_);
+  std::vector<FreedLoad> freed;
+  for (std::size_t frame = 0; frame < approach_.size(); ++frame) {
+    std::copy_n(newtons_.begin() + static_cast<std::ptrdiff_t>(frame * columns_), columns_, newtons.begin());
+    memory.process(newtons, approach_[frame]);
+    for (; freed.size() < loads_.size() && loads_[freed.size()].place == frame;) {
+      const Felt& felt = loads_[freed.size()];
+      double sum = 0.0;
+      for (const std::size_t column : felt.columns) sum += static_cast<double>(newtons[column]);
+      freed.push_back({felt.material_newtons, sum});
     }
   }
   return freed;
+}
+
+std::vector<FreedLoad> freed_loads(const MaterialHistory& material, std::span<const KnownLoad> loads,
+                                   const fusion::MemoryLaw& law) {
+  return FeltLoads(material, loads).freed(law);
 }
 
 double memory_misfit(const MaterialHistory& material, std::span<const KnownLoad> loads, const fusion::MemoryLaw& law) {

@@ -41,6 +41,27 @@ struct FreedLoad {
   double newtons = 0.0;
 };
 
+/// Known loads with the felt forces of their taxels over a history: any law frees them.
+class FeltLoads {
+ public:
+  FeltLoads(const MaterialHistory& material, std::span<const KnownLoad> loads);
+
+  [[nodiscard]] std::vector<FreedLoad> freed(const fusion::MemoryLaw& law) const;
+
+ private:
+  /// The columns of a load at its place.
+  struct Felt {
+    std::size_t place = 0;
+    std::vector<std::size_t> columns;
+    double material_newtons = 0.0;
+  };
+
+  std::size_t columns_ = 0;     // of taxels that are asked for and felt anything
+  std::vector<float> newtons_;  // [frames to the last load, columns]
+  std::vector<std::optional<fusion::MaterialMemory::Approach>> approach_;  // [frames to the last load]
+  std::vector<Felt> loads_;
+};
+
 /// The loads as a law frees them.
 [[nodiscard]] std::vector<FreedLoad> freed_loads(const MaterialHistory& material, std::span<const KnownLoad> loads,
                                                  const fusion::MemoryLaw& law);

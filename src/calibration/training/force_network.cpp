@@ -42,12 +42,8 @@ ForceNetwork::Inputs ForceNetwork::inputs(double excess_siemens, double temperat
   return {std::log(share), share - 1.0, temperature};
 }
 
-double ForceNetwork::log_newtons(const Inputs& inputs, std::span<double> gradient) const noexcept {
-  const std::span<const double> x(inputs.data(), shape.inputs);
-  if (gradient.empty()) return network::output(shape, parameters, x);
-  const double y = network::output_and_gradient(shape, parameters, x, gradient);
-  network::monotone::chain_gradient(shape, parameters, gradient);
-  return y;
+double ForceNetwork::log_newtons(const Inputs& inputs) const noexcept {
+  return network::output(shape, parameters, std::span(inputs).first(shape.inputs));
 }
 
 network::PerceptronShape force_shape(bool uses_temperature, std::size_t hidden) noexcept {
@@ -75,19 +71,15 @@ std::vector<double> random_start(const network::PerceptronShape& shape, double n
   return free;
 }
 
-void prior_residuals(const ForceNetwork& network, const NetworkPrior& prior, double scale, std::span<double> residuals,
-                     std::span<double> jacobian, std::size_t columns) noexcept {
-  const network::PerceptronShape& shape = network.shape;
+void prior_residuals(const network::PerceptronShape& shape, std::span<const double> parameters,
+                     const NetworkPrior& prior, double scale, std::span<double> residuals,
+                     std::span<double> slopes) noexcept {
   for (std::size_t k = 0; k < shape.parameter_count(); ++k) {
     const bool is_level = k == shape.output_bias();
     const double centre = k == shape.direct_weight(0) ? 1.0 : 0.0;
     const double weight = is_level ? 0.0 : scale / deviation(shape, k, prior);
-    const double slope = network::monotone::is_positive(shape, k) ? network.parameters[k] : 1.0;
-    residuals[k] = weight * (network.parameters[k] - centre);
-    if (jacobian.empty()) continue;
-    const std::span<double> row = jacobian.subspan(k * columns, columns);
-    std::fill(row.begin(), row.end(), 0.0);
-    row[k] = weight * slope;
+    residuals[k] = weight * (parameters[k] - centre);
+    slopes[k] = weight * (network::monotone::is_positive(shape, k) ? parameters[k] : 1.0);
   }
 }
 

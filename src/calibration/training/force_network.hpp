@@ -28,8 +28,7 @@ struct ForceNetwork {
   /// Inputs for an excess conductance > 0 [S] and a temperature normalised to about [-1, 1].
   [[nodiscard]] Inputs inputs(double excess_siemens, double temperature) const noexcept;
 
-  /// ln(newtons), and d ln(newtons) / d free parameter in `gradient` where it is not empty.
-  double log_newtons(const Inputs& inputs, std::span<double> gradient) const noexcept;
+  [[nodiscard]] double log_newtons(const Inputs& inputs) const noexcept;
 };
 
 /// Two or three inputs, rising with conductance.
@@ -59,11 +58,12 @@ struct NetworkPrior {
   double half_span_celsius = 0.0;  ///< That an input of 1 is worth, where temperature is one.
 };
 
-/// A Gaussian prior on the parameters, as residuals that are appended to those of the data. Hidden weights are about 0,
-/// the power of conductance about 1, and the temperature coefficient about that of rubbers. Parameters that `prior`
-/// calls unknown hardly leave their values. `scale`: standard deviation of a data residual. Fills residuals
-/// [parameter_count] and, where it is not empty, jacobian [parameter_count, columns].
-void prior_residuals(const ForceNetwork& network, const NetworkPrior& prior, double scale, std::span<double> residuals,
-                     std::span<double> jacobian, std::size_t columns) noexcept;
+/// A Gaussian prior on the parameters, as a residual for each. Hidden weights are about 0, the power of conductance
+/// about 1, and the temperature coefficient about that of rubbers. Parameters that `prior` calls unknown hardly leave
+/// their values. `scale`: standard deviation of a data residual. Fills residuals [parameter_count] and slopes
+/// [parameter_count], d residual / d free parameter of the same place; the others are zero.
+void prior_residuals(const network::PerceptronShape& shape, std::span<const double> parameters,
+                     const NetworkPrior& prior, double scale, std::span<double> residuals,
+                     std::span<double> slopes) noexcept;
 
 }  // namespace dermis::calibration

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "calibration/training/force_levels.hpp"
+#include "calibration/training/force_problem.hpp"
 #include "calibration/training/shared_loads.hpp"
 #include "calibration/training/temperature_levels.hpp"
 #include "dermis/calibration/parallel.hpp"
@@ -83,12 +84,20 @@ NetworkPrior prior_of(const std::vector<MeasuredLoad>& loads, const SampleTemper
   return prior;
 }
 
+std::vector<std::size_t> terms_of(const std::vector<MeasuredLoad>& loads) {
+  std::vector<std::size_t> terms;
+  for (const MeasuredLoad& load : loads) terms.push_back(load.excess.size());
+  return terms;
+}
+
 /// The least-squares problem for given gains; its parameters are the free values of the network.
 class SharedProblem {
  public:
   SharedProblem(const std::vector<MeasuredLoad>& raw, const SampleTemperatures& temperatures,
                 const UnloadedFit& unloaded)
-      : prior_(prior_of(raw, temperatures)), gain_(unloaded.noise_siemens.size(), 1.0) {
+      : prior_(prior_of(raw, temperatures)),
+        gain_(unloaded.noise_siemens.size(), 1.0),
+        samples_(force_shape(temperatures.is_input, 0).inputs, network::Estimate::sum_of_exponentials, terms_of(raw)) {
     double log_newtons = 0.0;
     double active = 0.0;
     double active_siemens = 0.0;
@@ -114,11 +123,17 @@ class SharedProblem {
         shared.shares.push_back({taxel, scale.inputs(siemens, load.temperature)});
       }
     }
+    set_samples(force_shape(temperatures.is_input, 0).inputs);
+    set_factors();
   }
 
   [[nodiscard]] const std::vector<SharedLoad>& loads() const { return loads_; }
   [[nodiscard]] const std::vector<double>& gain() const { return gain_; }
-  void set_gain(std::vector<double> gain) { gain_ = std::move(gain); }
+
+  void set_gain(std::vector<double> gain) {
+    gain_ = std::move(gain);
+    set_factors();
+  }
 
   [[nodiscard]] ForceNetwork network(const network::PerceptronShape& shape, std::span<const double> free) const {
     ForceNetwork network;
@@ -136,34 +151,31 @@ class SharedProblem {
     return random_start(shape, typical_share_newtons_, random);
   }
 
-  /// Residuals of the loads, then of the prior.
-  [[nodiscard]] network::ResidualFunction residual_function(const network::PerceptronShape& shape) const {
-    return [this, shape, gradient = std::vector<double>(shape.parameter_count())](
-               std::span<const double> free, std::span<double> residuals, std::span<double> jacobian) mutable {
-      const std::size_t n = shape.parameter_count();
-      const ForceNetwork network = this->network(shape, free);
-      for (std::size_t k = 0; k < loads_.size(); ++k) {
-        const SharedLoad& load = loads_[k];
-        const std::span<double> row = jacobian.empty() ? jacobian : jacobian.subspan(k * n, n);
-        std::fill(row.begin(), row.end(), 0.0);
-        double sum = 0.0;
-        for (const Share& share : load.shares) {
-          const double log_newtons = network.log_newtons(share.inputs, row.empty() ? row : std::span<double>(gradient));
-          const double newtons = gain_[share.taxel] * std::exp(log_newtons);
-          sum += newtons;
-          for (std::size_t p = 0; p < row.size(); ++p) row[p] += load.weight * newtons * gradient[p];
-        }
-        residuals[k] = load.weight * (sum - load.newtons);
-      }
-      prior_residuals(network, prior_, kExpectedResidual, residuals.subspan(loads_.size(), n),
-                      jacobian.empty() ? jacobian : jacobian.subspan(loads_.size() * n), n);
-    };
+  /// Not to outlive this.
+  [[nodiscard]] ForceProblem least_squares(const network::PerceptronShape& shape) const {
+    return {shape, samples_, prior_, kExpectedResidual};
   }
 
  private:
+  void set_samples(std::size_t inputs) {
+    for (std::size_t k = 0; k < loads_.size(); ++k) {
+      samples_.set_target(k, loads_[k].newtons, loads_[k].weight);
+      for (std::size_t i = 0; i < loads_[k].shares.size(); ++i)
+        samples_.set_input(k, i, std::span(loads_[k].shares[i].inputs).first(inputs));
+    }
+  }
+
+  void set_factors() {
+    for (std::size_t k = 0; k < loads_.size(); ++k) {
+      for (std::size_t i = 0; i < loads_[k].shares.size(); ++i)
+        samples_.set_factor(k, i, gain_[loads_[k].shares[i].taxel]);
+    }
+  }
+
   std::vector<SharedLoad> loads_;
   NetworkPrior prior_;
   std::vector<double> gain_;  // [taxels]
+  network::PerceptronSamples samples_;
   double reference_siemens_ = 1.0;
   double heaviest_siemens_ = 0.0;
   double typical_share_newtons_ = 1.0;
@@ -185,14 +197,16 @@ bool generalises_better(const Candidate& a, const Candidate& b) {
 }
 
 void train(const SharedProblem& problem, Candidate& candidate) {
-  const auto function = problem.residual_function(candidate.shape);
-  const std::size_t loads = problem.loads().size();
-  const std::size_t residuals = loads + candidate.free.size();
+  ForceProblem least_squares = problem.least_squares(candidate.shape);
   network::LevenbergMarquardtOptions options;
   options.relative_reduction = 1e-6;
   options.max_iterations = kMaxIterations;
-  candidate.error = network::minimise(function, residuals, candidate.free, options).final_error;
-  candidate.leave_one_out = network::leave_one_out_mean_square(function, loads, residuals, candidate.free);
+  candidate.error = network::minimise(least_squares, candidate.free, options).final_error;
+}
+
+void train_and_judge(const SharedProblem& problem, Candidate& candidate) {
+  train(problem, candidate);
+  candidate.leave_one_out = problem.least_squares(candidate.shape).leave_one_out_mean_square(candidate.free);
 }
 
 /// Hidden units that loads of so few different forces allow. With a handful of weights, each on many taxels, a network
@@ -219,7 +233,7 @@ std::vector<Candidate> best_starts(const SharedProblem& problem, bool uses_tempe
 
 /// Trains every size on, and gives the one that generalises best.
 Candidate choose_size(const SharedProblem& problem, std::vector<Candidate>& candidates) {
-  parallel_for(candidates.size(), [&](std::size_t k) { train(problem, candidates[k]); });
+  parallel_for(candidates.size(), [&](std::size_t k) { train_and_judge(problem, candidates[k]); });
   return *std::min_element(candidates.begin(), candidates.end(), generalises_better);
 }
 
@@ -230,8 +244,7 @@ class GainFit {
       : problem_(problem), ridge_(std::pow(residual / kGainDeviation, 2)) {
     for (const SharedLoad& load : problem.loads()) {
       std::vector<double>& row = forces_.emplace_back();
-      for (const Share& share : load.shares)
-        row.push_back(load.weight * std::exp(network.log_newtons(share.inputs, {})));
+      for (const Share& share : load.shares) row.push_back(load.weight * std::exp(network.log_newtons(share.inputs)));
     }
   }
 
@@ -285,14 +298,6 @@ class GainFit {
   std::vector<std::vector<double>> forces_;  // weighted, of every share
 };
 
-/// Loads with the same number in `groups` share an error.
-std::vector<network::FittedResidual> fitted_loads(const SharedProblem& problem, const Candidate& chosen,
-                                                  const std::vector<std::size_t>& groups) {
-  const std::size_t count = groups.size();
-  return network::fitted_residuals(problem.residual_function(chosen.shape), count, count + chosen.free.size(),
-                                   chosen.free, groups);
-}
-
 /// The errors of the loads as if each were left out. The leverage covers the network's parameters but not the gains. So
 /// the errors are scaled by the ratio at which held-out loads are worse, or not at all.
 std::vector<TestedLoad> tested_loads(const std::vector<MeasuredLoad>& raw, const SharedProblem& problem,
@@ -301,7 +306,7 @@ std::vector<TestedLoad> tested_loads(const std::vector<MeasuredLoad>& raw, const
   for (const MeasuredLoad& load : raw) {
     touches.push_back(load.touch * problem.gain().size() + load.excess.front().first);
   }
-  const std::vector<network::FittedResidual> fitted = fitted_loads(problem, chosen, touches);
+  const std::vector<network::FittedResidual> fitted = problem.least_squares(chosen.shape).fitted(chosen.free, touches);
   std::vector<TestedLoad> tested;
   for (std::size_t k = 0; k < raw.size(); ++k) {
     const double newtons_per_residual = scale / problem.loads()[k].weight;
@@ -321,7 +326,7 @@ double heaviest_share(const SharedProblem& problem, const ForceNetwork& network)
   double heaviest = 0.0;
   for (const SharedLoad& load : problem.loads()) {
     for (const Share& share : load.shares) {
-      const double newtons = problem.gain()[share.taxel] * std::exp(network.log_newtons(share.inputs, {}));
+      const double newtons = problem.gain()[share.taxel] * std::exp(network.log_newtons(share.inputs));
       heaviest = std::max(heaviest, std::min(newtons, load.newtons));
     }
   }
@@ -336,7 +341,7 @@ std::vector<TestedLoad> tested_as_unpressed(const std::vector<MeasuredLoad>& raw
                                             const ForceNetwork& network, const Candidate& chosen) {
   std::vector<std::size_t> places;
   for (const MeasuredLoad& load : raw) places.push_back(load.excess.front().first);
-  const std::vector<network::FittedResidual> fitted = fitted_loads(problem, chosen, places);
+  const std::vector<network::FittedResidual> fitted = problem.least_squares(chosen.shape).fitted(chosen.free, places);
   std::vector<TestedLoad> tested;
   std::set<std::size_t> taxels;
   double leverages = 0.0;
@@ -346,7 +351,7 @@ std::vector<TestedLoad> tested_as_unpressed(const std::vector<MeasuredLoad>& raw
     const Share& share = load.shares.front();
     taxels.insert(share.taxel);
     leverages += fitted[k].common_leverage;
-    const double estimate = std::exp(network.log_newtons(share.inputs, {}));
+    const double estimate = std::exp(network.log_newtons(share.inputs));
     const double error_n = load.newtons - load.newtons * load.newtons / estimate;  // sigma is a share of the estimate
     tested.push_back({raw[k].sample, {share.taxel}, load.newtons, error_n, 0.0, error_n});
   }

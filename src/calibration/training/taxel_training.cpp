@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "calibration/training/force_levels.hpp"
+#include "calibration/training/force_problem.hpp"
 #include "calibration/training/temperature_levels.hpp"
 #include "dermis/network/levenberg_marquardt.hpp"
 
@@ -19,16 +19,15 @@ constexpr int kStarts = 6;
 constexpr int kMaxIterations = 100;
 constexpr double kRelativeReduction = 1e-5;
 
-struct TrainingPoint {
-  ForceNetwork::Inputs inputs;
-  double log_newtons = 0.0;
-  double weight = 0.0;  // 1 / standard deviation of ln(newtons)
-};
-
 double geometric_mean(std::span<const TaxelPoint> points, double TaxelPoint::*member) {
   double sum = 0.0;
   for (const TaxelPoint& point : points) sum += std::log(point.*member);
   return std::exp(sum / static_cast<double>(points.size()));
+}
+
+/// 1 / standard deviation of ln(newtons).
+double weight_of(const TaxelPoint& point) {
+  return 1.0 / std::hypot(kNoiseFloor, point.noise_siemens / point.excess_siemens);
 }
 
 NetworkPrior prior_of(const network::PerceptronShape& shape, std::span<const TaxelPoint> points,
@@ -43,81 +42,77 @@ NetworkPrior prior_of(const network::PerceptronShape& shape, std::span<const Tax
   return prior;
 }
 
+/// The points of a taxel as samples of its network.
+network::PerceptronSamples samples_of(const ForceNetwork& network, std::span<const TaxelPoint> points) {
+  const std::vector<std::size_t> terms(points.size(), 1);
+  network::PerceptronSamples samples(network.shape.inputs, network::Estimate::output, terms);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const ForceNetwork::Inputs inputs = network.inputs(points[k].excess_siemens, points[k].temperature);
+    samples.set_input(k, 0, std::span(inputs).first(network.shape.inputs));
+    samples.set_target(k, std::log(points[k].newtons), weight_of(points[k]));
+  }
+  return samples;
+}
+
+/// A network without parameters yet, with the range of the points.
+ForceNetwork untrained(const network::PerceptronShape& shape, std::span<const TaxelPoint> points) {
+  ForceNetwork network;
+  network.shape = shape;
+  network.reference_siemens = geometric_mean(points, &TaxelPoint::excess_siemens);
+  network.heaviest_siemens = 0.0;
+  network.parameters.resize(shape.parameter_count());
+  for (const TaxelPoint& point : points) {
+    network.heaviest_siemens = std::max(network.heaviest_siemens, point.excess_siemens);
+    network.heaviest_newtons = std::max(network.heaviest_newtons, point.newtons);
+  }
+  return network;
+}
+
 /// The points of a taxel as a problem of least squares.
 class TaxelProblem {
  public:
   TaxelProblem(const network::PerceptronShape& shape, std::span<const TaxelPoint> points,
                const TemperatureSpan& temperature)
-      : prior_(prior_of(shape, points, temperature)) {
-    network_.shape = shape;
-    network_.reference_siemens = geometric_mean(points, &TaxelPoint::excess_siemens);
-    network_.heaviest_siemens = 0.0;
-    network_.parameters.resize(shape.parameter_count());
-    typical_newtons_ = geometric_mean(points, &TaxelPoint::newtons);
-    for (const TaxelPoint& point : points) {
-      network_.heaviest_siemens = std::max(network_.heaviest_siemens, point.excess_siemens);
-      network_.heaviest_newtons = std::max(network_.heaviest_newtons, point.newtons);
-      points_.push_back({network_.inputs(point.excess_siemens, point.temperature), std::log(point.newtons),
-                         1.0 / std::hypot(kNoiseFloor, point.noise_siemens / point.excess_siemens)});
-      touches_.push_back(point.touch);
-    }
-  }
+      : points_(points),
+        network_(untrained(shape, points)),
+        samples_(samples_of(network_, points)),
+        problem_(shape, samples_, prior_of(shape, points, temperature), 1.0) {}
 
-  [[nodiscard]] double typical_newtons() const { return typical_newtons_; }
+  [[nodiscard]] double typical_newtons() const { return geometric_mean(points_, &TaxelPoint::newtons); }
 
   /// From the free parameters `start`, which become the best ones. Gives half the sum of squares.
   double minimise(std::vector<double>& start) {
     network::LevenbergMarquardtOptions options;
     options.max_iterations = kMaxIterations;
     options.relative_reduction = kRelativeReduction;
-    return network::minimise(residual_function(), residual_count(), start, options).final_error;
+    return network::minimise(problem_, start, options).final_error;
   }
 
   /// Half the sum of squares.
-  [[nodiscard]] double error(std::span<const double> free) {
-    std::vector<double> residuals(residual_count());
-    residual_function()(free, residuals, {});
-    return 0.5 * std::inner_product(residuals.begin(), residuals.end(), residuals.begin(), 0.0);
-  }
+  [[nodiscard]] double error(std::span<const double> free) { return problem_.error(free); }
 
   [[nodiscard]] ForceNetwork network_at(std::span<const double> free) {
-    network::monotone::parameters(network_.shape, free, network_.parameters);
     ForceNetwork network = network_;
-    network.fitted = network::fitted_residuals(residual_function(), points_.size(), residual_count(), free, touches_);
+    network::monotone::parameters(network.shape, free, network.parameters);
+    std::vector<std::size_t> touches;
+    for (const TaxelPoint& point : points_) touches.push_back(point.touch);
+    network.fitted = problem_.fitted(free, touches);
     double square = 0.0;
     for (std::size_t k = 0; k < points_.size(); ++k) {
-      network.fitted[k].residual /= points_[k].weight;
-      network.fitted[k].common /= points_[k].weight;
-      square += std::pow(std::expm1(network.log_newtons(points_[k].inputs, {}) - points_[k].log_newtons), 2);
+      const double weight = weight_of(points_[k]);
+      network.fitted[k].residual /= weight;
+      network.fitted[k].common /= weight;
+      square += std::pow(std::expm1(network.fitted[k].residual), 2);
     }
     network.rms_error = std::sqrt(square / static_cast<double>(points_.size()));
     return network;
   }
 
  private:
-  [[nodiscard]] std::size_t residual_count() const { return points_.size() + network_.shape.parameter_count(); }
-
-  /// The residuals of the points, then those of the prior.
-  [[nodiscard]] network::ResidualFunction residual_function() {
-    return [this](std::span<const double> free, std::span<double> residuals, std::span<double> jacobian) {
-      const std::size_t n = free.size();
-      network::monotone::parameters(network_.shape, free, network_.parameters);
-      for (std::size_t k = 0; k < points_.size(); ++k) {
-        const TrainingPoint& point = points_[k];
-        const std::span<double> row = jacobian.empty() ? jacobian : jacobian.subspan(k * n, n);
-        residuals[k] = point.weight * (network_.log_newtons(point.inputs, row) - point.log_newtons);
-        for (double& derivative : row) derivative *= point.weight;
-      }
-      prior_residuals(network_, prior_, 1.0, residuals.subspan(points_.size()),
-                      jacobian.empty() ? jacobian : jacobian.subspan(points_.size() * n), n);
-    };
-  }
-
-  ForceNetwork network_;  // its parameters are those that are tried last
-  std::vector<TrainingPoint> points_;
-  std::vector<std::size_t> touches_;  // of the points
-  NetworkPrior prior_;
-  double typical_newtons_ = 0.0;
+  std::span<const TaxelPoint> points_;
+  ForceNetwork network_;
+  network::PerceptronSamples samples_;
+  ForceProblem problem_;
 };
 
 /// The free values of a network's parameters.
