@@ -15,14 +15,12 @@ namespace dermis::fusion {
 /// all taxels would lie a power of two apart, and displace each other from the cache.
 inline constexpr std::size_t kTile = 16;  // as many as the widest vectors have lanes
 
-/// The states of a taxel, in this order.
-enum MemoryState : std::size_t {
-  kLoad,                                             ///< f of the last step
-  kLogarithm,                                        ///< ln(1 + f) of the last step
-  kLate,                                             ///< s_k, four
-  kStops = kLate + MemoryLaw::kCreepSeconds.size(),  ///< m_j, three
-  kStates = kStops + MemoryLaw::kStopReach.size(),
-};
+// The states of a taxel, in this order.
+inline constexpr std::size_t kLoad = 0;                                         ///< f of the last step
+inline constexpr std::size_t kLogarithm = 1;                                    ///< ln(1 + f) of the last step
+inline constexpr std::size_t kLate = 2;                                         ///< s_k
+inline constexpr std::size_t kStops = kLate + MemoryLaw::kCreepSeconds.size();  ///< m_j
+inline constexpr std::size_t kStates = kStops + MemoryLaw::kStopReach.size();
 
 /// One step in time.
 struct MemoryStep {

@@ -26,11 +26,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 struct BankView {
   PerceptronShape shape;
-  std::size_t networks;
-  const float* parameters;  // in tiles
-  const float* inputs;
-  float* outputs;
-  float* gradient;  // null where nobody asks
+  std::size_t networks = 0;
+  const float* parameters = nullptr;  // in tiles
+  const float* inputs = nullptr;
+  float* outputs = nullptr;
+  float* gradient = nullptr;  // null where nobody asks
 
   [[nodiscard]] const float* parameters_of(std::size_t network) const {
     return parameters + network / kTile * kTile * shape.parameter_count() + network % kTile;

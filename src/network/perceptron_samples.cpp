@@ -287,8 +287,7 @@ void PerceptronSamples::linearise(const PerceptronShape& shape, std::span<const 
   HWY_DYNAMIC_DISPATCH(linearise_samples)(view(shape, parameters), lanes.data(), {of_gradient, of_normal});
   for (std::size_t p = 0; p < n; ++p) {
     gradient[p] = sum_of_lanes(of_gradient + p * kLanes);
-    for (std::size_t q = 0; q <= p; ++q, of_normal += kLanes)
-      normal[p * n + q] = sum_of_lanes(of_normal);
+    for (std::size_t q = 0; q <= p; ++q, of_normal += kLanes) normal[p * n + q] = sum_of_lanes(of_normal);
   }
 }
 
