@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # CI runs these targets (.ci/run). Each installs what it needs.
 
-.PHONY: build setup demo live python test lint numerics sanitize fuzz check-all bench docs bare package package-test site clean
+.PHONY: build setup demo live python test lint numerics sanitize fuzz check-all bench profile docs bare package package-test site clean
 
 build: setup
 	cmake --preset release
@@ -60,6 +60,14 @@ bench: setup
 	cmake --preset release -D DERMIS_BUILD_BENCHMARKS=ON
 	cmake --build --preset release
 	scripts/bench
+
+# Where the time of a frame goes.
+profile: setup
+	scripts/setup test
+	scripts/setup profile
+	cmake --preset release -D DERMIS_BUILD_BENCHMARKS=ON
+	cmake --build --preset release --target pipeline_benchmark contacts_benchmark live_benchmark
+	scripts/profile
 
 docs: setup
 	/usr/bin/python3 scripts/check_docs.py

@@ -17,11 +17,11 @@
 // foreach_target.h comes first: it includes this file again for every instruction set.
 #include "hwy/highway.h"
 
-// What kernels read and write of the state. They take it by value: stores of vectors may alias all that is reached
-// through a pointer, and the pointers themselves would be loaded anew after each.
 #ifndef DERMIS_COMPENSATION_GROUNDED_ROWS_VIEW
 #define DERMIS_COMPENSATION_GROUNDED_ROWS_VIEW
 namespace dermis::compensation {
+/// The arrays of the state. Kernels take them by value: stores of vectors may alias all that is reached through a
+/// pointer, and the pointers themselves would be loaded anew after each. Many members: the symbols of the state.
 struct GroundedRowsView {
   explicit GroundedRowsView(GroundedRowsState& state)
       : rows(state.rows),

@@ -57,6 +57,7 @@ BRINGS = {
     "libfann-dev": "floatfann floatfann.h",
     "libopenblas-dev": "openblas openblas_config.h",
     "lintian": "lintian",
+    "linux-perf": "perf",
     "mmdebstrap": "mmdebstrap",
     "debhelper": "dh dh_compress dh_installsystemd dh_shlibdeps dh_strip",
     "systemd": "systemd-analyze",
