@@ -20,7 +20,7 @@ namespace dermis::live {
 namespace {
 
 /// A thread that another program puts off makes all of its arrays late.
-constexpr std::size_t kMostArraysOfThread = 8;
+constexpr std::size_t kMostArraysOfThread = 2;
 
 }  // namespace
 
