@@ -73,8 +73,8 @@ void StuckTaxelDetector::heal(const Observation& seen, const CountScale& scale, 
 /// Whether the evidence of any taxel of the block decides.
 DERMIS_PROCESSOR_CLONES bool StuckTaxelDetector::count_repetitions(const Observation& seen, const CountScale& scale,
                                                                    const TaxelBlock& block) noexcept {
-  const auto [from, to] = block;
-  const auto [zero, per_ratio] = scale;
+  const double zero = scale.zero;
+  const double per_ratio = scale.per_ratio;
   const double most = readout_.full_scale_counts() - 0.5;
   const double most_pressed = kMaybeRail * largest_rise_ / std::abs(per_ratio);
   const double least_pressed = kPressedSigmas * seen.conditioned.sigma_ratio;
@@ -89,7 +89,7 @@ DERMIS_PROCESSOR_CLONES bool StuckTaxelDetector::count_repetitions(const Observa
   std::int64_t idle_repetitions = 0;
   std::int64_t any_decides = 0;
 #pragma omp simd reduction(+ : idle, idle_repeated) reduction(max : idle_repetitions) reduction(| : any_decides)
-  for (std::size_t taxel = from; taxel < to; ++taxel) {
+  for (std::size_t taxel = block.from; taxel < block.to; ++taxel) {
     const double ratio = ratios[taxel];
     const double count = zero + per_ratio * ratio;
     const std::int64_t is_interior = (count > 0.5 ? 1 : 0) & (count < most ? 1 : 0);
