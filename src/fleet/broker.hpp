@@ -27,7 +27,7 @@ struct StreamSettings {
 /// A message that a server keeps.
 struct StoredMessage {
   std::uint64_t sequence = 0;  ///< In its stream, from 1 on.
-  Nanos time{};                ///< Of its arrival at the first server, by UTC.
+  Nanos time{};                ///< It arrived then at the first server, by UTC.
   std::string id;              ///< As it was published.
   std::vector<std::uint8_t> bytes;
 };

@@ -74,7 +74,7 @@ class FramePublisher::Implementation {
 
   std::mutex connecting_;
   std::unique_ptr<Broker> broker_;  ///< Null: the server has not answered yet.
-  bool answers_ = true;             ///< What was told last; of `connecting_`.
+  bool answers_ = true;             ///< As it was told last; guarded by `connecting_`.
 
   std::atomic<std::uint64_t> batches_ = 0;
   std::atomic<std::uint64_t> frames_ = 0;

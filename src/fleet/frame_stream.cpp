@@ -63,7 +63,7 @@ class FrameStream::Implementation {
   FrameShape shape_;
   std::uint64_t next_sequence_ = 1;
   End end_;
-  std::vector<RawFrame> frames_;  ///< Of the last batch.
+  std::vector<RawFrame> frames_;  ///< The last batch.
   std::size_t next_frame_ = 0;
   bool answers_ = true;
   SourceStatistics statistics_;

@@ -41,16 +41,16 @@ class FrameBatchWriter::Implementation {
   void seal();
   [[nodiscard]] std::optional<WaitingBatch> next(bool unfinished);
 
-  std::mutex mutex_;  ///< Of the next four.
+  std::mutex mutex_;  ///< Guards the next four.
   BatchBuilder open_;
   std::size_t open_frames_ = 0;
   std::deque<WaitingBatch> waiting_;
   std::size_t waiting_bytes_ = 0;
 
-  WrittenArray array_;             ///< Of the thread that adds.
+  WrittenArray array_;             ///< The thread that adds uses it.
   std::uint32_t lost_before_ = 0;  ///< Frames that were left out since the last one.
   std::atomic<std::uint64_t> left_out_ = 0;
-  Compressor compressor_{McapCompression::zstd};  ///< Of the thread that takes.
+  Compressor compressor_{McapCompression::zstd};  ///< The thread that takes uses it.
   Bytes description_;
 };
 

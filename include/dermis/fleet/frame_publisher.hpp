@@ -19,7 +19,7 @@ namespace dermis::fleet {
 struct PublisherOptions {
   BrokerAddress broker{};
   std::string robot;                          ///< check_name()
-  std::uint64_t most_bytes = 0;               ///< Of the robot's stream, where it is not there yet; 0: no limit.
+  std::uint64_t most_bytes = 0;               ///< A new stream of the robot keeps at most so many; 0: no limit.
   std::function<void(std::string)> notice{};  ///< Told in one line where the server goes and comes back. Thread-safe.
 };
 
@@ -27,7 +27,7 @@ struct PublisherOptions {
 struct PublisherCounts {
   std::uint64_t batches = 0;   ///< That the server has stored.
   std::uint64_t frames = 0;    ///< In them.
-  std::uint64_t bytes = 0;     ///< Of them.
+  std::uint64_t bytes = 0;     ///< In the batches.
   std::uint64_t left_out = 0;  ///< Frames without room, while the server did not follow.
 };
 

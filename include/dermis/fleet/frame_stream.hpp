@@ -34,7 +34,7 @@ class FrameStream final : public FrameSource {
   /// An address with `to` ends; it is read as a file is.
   [[nodiscard]] bool is_live() const override;
   [[nodiscard]] std::string place() const override;
-  /// What the robot says of the array.
+  /// The robot's notes on the array.
   [[nodiscard]] const recordings::FrameNotes& notes() const noexcept;
 
  private:

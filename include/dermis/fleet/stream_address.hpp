@@ -31,7 +31,7 @@ struct StreamAddress {
   std::string robot{};
   std::string array{};
   StreamPlace from = Newest{};
-  StreamPlace to = Newest{};  ///< Of the last frame that is read, where it ends.
+  StreamPlace to = Newest{};  ///< The last frame that is read, where it ends.
   bool ends = false;          ///< `to` is there; otherwise the source waits for frames that come.
 };
 

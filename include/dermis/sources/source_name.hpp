@@ -26,7 +26,7 @@ struct SourceName {
   std::string file{};                            ///< Path of the file, recording or bytes; empty: it is none.
   std::string array{};                           ///< "chest" of "rec.mcap#chest"; empty: none is named.
   std::optional<acquisition::SourceUri> uri{};   ///< Empty: the name is the path of a file.
-  std::optional<fleet::StreamAddress> stream{};  ///< Of a stream of NATS.
+  std::optional<fleet::StreamAddress> stream{};  ///< A stream of NATS; empty: it is none.
 
   /// Fails on a URI that acquisition::parse_source_uri() or fleet::parse_stream_address() refuses. Everything else is
   /// the path of a file.
