@@ -16,7 +16,6 @@ namespace {
 constexpr std::int64_t kConnectMs = 2000;
 constexpr std::int64_t kReconnectMs = 200;
 constexpr std::int64_t kAnswerMs = 2000;
-constexpr std::int64_t kDuplicatesNanos = 120'000'000'000;
 constexpr int kForEver = -1;
 constexpr const char* kIdHeader = "Nats-Msg-Id";
 
@@ -33,7 +32,6 @@ using Connection = std::unique_ptr<natsConnection, Destroyer<natsConnection_Dest
 using JetStream = std::unique_ptr<jsCtx, Destroyer<jsCtx_Destroy>>;
 using Message = std::unique_ptr<natsMsg, Destroyer<natsMsg_Destroy>>;
 using PublishAck = std::unique_ptr<jsPubAck, Destroyer<jsPubAck_Destroy>>;
-using StreamInfo = std::unique_ptr<jsStreamInfo, Destroyer<jsStreamInfo_Destroy>>;
 
 Error error_of(const std::string& place, natsStatus status) {
   const char* const last = nats_GetLastError(nullptr);
@@ -57,7 +55,7 @@ class NatsBroker final : public Broker {
   NatsBroker(std::string url, Connection connection, JetStream jet_stream)
       : url_(std::move(url)), connection_(std::move(connection)), jet_stream_(std::move(jet_stream)) {}
 
-  [[nodiscard]] Status make_stream(const StreamSettings& settings) override;
+  [[nodiscard]] Result<std::string> ask(const std::string& subject, const std::string& request) override;
   [[nodiscard]] Result<std::uint64_t> store(const std::string& subject, const std::string& id,
                                             std::span<const std::uint8_t> bytes) override;
   [[nodiscard]] Result<std::optional<StoredMessage>> last(const std::string& stream,
@@ -73,27 +71,13 @@ class NatsBroker final : public Broker {
   const JetStream jet_stream_;
 };
 
-Status NatsBroker::make_stream(const StreamSettings& settings) {
-  jsStreamInfo* info = nullptr;
-  const natsStatus found = js_GetStreamInfo(&info, jet_stream_.get(), settings.name.c_str(), nullptr, nullptr);
-  const StreamInfo known(info);
-  if (found == NATS_OK) return Done{};
-  if (found != NATS_NOT_FOUND) return error_of(url_, found);
-  jsStreamConfig config;
-  jsStreamConfig_Init(&config);
-  const char* subjects[] = {settings.subjects.c_str()};
-  config.Name = settings.name.c_str();
-  config.Subjects = subjects;
-  config.SubjectsLen = 1;
-  config.Storage = js_FileStorage;
-  config.Duplicates = kDuplicatesNanos;
-  config.AllowDirect = true;
-  if (settings.most_bytes > 0) config.MaxBytes = settings.most_bytes;
-  info = nullptr;
-  const natsStatus made = js_AddStream(&info, jet_stream_.get(), &config, nullptr, nullptr);
-  const StreamInfo added(info);
-  if (made != NATS_OK) return error_of(url_ + ": stream " + settings.name, made);
-  return Done{};
+Result<std::string> NatsBroker::ask(const std::string& subject, const std::string& request) {
+  natsMsg* got = nullptr;
+  const natsStatus asked =
+      natsConnection_RequestString(&got, connection_.get(), subject.c_str(), request.c_str(), kAnswerMs);
+  const Message answer(got);
+  if (asked != NATS_OK) return error_of(url_, asked);
+  return std::string(natsMsg_GetData(answer.get()), static_cast<std::size_t>(natsMsg_GetDataLength(answer.get())));
 }
 
 Result<std::uint64_t> NatsBroker::store(const std::string& subject, const std::string& id,

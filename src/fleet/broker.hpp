@@ -17,13 +17,6 @@
 /// The work of the plugin of NATS. It is loaded when asked for, as that of DDS is.
 namespace dermis::fleet {
 
-/// A stream that keeps its messages on the disk of the server.
-struct StreamSettings {
-  std::string name;
-  std::string subjects;         ///< "dermis.robot.>"
-  std::int64_t most_bytes = 0;  ///< The oldest messages make room; 0: no limit.
-};
-
 /// A message that a server keeps.
 struct StoredMessage {
   std::uint64_t sequence = 0;  ///< In its stream, from 1 on.
@@ -40,8 +33,8 @@ class Broker {
   Broker& operator=(const Broker&) = delete;
   virtual ~Broker() = default;
 
-  /// A stream that is there keeps its settings.
-  [[nodiscard]] virtual Status make_stream(const StreamSettings& settings) = 0;
+  /// The answer to a request, such as those of the API of JetStream in JSON.
+  [[nodiscard]] virtual Result<std::string> ask(const std::string& subject, const std::string& request) = 0;
   /// Waits until the server has stored the message; returns its sequence. A message of an id that came within the last
   /// two minutes is stored once.
   [[nodiscard]] virtual Result<std::uint64_t> store(const std::string& subject, const std::string& id,

@@ -13,6 +13,7 @@
 
 #include "dermis/recordings/frame_batches.hpp"
 #include "fleet/broker.hpp"
+#include "fleet/streams.hpp"
 
 namespace dermis::fleet {
 namespace {
@@ -162,8 +163,7 @@ bool FramePublisher::Implementation::try_to_store(const std::string& subject, co
   Broker* const server = broker();
   if (server == nullptr) return false;
   Result<std::uint64_t> stored = server->store(subject, id, bytes);
-  if (!stored && server->make_stream({stream_of(options_.robot), "dermis." + options_.robot + ".>",
-                                      static_cast<std::int64_t>(options_.most_bytes)})) {
+  if (!stored && make_stream(*server, options_.robot, options_.most_bytes)) {
     stored = server->store(subject, id, bytes);
   }
   tell(stored ? Status(Done{}) : Status(stored.error()));

@@ -3,15 +3,13 @@
 #include "dermis/fleet/stream_address.hpp"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
-#include <cstdio>
-#include <ctime>
 #include <map>
 #include <optional>
 #include <set>
 
 #include "dermis/core/nearest_name.hpp"
+#include "fleet/parse_utc.hpp"
 
 namespace dermis::fleet {
 namespace {
@@ -63,21 +61,6 @@ std::string value_of(const ParsedText& parsed, const char* name) {
 
 BrokerAddress broker_of(const ParsedText& parsed) {
   return {parsed.url, value_of(parsed, "nkey"), value_of(parsed, "ca")};
-}
-
-/// "2026-11-28T05:00:00Z", also with a fraction of a second.
-std::optional<Nanos> parse_utc(const std::string& text) {
-  std::tm tm{};
-  double seconds = 0.0;
-  char zone = 0;
-  int used = 0;
-  const int read = std::sscanf(text.c_str(), "%4d-%2d-%2dT%2d:%2d:%lf%c%n", &tm.tm_year, &tm.tm_mon, &tm.tm_mday,
-                               &tm.tm_hour, &tm.tm_min, &seconds, &zone, &used);
-  const bool is_whole = read == 7 && zone == 'Z' && used == static_cast<int>(text.size());
-  if (!is_whole || !(seconds >= 0.0 && seconds < 61.0) || tm.tm_year < 1970 || tm.tm_year > 2200) return std::nullopt;
-  tm.tm_year -= 1900;
-  tm.tm_mon -= 1;
-  return Nanos(std::chrono::seconds(timegm(&tm))) + Nanos(static_cast<std::int64_t>(seconds * 1e9));
 }
 
 Result<StreamPlace> place_of(const std::string& text, const std::string& name, const std::string& value,

@@ -36,13 +36,21 @@ inline std::uint16_t free_port() {
 /// A real nats-server with JetStream, on a port of its own.
 class NatsServer {
  public:
-  NatsServer() : port_(std::to_string(free_port())) { start(); }
+  NatsServer() : port_(free_port()) {
+    configure("listen: \"127.0.0.1:" + std::to_string(port_) + "\"\njetstream { store_dir: \"store\" }\n");
+    start();
+  }
+  /// `file`: its configuration, which names the port.
+  NatsServer(const std::string& file, std::uint16_t port) : port_(port) {
+    configure(file);
+    start();
+  }
   NatsServer(const NatsServer&) = delete;
   NatsServer& operator=(const NatsServer&) = delete;
   ~NatsServer() { kill(); }
 
   [[nodiscard]] static bool is_installed() { return std::system("nats-server --version >/dev/null 2>&1") == 0; }
-  [[nodiscard]] std::string url() const { return "nats://127.0.0.1:" + port_; }
+  [[nodiscard]] std::string url() const { return "nats://127.0.0.1:" + std::to_string(port_); }
 
   void kill() {
     if (process_ <= 0) return;
@@ -58,28 +66,29 @@ class NatsServer {
       const int log = ::open(folder_.file("log").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
       ::dup2(log, 1);
       ::dup2(log, 2);
-      const std::string store = folder_.file("store");
-      ::execlp("nats-server", "nats-server", "-a", "127.0.0.1", "-p", port_.c_str(), "-js", "-sd", store.c_str(),
-               nullptr);
+      if (::chdir(folder_.file("").c_str()) != 0) ::_exit(126);
+      ::execlp("nats-server", "nats-server", "-c", "server.conf", nullptr);
       ::_exit(127);
     }
     for (int look = 0; look < 200 && !answers(); ++look) std::this_thread::sleep_for(std::chrono::milliseconds(25));
   }
 
  private:
+  void configure(const std::string& text) { write_bytes(folder_.file("server.conf"), text); }
+
   [[nodiscard]] bool answers() const {
     const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    address.sin_port = htons(static_cast<std::uint16_t>(std::stoi(port_)));
+    address.sin_port = htons(port_);
     const bool connected = ::connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof(address)) == 0;
     ::close(socket);
     return connected;
   }
 
   TemporaryFolder folder_;
-  const std::string port_;
+  const std::uint16_t port_;
   pid_t process_ = 0;
 };
 
