@@ -63,7 +63,7 @@ std::string age_of(Nanos last) {
   if (last == Nanos{}) return "-";
   const double seconds =
       std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch() - last).count();
-  return fmt::format("{:.1f} s", seconds);
+  return fmt::format("{:.3f} s", seconds);
 }
 
 Status list(const std::string& text) {

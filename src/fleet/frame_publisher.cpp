@@ -31,7 +31,7 @@ struct PublishedArray {
   PublishedArray(const std::string& robot, const std::string& run, recordings::RecordedArray array)
       : frames(subject_of(robot, array.name, "frames")),
         description(subject_of(robot, array.name, "description")),
-        first_id(run + "-" + array.name + "-"),
+        first_id(run + array.name + "-"),
         writer(std::move(array)) {}
 
   std::string frames;
@@ -43,8 +43,10 @@ struct PublishedArray {
   Clock::time_point begun = Clock::now();
 };
 
+/// Runs of a robot differ by the millisecond in which they begin.
 std::string new_run() {
-  return std::to_string(std::chrono::system_clock::now().time_since_epoch().count());
+  const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
+  return std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(since_1970).count());
 }
 
 }  // namespace
