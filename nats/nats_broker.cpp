@@ -56,6 +56,8 @@ class NatsBroker final : public Broker {
       : url_(std::move(url)), connection_(std::move(connection)), jet_stream_(std::move(jet_stream)) {}
 
   [[nodiscard]] Result<std::string> ask(const std::string& subject, const std::string& request) override;
+  [[nodiscard]] Result<std::optional<Delivery>> take(const std::string& subject, const std::string& request) override;
+  [[nodiscard]] Status send(const std::string& subject, const std::string& text) override;
   [[nodiscard]] Result<std::uint64_t> store(const std::string& subject, const std::string& id,
                                             std::span<const std::uint8_t> bytes) override;
   [[nodiscard]] Result<std::optional<StoredMessage>> last(const std::string& stream,
@@ -80,6 +82,25 @@ Result<std::string> NatsBroker::ask(const std::string& subject, const std::strin
   return std::string(natsMsg_GetData(answer.get()), static_cast<std::size_t>(natsMsg_GetDataLength(answer.get())));
 }
 
+Result<std::optional<Delivery>> NatsBroker::take(const std::string& subject, const std::string& request) {
+  natsMsg* got = nullptr;
+  const natsStatus asked =
+      natsConnection_RequestString(&got, connection_.get(), subject.c_str(), request.c_str(), kAnswerMs);
+  const Message message(got);
+  if (asked == NATS_TIMEOUT) return std::optional<Delivery>();
+  if (asked != NATS_OK) return error_of(url_, asked);
+  const char* lease = natsMsg_GetReply(message.get());
+  if (lease == nullptr) return std::optional<Delivery>();  // the server says that there is none
+  const auto length = static_cast<std::size_t>(natsMsg_GetDataLength(message.get()));
+  return std::optional(Delivery{std::string(natsMsg_GetData(message.get()), length), lease});
+}
+
+Status NatsBroker::send(const std::string& subject, const std::string& text) {
+  const natsStatus sent = natsConnection_PublishString(connection_.get(), subject.c_str(), text.c_str());
+  if (sent != NATS_OK) return error_of(url_, sent);
+  return Done{};
+}
+
 Result<std::uint64_t> NatsBroker::store(const std::string& subject, const std::string& id,
                                         std::span<const std::uint8_t> bytes) {
   natsMsg* created = nullptr;
@@ -89,7 +110,7 @@ Result<std::uint64_t> NatsBroker::store(const std::string& subject, const std::s
   if (made != NATS_OK) return error_of(url_, made);
   jsPubOptions options;
   jsPubOptions_Init(&options);
-  options.MsgId = id.c_str();
+  if (!id.empty()) options.MsgId = id.c_str();
   options.MaxWait = kAnswerMs;
   jsPubAck* answer = nullptr;
   const natsStatus published = js_PublishMsg(&answer, jet_stream_.get(), message.get(), &options, nullptr);

@@ -10,6 +10,7 @@
 #include "commands.hpp"
 #include "dermis/files/atomic_file.hpp"
 #include "dermis/fleet/hub.hpp"
+#include "dermis/fleet/job_queue.hpp"
 #include "status_line.hpp"
 
 namespace dermis::app {
@@ -79,6 +80,44 @@ Status list(const std::string& text) {
   return Done{};
 }
 
+struct SubmitOptions {
+  std::string hub;
+  std::string jobs;
+};
+
+Result<std::unique_ptr<fleet::JobQueue>> connect_jobs(const std::string& text) {
+  const Result<fleet::BrokerAddress> address = fleet::parse_broker_address(text);
+  if (!address) return address.error();
+  return fleet::JobQueue::connect(*address);
+}
+
+Status submit(const SubmitOptions& options) {
+  const Result<std::vector<fleet::Job>> jobs = fleet::read_jobs(options.jobs);
+  if (!jobs) return jobs.error();
+  const Result<std::unique_ptr<fleet::JobQueue>> queue = connect_jobs(options.hub);
+  if (!queue) return queue.error();
+  for (std::size_t i = 0; i < jobs->size(); ++i) {
+    const Status submitted = (*queue)->submit((*jobs)[i]);
+    if (submitted) continue;
+    return failed(fmt::format("{} ({} of {} jobs were submitted)", submitted.error().message, i, jobs->size()));
+  }
+  print_notice(fmt::format("submitted {} jobs", jobs->size()));
+  return Done{};
+}
+
+Status show_jobs(const std::string& text) {
+  const Result<std::unique_ptr<fleet::JobQueue>> queue = connect_jobs(text);
+  if (!queue) return queue.error();
+  const Result<fleet::JobCounts> counts = (*queue)->counts();
+  if (!counts) return counts.error();
+  fmt::print("waiting {}, taken {}, done {}, given up {}\n", counts->waiting, counts->taken, counts->done,
+             counts->given_up);
+  const Result<std::vector<fleet::JobOutcome>> given_up = (*queue)->given_up();
+  if (!given_up) return given_up.error();
+  for (const fleet::JobOutcome& outcome : *given_up) fmt::print("given up: {}: {}\n", outcome.name, outcome.error);
+  return Done{};
+}
+
 }  // namespace
 
 void add_fleet(Command& command) {
@@ -101,6 +140,17 @@ void add_fleet(Command& command) {
   Command list_command = command.subcommand("list", "The robots of a hub, and how their frames come");
   list_command.option("hub", *hub, "nats://HOST of the hub").required();
   list_command.action([hub] { return list(*hub); });
+
+  auto submitted = std::make_shared<SubmitOptions>();
+  Command submit_command = command.subcommand("submit", "Give jobs to the workers of a hub ('dermis work')");
+  submit_command.option("hub", submitted->hub, "nats://HOST of the hub").required();
+  submit_command.input_file("jobs", submitted->jobs, "jobs.toml (docs/fleet.md)").required();
+  submit_command.action([submitted] { return submit(*submitted); });
+
+  auto jobs_hub = std::make_shared<std::string>();
+  Command jobs_command = command.subcommand("jobs", "How the jobs of a hub do");
+  jobs_command.option("hub", *jobs_hub, "nats://HOST of the hub").required();
+  jobs_command.action([jobs_hub] { return show_jobs(*jobs_hub); });
 }
 
 }  // namespace dermis::app

@@ -47,6 +47,7 @@ constexpr std::array kCommands{
     CommandEntry{"watch", "Compare forces with limits, and stop a program if one is crossed", add_watch},
     CommandEntry{"serve", "Show an array or a suit live in the browser and stream it", add_serve},
     CommandEntry{"fleet", "Set up the servers that keep the frames of many robots, and see how they do", add_fleet},
+    CommandEntry{"work", "Do jobs of a fleet, one after the other", add_work},
 };
 
 /// A file that is opened must not become the standard error of a process that was started without one.

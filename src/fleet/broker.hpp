@@ -25,6 +25,12 @@ struct StoredMessage {
   std::vector<std::uint8_t> bytes;
 };
 
+/// A message that is ours until its lease ends.
+struct Delivery {
+  std::string text;
+  std::string lease;  ///< The subject to which its receiver answers.
+};
+
 /// A connection to a server. It connects again by itself; meanwhile all fail. Thread-safe.
 class Broker {
  public:
@@ -35,8 +41,13 @@ class Broker {
 
   /// The answer to a request, such as those of the API of JetStream in JSON.
   [[nodiscard]] virtual Result<std::string> ask(const std::string& subject, const std::string& request) = 0;
+  /// The message that a request to a consumer brings; empty where the server has none.
+  [[nodiscard]] virtual Result<std::optional<Delivery>> take(const std::string& subject,
+                                                             const std::string& request) = 0;
+  /// Does not wait for an answer.
+  [[nodiscard]] virtual Status send(const std::string& subject, const std::string& text) = 0;
   /// Waits until the server has stored the message; returns its sequence. A message of an id that came within the last
-  /// two minutes is stored once.
+  /// two minutes is stored once; an empty id is none.
   [[nodiscard]] virtual Result<std::uint64_t> store(const std::string& subject, const std::string& id,
                                                     std::span<const std::uint8_t> bytes) = 0;
   /// The last message of a subject; empty where there is none.

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <string>
 
@@ -18,5 +19,13 @@ namespace dermis::fleet {
 /// A copy of a robot's stream, with the same numbers, which follows that of the robot's server. One that is there
 /// stays.
 [[nodiscard]] Status mirror_stream(Broker& broker, const std::string& robot);
+
+/// A stream from which a message is away when a worker has acknowledged it, and its consumer of the same name. Another
+/// worker gets a message that is not acknowledged within `lease`.
+[[nodiscard]] Status make_work_queue(Broker& broker, const std::string& name, const std::string& subject,
+                                     std::chrono::nanoseconds lease);
+
+/// A stream that keeps all messages.
+[[nodiscard]] Status make_log(Broker& broker, const std::string& name, const std::string& subjects);
 
 }  // namespace dermis::fleet
