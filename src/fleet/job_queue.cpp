@@ -110,8 +110,8 @@ Result<std::optional<TakenJob>> JobQueue::take() {
   taken.id = lease.number;
   taken.tries = lease.tries;
   taken.lease = (*delivery)->lease;
-  Result<Job> job = job_from_json((*delivery)->text);
-  if (job) taken.job = *std::move(job);
+  const Result<Job> job = job_from_json((*delivery)->text);
+  if (job) taken.job = *job;
   if (job && taken.tries <= kMostTries) return std::optional(std::move(taken));
   const std::string why = job ? "its worker ended " + std::to_string(kMostTries) + " times" : job.error().message;
   if (const Status given_up = give_up(taken, why); !given_up) return given_up.error();

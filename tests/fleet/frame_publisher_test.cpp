@@ -25,7 +25,7 @@ const recordings::RecordedArray kArray{.name = "chest", .shape = {4, 5}, .array_
 constexpr Nanos kStart{1'760'000'000'000'000'000};
 
 class Publishing : public testing::Test {
- protected:
+ public:
   void SetUp() override {
     if (!support::NatsServer::is_installed()) GTEST_SKIP() << "skipped: nats-server is not installed";
     server = std::make_unique<support::NatsServer>();

@@ -30,7 +30,7 @@ RawFrame frame_number(std::uint64_t number) {
 }
 
 class Streaming : public testing::Test {
- protected:
+ public:
   void SetUp() override {
     if (!support::NatsServer::is_installed()) GTEST_SKIP() << "skipped: nats-server is not installed";
     server = std::make_unique<support::NatsServer>();
@@ -44,7 +44,7 @@ class Streaming : public testing::Test {
     while (publisher->counts().frames < next) std::this_thread::sleep_for(milliseconds(20));
   }
 
-  [[nodiscard]] Result<std::unique_ptr<FrameStream>> open(const std::string& rest, FrameStreamOptions options = {}) {
+  [[nodiscard]] Result<std::unique_ptr<FrameStream>> open(const std::string& rest, FrameStreamOptions options = {}) const {
     const auto address = parse_stream_address(server->url() + "?robot=r1&array=chest" + rest);
     EXPECT_TRUE(address) << address.error().message;
     return FrameStream::open(*address, std::move(options));

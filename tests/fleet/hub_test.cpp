@@ -35,7 +35,7 @@ TEST(ServerFiles, refuse_names_that_cannot_be) {
 
 /// A hub, and a server on a robot, as the files say, on ports of their own.
 class Fleet : public testing::Test {
- protected:
+ public:
   void SetUp() override {
     if (!support::NatsServer::is_installed()) GTEST_SKIP() << "skipped: nats-server is not installed";
     const FleetPlan plan{.port = support::free_port(), .robots_port = support::free_port(), .robots = {"anna"}};
@@ -63,7 +63,7 @@ class Fleet : public testing::Test {
   }
 
   /// Waits until the hub has all, and compares.
-  void expect_all_on_the_hub() {
+  void expect_all_on_the_hub() const {
     const auto address = parse_stream_address(hub->url() + "?robot=anna&array=chest&from=1");
     Result<std::unique_ptr<FrameStream>> stream = FrameStream::open(*address);
     for (int look = 0; look < 200 && !stream; ++look) {

@@ -18,7 +18,7 @@ Job job_number(int number) {
 }
 
 class Jobs : public testing::Test {
- protected:
+ public:
   void SetUp() override {
     if (!support::NatsServer::is_installed()) GTEST_SKIP() << "skipped: nats-server is not installed";
     server = std::make_unique<support::NatsServer>();
@@ -27,7 +27,7 @@ class Jobs : public testing::Test {
     queue = *std::move(connected);
   }
 
-  [[nodiscard]] TakenJob take() {
+  [[nodiscard]] TakenJob take() const {
     Result<std::optional<TakenJob>> taken = queue->take();
     EXPECT_TRUE(taken && *taken);
     return taken && *taken ? **taken : TakenJob{};

@@ -83,7 +83,7 @@ TEST(FrameBatches, the_description_and_its_batches_are_a_recording) {
 TEST(FrameBatches, frames_without_room_are_counted_and_the_next_one_says_so) {
   FrameBatchWriter writer({.name = "large", .shape = {512, 512}});
   RawFrame frame;
-  frame.counts.resize(512 * 512);
+  frame.counts.resize(std::size_t{512} * 512);
   frame.acquisition.lost_before = 1;
   for (int i = 0; i < 40; ++i) writer.add(frame);
   const std::uint64_t left_out = writer.left_out();
