@@ -44,7 +44,8 @@ class Streaming : public testing::Test {
     while (publisher->counts().frames < next) std::this_thread::sleep_for(milliseconds(20));
   }
 
-  [[nodiscard]] Result<std::unique_ptr<FrameStream>> open(const std::string& rest, FrameStreamOptions options = {}) const {
+  [[nodiscard]] Result<std::unique_ptr<FrameStream>> open(const std::string& rest,
+                                                          FrameStreamOptions options = {}) const {
     const auto address = parse_stream_address(server->url() + "?robot=r1&array=chest" + rest);
     EXPECT_TRUE(address) << address.error().message;
     return FrameStream::open(*address, std::move(options));
