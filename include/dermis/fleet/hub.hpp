@@ -19,8 +19,8 @@ class Broker;
 /// The servers of a fleet: a hub, and one on each robot, which keeps its frames while the hub is away.
 struct FleetPlan {
   std::string hub = "127.0.0.1";     ///< Name or address of the hub, as robots reach it.
-  std::uint16_t port = 4222;         ///< Of each server, for its clients.
-  std::uint16_t robots_port = 7422;  ///< Of the hub, for the servers of robots.
+  std::uint16_t port = 4222;         ///< Clients of each server connect there.
+  std::uint16_t robots_port = 7422;  ///< The servers of robots connect there to the hub.
   std::vector<std::string> robots{};
 };
 

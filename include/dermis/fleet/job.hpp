@@ -12,14 +12,14 @@ namespace dermis::fleet {
 
 /// Work for any machine of a fleet: a command of dermis on files of its folder.
 struct Job {
-  std::string name;                ///< Of the user; for the list of jobs.
+  std::string name;                ///< Given by the user, for the list of jobs.
   std::vector<std::string> words;  ///< "run", "--in", "a.mcap", ...
 
   bool operator==(const Job&) const = default;
 };
 
-/// Jobs come from others. Fails on all but a few commands, which only read and write files, and on words that may lead
-/// out of the folder: absolute paths, "..", addresses of devices.
+/// Jobs come from others. Fails on all but a few commands, which only read and write files. Also fails on words that
+/// may lead out of the folder: absolute paths, "..", addresses of devices.
 [[nodiscard]] Status check_job(const Job& job);
 
 /// Reads jobs.toml: a table [[job]] with `words`, and a `name` if wanted, for each. Checks each.

@@ -22,7 +22,7 @@ struct TakenJob {
   Job job;
   std::string id;
   std::uint64_t tries = 1;  ///< This one included.
-  std::string lease;        ///< Of the server.
+  std::string lease;        ///< It names the job to the server.
 };
 
 /// The outcome of a job.
