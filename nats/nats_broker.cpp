@@ -34,9 +34,8 @@ using Message = std::unique_ptr<natsMsg, Destroyer<natsMsg_Destroy>>;
 using PublishAck = std::unique_ptr<jsPubAck, Destroyer<jsPubAck_Destroy>>;
 
 Error error_of(const std::string& place, natsStatus status) {
-  const char* const last = nats_GetLastError(nullptr);
-  const bool has_detail = last != nullptr && *last != '\0';
-  return failed(place + ": " + natsStatus_GetText(status) + (has_detail ? std::string(" (") + last + ")" : ""));
+  if (status == NATS_NO_SERVER) return failed(place + ": no server answers there");
+  return failed(place + ": " + natsStatus_GetText(status));
 }
 
 StoredMessage stored_message(natsMsg* message) {

@@ -5,6 +5,8 @@
 #include <filesystem>
 
 #include "dermis/acquisition/device_source.hpp"
+#include "dermis/fleet/stream_address.hpp"
+#include "dermis/sources/open_source.hpp"
 #include "lost_input.hpp"
 #include "status_line.hpp"
 
@@ -21,6 +23,13 @@ acquisition::SourceUri uri_of_path(const std::string& name) {
   return uri;
 }
 
+/// The frames of a robot, of which a file is to be made or told.
+Result<std::unique_ptr<FrameSource>> open_stream(const std::string& name) {
+  Result<std::unique_ptr<FrameSource>> stream = sources::open_source(name, {.notice = print_notice});
+  if (stream && (*stream)->is_live()) return bad_input("'" + name + "': has no end; add from=1&to=last");
+  return stream;
+}
+
 }  // namespace
 
 bool DescribedFile::is_described() const {
@@ -28,6 +37,7 @@ bool DescribedFile::is_described() const {
 }
 
 Result<std::unique_ptr<FrameSource>> DescribedFile::open() const {
+  if (fleet::is_stream_address(name)) return open_stream(name);
   const bool is_uri = acquisition::is_source_uri(name);
   Result<acquisition::SourceUri> uri = is_uri ? acquisition::parse_source_uri(name) : uri_of_path(name);
   if (!uri) return uri.error();

@@ -15,6 +15,7 @@
 #include "dermis/files/array_toml.hpp"
 #include "dermis/files/file_kind.hpp"
 #include "dermis/files/input.hpp"
+#include "dermis/fleet/stream_address.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "dermis/recordings/frame_file_info.hpp"
 #include "dermis/recordings/frame_files.hpp"
@@ -220,7 +221,7 @@ Status print_info(const InfoOptions& options, const DescribedFile& file) {
   if (!source) return source.error();
   const Result<FrameFileInfo> info = recordings::frame_source_info(**source);
   if (!info) return info.error();
-  print(options, "bytes of a layout", *info);
+  print(options, fleet::is_stream_address(options.file) ? "frames of a stream" : "bytes of a layout", *info);
   return Done{};
 }
 

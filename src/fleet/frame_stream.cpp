@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/fleet/frame_stream.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <limits>
@@ -12,6 +13,7 @@
 
 #include "dermis/recordings/frame_batches.hpp"
 #include "fleet/broker.hpp"
+#include "fleet/streams.hpp"
 
 namespace dermis::fleet {
 namespace {
@@ -50,6 +52,7 @@ class FrameStream::Implementation {
   [[nodiscard]] Result<bool> fetch();
   [[nodiscard]] bool is_stopped() const { return options_.stop != nullptr && *options_.stop; }
   [[nodiscard]] Error error(const Error& what) const;
+  [[nodiscard]] Error has_nothing() const;
   void tell(const Error& outage);
   void tell_of_return();
 
@@ -73,16 +76,21 @@ Error FrameStream::Implementation::error(const Error& what) const {
   return {what.kind, "'" + address_.text + "': " + what.message};
 }
 
+Error FrameStream::Implementation::has_nothing() const {
+  return bad_input("'" + address_.text + "': the server has no frames of array '" + address_.array + "' of robot '" +
+                   address_.robot + "'");
+}
+
 Status FrameStream::Implementation::begin() {
+  const Result<bool> has_robot = has_stream(*broker_, stream_);
+  if (!has_robot) return error(has_robot.error());
+  if (!*has_robot) return has_nothing();
   const std::string described = subject_of(address_.robot, address_.array, "description");
   Result<std::optional<StoredMessage>> description = broker_->last(stream_, described);
   if (!description) return error(description.error());
   const Result<std::optional<StoredMessage>> newest = broker_->last(stream_, subject_);
   if (!newest) return error(newest.error());
-  if (!*description || !*newest) {
-    return bad_input("'" + address_.text + "': the server has no frames of array '" + address_.array + "' of robot '" +
-                     address_.robot + "'");
-  }
+  if (!*description || !*newest) return has_nothing();
   description_ = std::move((*description)->bytes);
   const Result<recordings::ReadBatch> read = recordings::read_frame_batch(description_, (*newest)->bytes);
   if (!read) return error(read.error());

@@ -48,6 +48,13 @@ Status mirror_stream(Broker& broker, const std::string& robot) {
   return create_stream(broker, stream_of(robot), {{"mirror", origin}});
 }
 
+Result<bool> has_stream(Broker& broker, const std::string& name) {
+  const Result<std::string> answer = broker.ask("$JS.API.STREAM.INFO." + name, "");
+  if (!answer) return answer.error();
+  const Json info = Json::parse(*answer, nullptr, false);
+  return info.is_object() && !info.contains("error");
+}
+
 Status make_work_queue(Broker& broker, const std::string& name, const std::string& subject,
                        std::chrono::nanoseconds lease) {
   Json stream = {{"retention", "workqueue"}};

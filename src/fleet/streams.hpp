@@ -20,6 +20,9 @@ namespace dermis::fleet {
 /// stays.
 [[nodiscard]] Status mirror_stream(Broker& broker, const std::string& robot);
 
+/// Whether the server has a stream of this name.
+[[nodiscard]] Result<bool> has_stream(Broker& broker, const std::string& name);
+
 /// A stream from which a message is away when a worker has acknowledged it, and its consumer of the same name. Another
 /// worker gets a message that is not acknowledged within `lease`.
 [[nodiscard]] Status make_work_queue(Broker& broker, const std::string& name, const std::string& subject,
