@@ -28,10 +28,14 @@ NetworkShape paper_network_shape(std::size_t taxels, bool with_temperature) {
 }
 
 PaperBank::PaperBank(std::vector<Range> ratio, std::optional<Range> celsius, double heaviest_newtons)
+    : PaperBank(ratio, celsius, heaviest_newtons, {0, ratio.size()}) {}
+
+PaperBank::PaperBank(std::vector<Range> ratio, std::optional<Range> celsius, double heaviest_newtons, Part taxels)
     : ratio_(std::move(ratio)),
       celsius_(celsius),
       heaviest_newtons_(heaviest_newtons),
-      networks_(paper_network_shape(ratio_.size(), celsius.has_value()), ratio_.size()),
+      part_(taxels),
+      networks_(paper_network_shape(ratio_.size(), celsius.has_value()), taxels.count, ratio_.size()),
       inputs_(networks_.shape().inputs) {
   assert(heaviest_newtons > 0.0);
   assert(std::all_of(ratio_.begin(), ratio_.end(), [](const Range& range) { return range.low < range.high; }));
@@ -62,6 +66,7 @@ float PaperBank::target(double newtons) const noexcept {
 
 void PaperBank::estimate(std::span<const double> ratio, std::optional<double> temperature_celsius,
                          std::span<float> newtons) {
+  assert(part_.count == ratio_.size());
   normalise(ratio, temperature_celsius, inputs_);
   networks_.evaluate(inputs_, newtons);
   for (float& value : newtons) {
