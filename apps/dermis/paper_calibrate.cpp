@@ -110,8 +110,11 @@ Status calibrate(const PaperCalibrateOptions& options, Ranks& ranks) {
 Status calibrate_on_ranks(const PaperCalibrateOptions& options) {
   const Result<std::unique_ptr<Ranks>> ranks = paper::open_ranks();
   if (!ranks) return ranks.error();
+  const bool is_first = (*ranks)->rank() == 0;
+  if (!options.training.checkpoint.empty()) say_when_interrupted("interrupted; the last checkpoint stands");
+  if (!is_first) say_when_interrupted("");
   Status done = calibrate(options, **ranks);
-  return (*ranks)->rank() == 0 ? done : Done{};
+  return is_first ? done : Done{};
 }
 
 }  // namespace

@@ -87,6 +87,7 @@ TRACES = {
     '"name": "material"': "mkdocs-material",
     "--target dermis_python": "python3-numpy",
     "dermis_fast_dds dermis_open_mpi": "libopenmpi-dev",
+    '"--oversubscribe"': "libopenmpi-dev openmpi-bin",
     "#!/usr/bin/python3": "python3",
     '"--zstd"': "zstd",
     "build/release/tests/": "libgtest-dev libbenchmark-dev",

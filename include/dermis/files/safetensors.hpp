@@ -98,7 +98,7 @@ struct FileFormat {
 /// tensors are aligned to their element size.
 [[nodiscard]] Status write_safetensors(const std::string& path, const SafetensorsFile& file);
 
-/// What stands in a file before large tensors that are written piece by piece.
+/// The part of a file before large tensors that are written piece by piece.
 struct SafetensorsBeginning {
   std::string bytes;             ///< Length, header and the first tensors; the large ones follow.
   std::size_t header_bytes = 0;  ///< Of those, length and header.

@@ -110,7 +110,7 @@ struct TrainedBank {
 [[nodiscard]] Result<TrainedBank> train_paper_bank(const calibration::SampleDatabase& database,
                                                    const BankTrainingOptions& options, Ranks& ranks = one_process());
 
-/// What a rank of `ranks` needs of the samples, from rank 0 to all others.
+/// From rank 0 to all: of the samples what the training needs, and the size of the array.
 void broadcast_samples(calibration::SampleDatabase& database, Ranks& ranks);
 
 /// The memory that train_paper_bank() takes on this rank besides the database.

@@ -32,7 +32,7 @@ struct BankStep {
   float epsilon = 1e-8F;
 };
 
-/// What Adam keeps of the gradients.
+/// Running means that Adam keeps, of the gradient and of its square.
 enum class AdamMoment : std::uint8_t { first, second };
 
 /// Many networks of one shape and different weights, evaluated and trained side by side, single precision.

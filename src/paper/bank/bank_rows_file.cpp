@@ -44,7 +44,7 @@ std::uint64_t BankRowsFile::offset(std::size_t tensor, std::size_t network) cons
   return beginning_.bytes.size() + row * rows_.parameters * sizeof(float);
 }
 
-/// Of the whole file; the ranks add their rows in turn.
+/// That of the whole file; the ranks add their rows in turn.
 std::string BankRowsFile::checksum(const std::string& first, const Row& row) const {
   files::ContentHash hash = beginning_.hash;
   hash.add(first);
@@ -61,7 +61,7 @@ std::string BankRowsFile::checksum(const std::string& first, const Row& row) con
   return hash.text();
 }
 
-/// Returns 0, or the errno. What is no regular file gets all bytes one after the other.
+/// Returns 0, or the errno. All bytes follow each other where the file is not regular.
 int BankRowsFile::write_own(int descriptor, bool is_regular, const std::string& beginning, const Row& give) const {
   const auto write = [&](std::span<const std::byte> bytes, std::uint64_t offset) {
     return files::write_all(descriptor, bytes, is_regular ? std::optional(offset) : std::nullopt);

@@ -31,6 +31,7 @@ constexpr double kRelativeDownTo = 0.5;  // of the heaviest force
 constexpr double kRateOfSum = 2.0;       // of N connections together in a step: more breaks up the paper's start
 constexpr double kHighestRate = 0.05;
 constexpr double kLowestRate = 1e-5;
+constexpr std::size_t kOtherBytes = std::size_t{16} << 20U;  // buffers of MPI, and rows of files
 constexpr float kSecondDecay = 0.97F;  // 0.999 takes twice the steps
 
 /// The range of each taxel over all samples; a taxel that never changes gets a range of 1.
@@ -271,7 +272,7 @@ std::size_t bank_training_bytes(const SampleDatabase& database, const Ranks& ran
   const NetworkShape shape = paper_network_shape(taxels, temperature_range(database).has_value());
   // Inputs; target, weight and twice the index, as a vector grows, of each network.
   const std::size_t patterns = database.samples.size() * (shape.inputs + 4 * networks) * sizeof(float);
-  return patterns + NetworkBank::training_bytes(shape, networks, taxels, kBatch);
+  return patterns + NetworkBank::training_bytes(shape, networks, taxels, kBatch) + kOtherBytes;
 }
 
 }  // namespace dermis::paper
