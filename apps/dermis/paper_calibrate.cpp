@@ -76,9 +76,9 @@ std::size_t peak_bytes() {
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
 }
 
-void say_memory(const SampleDatabase& database, Ranks& ranks) {
+void say_memory(const PaperCalibrateOptions& options, const SampleDatabase& database, Ranks& ranks) {
   std::vector<std::size_t> bytes(ranks.count());
-  bytes[ranks.rank()] = peak_bytes() + paper::bank_training_bytes(database, ranks);
+  bytes[ranks.rank()] = peak_bytes() + paper::bank_training_bytes(database, options.training.batch, ranks);
   paper::gather(ranks, std::span(bytes));
   if (ranks.rank() > 0) return;
   constexpr std::size_t kMegabyte = 1'000'000;
@@ -91,7 +91,7 @@ Status calibrate(const PaperCalibrateOptions& options, Ranks& ranks) {
   Result<SampleDatabase> database = is_first ? read_samples(options) : SampleDatabase{};
   if (Status read = paper::agreed(ranks, database ? Status(Done{}) : database.error()); !read) return read;
   paper::broadcast_samples(*database, ranks);
-  if (ranks.count() > 1) say_memory(*database, ranks);
+  if (ranks.count() > 1) say_memory(options, *database, ranks);
   Progress progress(database->array.name);
   paper::BankTrainingOptions training = options.training;
   if (is_first) training.progress = [&](double share) { progress.show("bank", share); };
@@ -125,6 +125,7 @@ void add_paper_calibrate(Command& command) {
   command.output_model("--bank", options->bank, "Bank to write (safetensors; 16x16: minutes, 135 MB)").required();
   command.option("--steps", options->training.steps, "Steps of the training; with fewer, it is less exact")
       .shows_default();
+  command.option("--batch", options->training.batch, "Samples that each network draws for a step").shows_default();
   command.output_model("--checkpoint", options->training.checkpoint,
                        "File from which the same command goes on if it was ended; removed when the bank is there");
   command.option("--interval", options->training.interval, "Steps from one checkpoint to the next").shows_default();

@@ -223,6 +223,9 @@ TEST(BankTraining, refuses_the_checkpoint_of_another_training) {
   other.steps = 5;
   expect_refused(other, "not of this training");
   other = options;
+  other.batch = 8;
+  expect_refused(other, "not of this training");
+  other = options;
   other.seed = 2;
   expect_refused(other, "not of this training");
   std::string bytes = support::read_bytes(options.checkpoint);
@@ -241,6 +244,7 @@ TEST(BankTraining, refuses_the_checkpoint_of_another_training) {
 
 TEST(BankTraining, refuses_options_that_are_out_of_range) {
   EXPECT_EQ(BankTrainingOptions{.steps = 0}.validate().error().field, "steps");
+  EXPECT_EQ(BankTrainingOptions{.batch = 0}.validate().error().field, "batch");
   EXPECT_EQ(BankTrainingOptions{.interval = 0}.validate().error().field, "interval");
   const SampleDatabase database = database_of(reference_array(2, 2), "paper_calibration");
   EXPECT_FALSE(train_paper_bank(database, {.steps = 0}));

@@ -23,6 +23,9 @@ enum class BankStart {
   xavier,         ///< Random, scaled by the number of connections.
 };
 
+/// Samples that each network draws for a step; larger batches converge in as many steps.
+inline constexpr std::size_t kBankBatch = 16;
+
 /// The training of the paper's bank on a sample database: Fig. 9 for all networks at once, in mini-batches.
 ///
 /// A network's own presses are a few of very many samples (14 of 3,584 if every taxel is pressed alone). So half of
@@ -34,7 +37,7 @@ class BankTraining {
   /// `ranks` must outlive it. Errors: no sample has a known force on a single taxel; more unknowns than kMostUnknowns;
   /// more ranks than networks.
   [[nodiscard]] static Result<BankTraining> create(const calibration::SampleDatabase& database, std::uint64_t seed,
-                                                   Ranks& ranks = one_process());
+                                                   Ranks& ranks = one_process(), std::size_t batch = kBankBatch);
 
   /// Sets all parameters anew; before the first step.
   void start(BankStart start);
@@ -48,7 +51,8 @@ class BankTraining {
   [[nodiscard]] PaperBank& bank() noexcept { return bank_; }
 
  private:
-  BankTraining(const calibration::SampleDatabase& database, PaperBank bank, std::uint64_t seed, Ranks& ranks);
+  BankTraining(const calibration::SampleDatabase& database, PaperBank bank, std::uint64_t seed, Ranks& ranks,
+               std::size_t batch);
   void fill_patterns(const calibration::SampleDatabase& database);
   [[nodiscard]] std::vector<float> start_parameters(BankStart start, std::uint64_t seed) const;
   void draw_batch();
@@ -65,6 +69,7 @@ class BankTraining {
   std::size_t rows_;
   std::size_t cols_;
   std::uint64_t seed_;
+  std::size_t batch_;
   std::vector<Choice> choices_;  // [networks], like all that follows those of the rank, but for the errors
   std::vector<float> inputs_;    // [samples, inputs]
   std::vector<float> targets_;   // [samples, networks]
@@ -79,6 +84,7 @@ inline constexpr std::size_t kBankSteps = 6000;
 
 struct BankTrainingOptions {
   std::size_t steps = kBankSteps;  ///< >= 1
+  std::size_t batch = kBankBatch;  ///< 1 ... 65,536
   std::uint64_t seed = 1;
   std::string checkpoint{};    ///< A file: a training that was ended goes on from there; empty: none.
   std::size_t interval = 500;  ///< >= 1, steps from one writing of that file to the next.
@@ -114,6 +120,7 @@ struct TrainedBank {
 void broadcast_samples(calibration::SampleDatabase& database, Ranks& ranks);
 
 /// The memory that train_paper_bank() takes on this rank besides the database.
-[[nodiscard]] std::size_t bank_training_bytes(const calibration::SampleDatabase& database, const Ranks& ranks);
+[[nodiscard]] std::size_t bank_training_bytes(const calibration::SampleDatabase& database, std::size_t batch,
+                                              const Ranks& ranks);
 
 }  // namespace dermis::paper

@@ -53,8 +53,10 @@ BankCheckpoint::BankCheckpoint(const calibration::SampleDatabase& database, cons
 BankRowsFile BankCheckpoint::file_of(const NetworkBank& networks, std::vector<double> curve) const {
   curve.resize(options_.steps, kNotYet);
   files::SafetensorsFile first;
-  first.metadata = {
-      {"format", "dermis paper bank checkpoint 1"}, {"samples", samples_}, {"seed", std::to_string(options_.seed)}};
+  first.metadata = {{"format", "dermis paper bank checkpoint 1"},
+                    {"samples", samples_},
+                    {"batch", std::to_string(options_.batch)},
+                    {"seed", std::to_string(options_.seed)}};
   first.tensors["curve"] = {{options_.steps}, std::move(curve)};
   return {first, {{kTensors.begin(), kTensors.end()}, taxels_, networks.shape().parameter_count()}, ranks_};
 }
@@ -77,15 +79,16 @@ Result<std::vector<double>> BankCheckpoint::read(NetworkBank& networks) const {
   if (!is_there) return std::vector<double>{};
   const Result<std::string> read =
       file_of(networks, {})
-          .read(options_.checkpoint,
-                "is not of this training, but of other samples, steps or another seed; remove it to begin anew",
-                [&](std::size_t tensor, std::size_t network, std::span<float> values) {
-                  if (tensor == kParameters) {
-                    networks.set_parameters(network, values);
-                  } else {
-                    networks.set_moment(moment_of(tensor), network, values);
-                  }
-                });
+          .read(
+              options_.checkpoint,
+              "is not of this training, but of other samples, steps, batches or another seed; remove it to begin anew",
+              [&](std::size_t tensor, std::size_t network, std::span<float> values) {
+                if (tensor == kParameters) {
+                  networks.set_parameters(network, values);
+                } else {
+                  networks.set_moment(moment_of(tensor), network, values);
+                }
+              });
   if (!read) return read.error();
   std::vector<double> curve(options_.steps);
   std::memcpy(curve.data(), read->data(), read->size());

@@ -26,13 +26,13 @@ using calibration::SampleDatabase;
 
 namespace {
 
-constexpr std::size_t kBatch = 16;       // larger ones converge in as many steps
+constexpr std::size_t kMostBatch = 65'536;
 constexpr double kRelativeDownTo = 0.5;  // of the heaviest force
 constexpr double kRateOfSum = 2.0;       // of N connections together in a step: more breaks up the paper's start
 constexpr double kHighestRate = 0.05;
 constexpr double kLowestRate = 1e-5;
 constexpr std::size_t kOtherBytes = std::size_t{16} << 20U;  // buffers of MPI, and rows of files
-constexpr float kSecondDecay = 0.97F;  // 0.999 takes twice the steps
+constexpr float kSecondDecay = 0.97F;                        // 0.999 takes twice the steps
 
 /// The range of each taxel over all samples; a taxel that never changes gets a range of 1.
 std::vector<PaperBank::Range> ratio_ranges(const SampleDatabase& database) {
@@ -132,24 +132,30 @@ Status check_bank_samples(const SampleDatabase& database, const Ranks& ranks) {
 
 Status BankTrainingOptions::validate() const {
   if (steps < 1) return bad_field("steps", "must be 1 or more, is 0");
+  if (batch < 1 || batch > kMostBatch) {
+    return bad_field("batch", fmt::format("must be 1 to {}, is {}", kMostBatch, batch));
+  }
   if (interval < 1) return bad_field("interval", "must be 1 or more, is 0");
   return Done{};
 }
 
-Result<BankTraining> BankTraining::create(const SampleDatabase& database, std::uint64_t seed, Ranks& ranks) {
+Result<BankTraining> BankTraining::create(const SampleDatabase& database, std::uint64_t seed, Ranks& ranks,
+                                          std::size_t batch) {
   if (Status checked = check_bank_samples(database, ranks); !checked) return checked.error();
   const Part part = own_part(ranks, database.array.taxel_count());
   PaperBank bank(ratio_ranges(database), temperature_range(database), heaviest_force(database), part);
-  return BankTraining(database, std::move(bank), seed, ranks);
+  return BankTraining(database, std::move(bank), seed, ranks, batch);
 }
 
-BankTraining::BankTraining(const SampleDatabase& database, PaperBank bank, std::uint64_t seed, Ranks& ranks)
+BankTraining::BankTraining(const SampleDatabase& database, PaperBank bank, std::uint64_t seed, Ranks& ranks,
+                           std::size_t batch)
     : ranks_(&ranks),
       bank_(std::move(bank)),
       rows_(database.array.rows),
       cols_(database.array.cols),
       seed_(seed),
-      chosen_(bank_.part().count * kBatch),
+      batch_(batch),
+      chosen_(bank_.part().count * batch),
       chosen_weights_(chosen_.size()),
       errors_(bank_.taxel_count()) {
   fill_patterns(database);
@@ -206,13 +212,13 @@ void BankTraining::draw_batch() {
   const std::size_t networks = choices_.size();
   for (std::size_t network = 0; network < networks; ++network) {
     Choice& choice = choices_[network];
-    for (std::size_t k = 0; k < kBatch; ++k) {
-      const bool want_loaded = (k < kBatch / 2 && !choice.loaded.empty()) || choice.unloaded.empty();
+    for (std::size_t k = 0; k < batch_; ++k) {
+      const bool want_loaded = (k < batch_ / 2 && !choice.loaded.empty()) || choice.unloaded.empty();
       const std::vector<std::uint32_t>& from = want_loaded ? choice.loaded : choice.unloaded;
       if (from.empty()) break;  // no sample has this taxel: its chosen weights stay 0
       const std::uint32_t sample = from[choice.random.below(from.size())];
-      chosen_[network * kBatch + k] = sample;
-      chosen_weights_[network * kBatch + k] = weights_[sample * networks + network];
+      chosen_[network * batch_ + k] = sample;
+      chosen_weights_[network * batch_ + k] = weights_[sample * networks + network];
     }
   }
 }
@@ -224,7 +230,7 @@ void BankTraining::skip(std::size_t steps) {
 double BankTraining::step(const BankStep& step) {
   draw_batch();
   const Part part = bank_.part();
-  bank_.networks().train_step({kBatch, inputs_, targets_, chosen_, chosen_weights_}, step,
+  bank_.networks().train_step({batch_, inputs_, targets_, chosen_, chosen_weights_}, step,
                               std::span(errors_).subspan(part.first, part.count));
   gather(*ranks_, std::span(errors_));
   return std::accumulate(errors_.begin(), errors_.end(), 0.0) / static_cast<double>(errors_.size());
@@ -232,7 +238,7 @@ double BankTraining::step(const BankStep& step) {
 
 Result<TrainedBank> train_paper_bank(const SampleDatabase& database, const BankTrainingOptions& options, Ranks& ranks) {
   if (Status valid = options.validate(); !valid) return valid.error();
-  Result<BankTraining> training = BankTraining::create(database, options.seed, ranks);
+  Result<BankTraining> training = BankTraining::create(database, options.seed, ranks, options.batch);
   if (!training) return training.error();
   training->start(BankStart::structured);
   const std::size_t taxels = database.array.taxel_count();
@@ -266,13 +272,14 @@ Result<TrainedBank> train_paper_bank(const SampleDatabase& database, const BankT
   return TrainedBank{std::move(training->bank()), std::move(report)};
 }
 
-std::size_t bank_training_bytes(const SampleDatabase& database, const Ranks& ranks) {
+std::size_t bank_training_bytes(const SampleDatabase& database, std::size_t batch, const Ranks& ranks) {
   const std::size_t taxels = database.array.taxel_count();
   const std::size_t networks = own_part(ranks, taxels).count;
   const NetworkShape shape = paper_network_shape(taxels, temperature_range(database).has_value());
   // Inputs; target, weight and twice the index, as a vector grows, of each network.
   const std::size_t patterns = database.samples.size() * (shape.inputs + 4 * networks) * sizeof(float);
-  return patterns + NetworkBank::training_bytes(shape, networks, taxels, kBatch) + kOtherBytes;
+  const std::size_t drawn = 2 * networks * batch * sizeof(float);
+  return patterns + drawn + NetworkBank::training_bytes(shape, networks, taxels, batch) + kOtherBytes;
 }
 
 }  // namespace dermis::paper
