@@ -104,7 +104,7 @@ TEST(BankRowsFile, refuses_any_other_bytes) {
       bytes.resize(random.below(bytes.size()));
     } else {
       char& byte = bytes[random.below(bytes.size())];
-      byte = static_cast<char>(byte ^ (1U << random.below(8)));
+      byte = static_cast<char>(static_cast<unsigned char>(byte) ^ (1U << random.below(8)));
     }
     support::write_bytes(folder.file("damaged"), bytes);
     const Result<std::string> refused = read(folder.file("damaged"), one_process());

@@ -43,10 +43,10 @@ class PaperBank : public calibration::FurtherEstimator {
     double high = 1.0;  ///< > low
   };
 
-  /// All parameters 0. `ratio` [taxels]; a temperature range makes temperature an input.
-  PaperBank(std::vector<Range> ratio, std::optional<Range> celsius, double heaviest_newtons);
-  /// The same with the networks of some taxels alone, which cannot estimate.
-  PaperBank(std::vector<Range> ratio, std::optional<Range> celsius, double heaviest_newtons, Part taxels);
+  /// All parameters 0. `ratio` [taxels]; a temperature range makes temperature an input. With the networks of some
+  /// taxels alone, it cannot estimate.
+  PaperBank(std::vector<Range> ratio, std::optional<Range> celsius, double heaviest_newtons,
+            std::optional<Part> taxels = {});
 
   [[nodiscard]] std::string name() const override { return kPaperBankName; }
   [[nodiscard]] std::string description() const override;
