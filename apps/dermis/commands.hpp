@@ -29,5 +29,6 @@ void add_image(Command& command);
 void add_top(Command& command);
 void add_watch(Command& command);
 void add_serve(Command& command);
+void add_fleet(Command& command);
 
 }  // namespace dermis::app
