@@ -18,6 +18,7 @@
 #include "kept_model.hpp"
 #include "paper_commands.hpp"
 #include "status_line.hpp"
+#include "writable.hpp"
 
 namespace dermis::app {
 namespace {
@@ -62,6 +63,9 @@ void print_json(const BankTrainingReport& report, const ArrayDescription& array)
 
 /// On rank 0, which alone reads; the others get the samples of it.
 Result<SampleDatabase> read_samples(const PaperCalibrateOptions& options) {
+  if (Status valid = options.training.validate(); !valid) return valid.error();
+  const std::string& checkpoint = options.training.checkpoint;
+  if (Status writable = checkpoint.empty() ? Done{} : check_writable(checkpoint); !writable) return writable.error();
   const Result<CalibrationInput> input = CalibrationInput::read(options.files, options.bank);
   if (!input) return input.error();
   Progress progress(input->array.name);
