@@ -25,7 +25,7 @@ ENVIRONMENT = {
     "OMPI_MCA_hwloc_base_binding_policy": "none",
 }
 MEMORY = re.compile(r"each of (\d) ranks takes at most (\d+) MB of memory")
-STEPS = 1200
+STEPS = 600
 
 
 def peak_of(process_number):
