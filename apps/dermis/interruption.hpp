@@ -11,7 +11,7 @@ namespace dermis::app {
 /// commands look at stop_flag().
 void end_when_interrupted();
 
-/// What is said then, in place of "interrupted; nothing is half-written"; empty: nothing. Thread-safe.
+/// Says this then, in place of "interrupted; nothing is half-written"; empty: nothing. Thread-safe.
 void say_when_interrupted(const std::string& text);
 
 }  // namespace dermis::app
