@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <mutex>
 #include <thread>
 
 #include "dermis/files/output_place.hpp"
@@ -14,6 +15,16 @@ namespace dermis::app {
 namespace {
 
 constexpr int kExitSignalled = 128;
+
+struct Notice {
+  std::mutex mutex;
+  std::string text = "interrupted; nothing is half-written";
+};
+
+Notice& notice() {
+  static Notice said;
+  return said;
+}
 
 bool is_ignored(int signal_number) {  // by nohup
   struct sigaction present {};
@@ -26,7 +37,8 @@ void wait_for(sigset_t signals) {
   int received = 0;
   if (sigwait(&signals, &received) != 0) return;
   files::remove_unfinished_files();
-  print_notice("dermis: interrupted; nothing is half-written");
+  notice().mutex.lock();
+  if (!notice().text.empty()) print_notice("dermis: " + notice().text);
   ::_exit(kExitSignalled + received);
 }
 
@@ -40,6 +52,11 @@ void end_when_interrupted() {
   }
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   std::thread(wait_for, signals).detach();
+}
+
+void say_when_interrupted(const std::string& text) {
+  const std::lock_guard lock(notice().mutex);
+  notice().text = text;
 }
 
 }  // namespace dermis::app

@@ -32,7 +32,6 @@ using Values = decltype(Tensor::values);
 
 constexpr std::size_t kLengthBytes = 8;
 constexpr std::size_t kAlignment = 8;
-constexpr std::size_t kMaxFileBytes = std::size_t{1} << 30U;
 constexpr std::size_t kMaxHeaderBytes = std::size_t{1} << 22U;
 constexpr const char* kMetadata = "__metadata__";
 constexpr const char* kChecksum = "checksum";  // a key of the metadata
@@ -267,15 +266,31 @@ std::vector<std::pair<std::string, const Tensor*>> in_file_order(const Safetenso
   return order;
 }
 
-std::string header_of(const SafetensorsFile& file, const std::map<std::string, std::string>& metadata) {
+/// A tensor as the header lists it.
+struct ListedTensor {
+  std::string name;
+  const char* type;
+  Shape shape;
+  std::size_t bytes;
+};
+
+std::vector<ListedTensor> list_tensors(const SafetensorsFile& file) {
+  std::vector<ListedTensor> listed;
+  for (const auto& [name, tensor] : in_file_order(file)) {
+    listed.push_back({name, type_name(tensor->values), tensor->shape, bytes_of(tensor->values).size()});
+    assert(listed.back().bytes == shape_product(tensor->shape).value() * element_bytes(tensor->values));
+  }
+  return listed;
+}
+
+std::string header_of(const std::vector<ListedTensor>& tensors, const std::map<std::string, std::string>& metadata) {
   json header = json::object();
   if (!metadata.empty()) header[kMetadata] = metadata;
   std::size_t offset = 0;
-  for (const auto& [name, tensor] : in_file_order(file)) {
-    assert(name != kMetadata);
-    assert(bytes_of(tensor->values).size() == shape_product(tensor->shape).value() * element_bytes(tensor->values));
-    const std::size_t end = offset + bytes_of(tensor->values).size();
-    header[name] = {{"dtype", type_name(tensor->values)}, {"shape", tensor->shape}, {"data_offsets", {offset, end}}};
+  for (const ListedTensor& tensor : tensors) {
+    assert(tensor.name != kMetadata);
+    const std::size_t end = offset + tensor.bytes;
+    header[tensor.name] = {{"dtype", tensor.type}, {"shape", tensor.shape}, {"data_offsets", {offset, end}}};
     offset = end;
   }
   std::string text = header.dump(-1, ' ', false, json::error_handler_t::replace);
@@ -283,10 +298,15 @@ std::string header_of(const SafetensorsFile& file, const std::map<std::string, s
   return text;
 }
 
+std::string length_of(const std::string& header) {
+  const auto length = static_cast<std::uint64_t>(header.size());
+  return {reinterpret_cast<const char*>(&length), kLengthBytes};
+}
+
 /// Checksum of the file as it is written without one: a program that writes the same content otherwise keeps it.
 std::string checksum_of(const SafetensorsFile& file) {
   ContentHash hash;
-  hash.add(header_of(file, file.metadata));
+  hash.add(header_of(list_tensors(file), file.metadata));
   for (const auto& [name, tensor] : in_file_order(file)) hash.add(bytes_of(tensor->values));
   return hash.text();
 }
@@ -322,8 +342,8 @@ template Result<std::span<const double>> SafetensorsFile::view(const std::string
 template Result<std::span<const std::uint8_t>> SafetensorsFile::view(const std::string&, const Shape&) const;
 template Result<std::span<const std::int64_t>> SafetensorsFile::view(const std::string&, const Shape&) const;
 
-Result<SafetensorsFile> read_safetensors(const std::string& path) {
-  const Result<std::string> bytes = read_file(path, kMaxFileBytes);
+Result<SafetensorsFile> read_safetensors(const std::string& path, std::size_t most_bytes) {
+  const Result<std::string> bytes = read_file(path, most_bytes);
   if (!bytes) return bytes.error();
   return safetensors_from_bytes(*bytes, path);
 }
@@ -358,16 +378,36 @@ std::optional<std::string> checksum_note(const std::string& path, const FileForm
 Status write_safetensors(const std::string& path, const SafetensorsFile& file) {
   std::map<std::string, std::string> metadata = file.metadata;
   metadata[kChecksum] = checksum_of(file);
-  const std::string header = header_of(file, metadata);
+  const std::string header = header_of(list_tensors(file), metadata);
   if (header.size() > kMaxHeaderBytes)
     return failed("cannot write " + in_quotes(path) + ": its header would be too long");
   Result<AtomicFile> out = AtomicFile::create(path);
   if (!out) return out.error();
-  const auto length = static_cast<std::uint64_t>(header.size());
-  out->write({reinterpret_cast<const char*>(&length), kLengthBytes});
+  out->write(length_of(header));
   out->write(header);
   for (const auto& [name, tensor] : in_file_order(file)) out->write(bytes_of(tensor->values));
   return out->commit();
+}
+
+SafetensorsBeginning begin_safetensors(const SafetensorsFile& file, const std::vector<std::string>& names,
+                                       const Shape& shape) {
+  std::vector<ListedTensor> tensors = list_tensors(file);
+  for (const std::string& name : names) {
+    tensors.push_back({name, kTypeNames[0], shape, shape_product(shape).value() * sizeof(float)});
+  }
+  SafetensorsBeginning beginning;
+  beginning.hash.add(header_of(tensors, file.metadata));
+  std::map<std::string, std::string> metadata = file.metadata;
+  metadata[kChecksum] = ContentHash().text();  // of as many characters as any
+  const std::string header = header_of(tensors, metadata);
+  beginning.bytes = length_of(header) + header;
+  beginning.header_bytes = beginning.bytes.size();
+  beginning.checksum = beginning.bytes.find(metadata[kChecksum]);
+  for (const auto& [name, tensor] : in_file_order(file)) {
+    assert(element_bytes(tensor->values) == kAlignment);
+    beginning.bytes += bytes_of(tensor->values);
+  }
+  return beginning;
 }
 
 }  // namespace dermis::files

@@ -105,7 +105,7 @@ def header_violations(root):
 
 
 def licence_violations(root):
-    for folder in ("src", "apps", "c", "dds", "python", "tests", "examples", "benchmarks", "fuzz"):
+    for folder in ("src", "apps", "c", "dds", "mpi", "python", "tests", "examples", "benchmarks", "fuzz"):
         for path in sorted((root / folder).rglob("*.[ch]pp")):
             if not path.read_text().startswith(SPDX):
                 yield f"{path.relative_to(root)}: must begin with the two SPDX lines"

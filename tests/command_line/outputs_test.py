@@ -18,7 +18,7 @@ COMMANDS = {
     "describe": (("source",), ("--out",)),
     "image": (("--in", "--model"), ("--out",)),
     "learn": (("--labels", "--in", "--model", "--splits", "--open"), ("--out", "--predictions", "--open-predictions")),
-    "paper calibrate": (("--array", "--frames", "--loads"), ("--bank",)),
+    "paper calibrate": (("--array", "--frames", "--loads"), ("--bank", "--checkpoint")),
     "recalibrate": (("--model", "--frames", "--loads"), ("--out",)),
     "recognise": (("--classes", "--in", "--model", "--extra"), ("--out",)),
     "record": (("--from", "--array", "--model"), ("--out",)),
@@ -34,6 +34,7 @@ FOLDERS = {
     "learn": (("--labels", "--in", "--model", "--splits", "--open"), "--report", ("index.html",)),
 }
 MODELS = {("calibrate", "--out"), ("learn", "--out"), ("paper calibrate", "--bank"), ("recalibrate", "--out")}
+MODELS |= {("paper calibrate", "--checkpoint")}  # which is gone on from, or refused
 PROTECTED = {
     "a recording": b"\x89MCAP0\r\n",
     "a model": b"\x10\0\0\0\0\0\0\0{}              ",

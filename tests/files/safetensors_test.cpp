@@ -122,6 +122,29 @@ TEST(Safetensors, copies_tensors_out_and_keeps_the_first_error) {
   EXPECT_NE(reader.first_error()->message.find("missing"), std::string::npos);
 }
 
+TEST(Safetensors, the_beginning_and_large_tensors_are_what_is_written_at_once) {
+  const support::TemporaryFolder folder;
+  SafetensorsFile first;
+  first.metadata["format"] = "test";
+  put_tensor(first, "zeros", {2}, std::vector<double>{0.5, 2.0});
+  put_tensor(first, "counts", {1}, std::vector<std::int64_t>{7});
+  SafetensorsFile whole = first;
+  const std::vector<float> rows = {1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 6.0F};
+  put_tensor(whole, "a", {3, 2}, rows);
+  put_tensor(whole, "b", {3, 2}, rows);
+  ASSERT_TRUE(write_safetensors(folder.file("whole"), whole));
+
+  const SafetensorsBeginning beginning = begin_safetensors(first, {"a", "b"}, {3, 2});
+  const std::string_view row_bytes(reinterpret_cast<const char*>(rows.data()), rows.size() * sizeof(float));
+  ContentHash hash = beginning.hash;
+  hash.add(std::string_view(beginning.bytes).substr(beginning.header_bytes));
+  hash.add(row_bytes);
+  hash.add(row_bytes);
+  std::string bytes = beginning.bytes;
+  bytes.replace(beginning.checksum, hash.text().size(), hash.text());
+  EXPECT_EQ(bytes.append(row_bytes).append(row_bytes), support::read_bytes(folder.file("whole")));
+}
+
 TEST(Safetensors, refuses_every_file_cut_short) {
   const std::string bytes = written_bytes(example());
   for (std::size_t size = 0; size < bytes.size(); ++size) {

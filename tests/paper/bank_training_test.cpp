@@ -11,6 +11,9 @@
 #include "calibration/simulated.hpp"
 #include "dermis/calibration/calibrate.hpp"
 #include "dermis/calibration/evaluation.hpp"
+#include "dermis/paper/paper_bank_file.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/thread_ranks.hpp"
 
 namespace dermis::paper {
 namespace {
@@ -20,6 +23,8 @@ using calibration::Recording;
 using calibration::reference_array;
 using calibration::Sample;
 using calibration::SampleDatabase;
+using support::on_ranks;
+using support::TemporaryFolder;
 
 SampleDatabase database_of(const ArrayDescription& array, const char* scene) {
   const Recording recording = record(array, scene, 1);
@@ -76,15 +81,17 @@ TEST(BankTraining, every_start_lowers_its_error_under_gradient_descent) {
 
 TEST(BankTraining, the_same_seed_gives_the_same_bank_and_another_seed_another) {
   const SampleDatabase database = database_of(reference_array(4, 4), "paper_calibration");
-  const TrainedBank trained = train_paper_bank(database, 5, 1).value();
-  EXPECT_EQ(parameters_of(train_paper_bank(database, 5, 1)->bank, 3), parameters_of(trained.bank, 3));
-  EXPECT_NE(parameters_of(train_paper_bank(database, 5, 2)->bank, 3), parameters_of(trained.bank, 3));
+  const TrainedBank trained = train_paper_bank(database, {.steps = 5, .seed = 1}).value();
+  EXPECT_EQ(parameters_of(train_paper_bank(database, {.steps = 5, .seed = 1})->bank, 3),
+            parameters_of(trained.bank, 3));
+  EXPECT_NE(parameters_of(train_paper_bank(database, {.steps = 5, .seed = 2})->bank, 3),
+            parameters_of(trained.bank, 3));
 }
 
 TEST(BankTraining, reaches_the_papers_five_percent_on_its_points) {
   const ArrayDescription array = reference_array(5, 4);
   const SampleDatabase database = database_of(array, "paper_calibration");
-  TrainedBank trained = train_paper_bank(database, 5000, 1).value();
+  TrainedBank trained = train_paper_bank(database, {.steps = 5000}).value();
   EXPECT_EQ(trained.report.unknowns, paper_bank_unknowns(20));
   const Recording presses = record(array, "paper_calibration", 1);
   const calibration::Calibration calibrated = calibration::calibrate(array, presses.frames, presses.loads).value();
@@ -112,7 +119,7 @@ TEST(BankTraining, says_which_taxels_were_never_loaded_and_which_never_change) {
     sample.ratio[3] = 0.25;
     if (sample.known_newtons[6] > 0.0F) sample.known_newtons[6] = std::numeric_limits<float>::quiet_NaN();
   }
-  const BankTrainingReport report = train_paper_bank(database, 2, 1)->report;
+  const BankTrainingReport report = train_paper_bank(database, {.steps = 2})->report;
   EXPECT_EQ(report.never_loaded, std::vector<std::size_t>{6});
   EXPECT_EQ(report.constant_readings, std::vector<std::size_t>{3});
 }
@@ -133,6 +140,114 @@ TEST(BankTraining, refuses_an_array_whose_bank_would_not_fit_into_memory) {
   const Result<BankTraining> refused = BankTraining::create(database, 1);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message.find("4096 taxels"), std::string::npos);
+}
+
+TEST(BankTraining, refuses_more_ranks_than_networks) {
+  const SampleDatabase database = database_of(reference_array(2, 2), "paper_calibration");
+  on_ranks(5, [&](Ranks& ranks) {
+    const Result<BankTraining> refused = BankTraining::create(database, 1, ranks);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("5 ranks"), std::string::npos);
+  });
+}
+
+/// Trains on so many ranks, of which the first alone has the samples, and returns the bytes of the bank's file.
+std::string bytes_of_bank(const SampleDatabase& database, const BankTrainingOptions& options, std::size_t count) {
+  const TemporaryFolder folder;
+  on_ranks(count, [&](Ranks& ranks) {
+    SampleDatabase own = ranks.rank() == 0 ? database : SampleDatabase{};
+    broadcast_samples(own, ranks);
+    const Result<TrainedBank> trained = train_paper_bank(own, options, ranks);
+    ASSERT_TRUE(trained) << trained.error().message;
+    EXPECT_EQ(trained->report.curve.size(), options.steps);
+    EXPECT_EQ(trained->bank.part().count, own_part(ranks, database.array.taxel_count()).count);
+    ASSERT_TRUE(write_paper_bank(folder.file("bank"), trained->bank, ranks));
+  });
+  EXPECT_EQ(folder.file_count(), 1U);
+  return support::read_bytes(folder.file("bank"));
+}
+
+// The networks of the first lie in lanes, where there are as many as lanes; those of the second in panels, with
+// padding.
+const std::vector<std::pair<std::size_t, std::size_t>> kSizes = {{4, 4}, {7, 7}};
+
+TEST(BankTraining, any_number_of_ranks_gives_the_same_bits) {
+  for (const auto& [rows, cols] : kSizes) {
+    const SampleDatabase database = database_of(reference_array(rows, cols), "calibration");
+    const std::string alone = bytes_of_bank(database, {.steps = 20}, 1);
+    for (const std::size_t count : {2U, 3U, 4U, 5U}) {
+      EXPECT_TRUE(bytes_of_bank(database, {.steps = 20}, count) == alone) << count << " ranks";
+    }
+  }
+}
+
+TEST(BankTraining, goes_on_from_a_checkpoint_with_the_bits_of_one_run) {
+  for (const auto& [rows, cols] : kSizes) {
+    const SampleDatabase database = database_of(reference_array(rows, cols), "calibration");
+    const std::string at_once = bytes_of_bank(database, {.steps = 20}, 1);
+    for (const auto& [before, after] : {std::pair{1U, 1U}, std::pair{3U, 3U}, std::pair{1U, 4U}, std::pair{2U, 1U}}) {
+      const TemporaryFolder folder;
+      BankTrainingOptions options{.steps = 20, .checkpoint = folder.file("checkpoint"), .interval = 8};
+      // The last checkpoint is that of step 16; to go on from it stands for an end between it and step 20.
+      EXPECT_TRUE(bytes_of_bank(database, options, before) == at_once);
+      EXPECT_EQ(folder.file_count(), 1U);
+      std::size_t steps = 0;
+      options.progress = [&](double /*share*/) { ++steps; };
+      on_ranks(after, [&](Ranks& ranks) {
+        BankTrainingOptions own = options;
+        if (ranks.rank() > 0) own.progress = {};
+        const Result<TrainedBank> trained = train_paper_bank(database, own, ranks);
+        ASSERT_TRUE(trained) << trained.error().message;
+        EXPECT_EQ(trained->report.resumed_at, 16U);
+        ASSERT_TRUE(write_paper_bank(folder.file("bank"), trained->bank, ranks));
+      });
+      EXPECT_EQ(steps, 4U);
+      EXPECT_TRUE(support::read_bytes(folder.file("bank")) == at_once) << before << " ranks, then " << after;
+    }
+  }
+}
+
+TEST(BankTraining, refuses_the_checkpoint_of_another_training) {
+  const TemporaryFolder folder;
+  SampleDatabase database = database_of(reference_array(4, 4), "paper_calibration");
+  const BankTrainingOptions options{.steps = 4, .checkpoint = folder.file("checkpoint"), .interval = 2};
+  ASSERT_TRUE(train_paper_bank(database, options));
+  const auto expect_refused = [&](const BankTrainingOptions& other, const char* why) {
+    const Result<TrainedBank> refused = train_paper_bank(database, other);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, ErrorKind::bad_input);
+    EXPECT_NE(refused.error().message.find(folder.file("checkpoint") + ": "), std::string::npos);
+    EXPECT_NE(refused.error().message.find(why), std::string::npos) << refused.error().message;
+  };
+  BankTrainingOptions other = options;
+  other.steps = 5;
+  expect_refused(other, "not of this training");
+  other = options;
+  other.batch = 8;
+  expect_refused(other, "not of this training");
+  other = options;
+  other.seed = 2;
+  expect_refused(other, "not of this training");
+  std::string bytes = support::read_bytes(options.checkpoint);
+  bytes[bytes.size() / 2] ^= 1;
+  support::write_bytes(options.checkpoint, bytes);
+  expect_refused(options, "is damaged");
+  bytes[bytes.size() / 2] ^= 1;
+  support::write_bytes(options.checkpoint, bytes.substr(0, bytes.size() - 1));
+  expect_refused(options, "is damaged");
+  support::write_bytes(options.checkpoint, bytes);
+  database.samples.front().ratio.front() += 0.01F;
+  expect_refused(options, "not of this training");
+  support::write_bytes(options.checkpoint, "");
+  expect_refused(options, "not of this training");
+}
+
+TEST(BankTraining, refuses_options_that_are_out_of_range) {
+  EXPECT_EQ(BankTrainingOptions{.steps = 0}.validate().error().field, "steps");
+  EXPECT_EQ(BankTrainingOptions{.batch = 0}.validate().error().field, "batch");
+  EXPECT_EQ(BankTrainingOptions{.interval = 0}.validate().error().field, "interval");
+  const SampleDatabase database = database_of(reference_array(2, 2), "paper_calibration");
+  EXPECT_FALSE(train_paper_bank(database, {.steps = 0}));
 }
 
 }  // namespace

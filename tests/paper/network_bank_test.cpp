@@ -334,6 +334,63 @@ TEST(NetworkBank, new_parameters_start_adam_anew_for_their_network_alone) {
   }
 }
 
+TEST(NetworkBank, goes_on_from_parameters_moments_and_steps_as_if_nothing_had_been) {
+  const BankStep step{.rule = BankStep::Rule::adam, .rate = 0.01F};
+  for_every_problem(5, [&](const Problem& problem) {
+    NetworkBank first = problem.bank();
+    NetworkBank second = problem.bank();
+    std::vector<float> errors(problem.networks());
+    for (int t = 0; t < 3; ++t) first.train_step(problem.batch(), step, errors);
+    std::vector<float> values(problem.shape.parameter_count());
+    for (std::size_t network = 0; network < problem.networks(); ++network) {
+      second.set_parameters(network, parameters_of(first, network));
+      for (const AdamMoment which : {AdamMoment::first, AdamMoment::second}) {
+        first.moment(which, network, values);
+        second.set_moment(which, network, values);
+      }
+    }
+    second.set_adam_steps(3);
+    for (NetworkBank* bank : {&first, &second}) bank->train_step(problem.batch(), step, errors);
+    for (std::size_t network = 0; network < problem.networks(); ++network) {
+      EXPECT_EQ(parameters_of(first, network), parameters_of(second, network));
+    }
+  });
+}
+
+TEST(NetworkBank, a_part_has_the_bits_of_its_networks_in_the_whole) {
+  for (const BankStep::Rule rule : {BankStep::Rule::gradient_descent, BankStep::Rule::adam}) {
+    for_every_problem(5, [&](const Problem& problem) {
+      const std::size_t networks = problem.networks();
+      const std::size_t outputs = problem.shape.outputs();
+      NetworkBank whole = problem.bank();
+      std::vector<float> errors(networks);
+      whole.train_step(problem.batch(), {.rule = rule, .rate = 0.1F}, errors);
+      std::vector<float> of_whole(networks * outputs);
+      const auto inputs = std::span(problem.inputs).first(problem.shape.inputs);
+      whole.evaluate(inputs, of_whole);
+      for (std::size_t network = 0; network < networks; ++network) {
+        NetworkBank part(problem.shape, 1, networks);
+        part.set_parameters(0, problem.parameters[network]);
+        std::vector<float> targets;
+        for (std::size_t p = 0; p < problem.patterns; ++p) {
+          const auto own = problem.targets.begin() + static_cast<std::ptrdiff_t>((p * networks + network) * outputs);
+          targets.insert(targets.end(), own, own + static_cast<std::ptrdiff_t>(outputs));
+        }
+        const std::size_t batch = problem.batch().batch;
+        const BankBatch own{batch, problem.inputs, targets, std::span(problem.chosen).subspan(network * batch, batch),
+                            std::span(problem.weights).subspan(network * batch, batch)};
+        float error = 0.0F;
+        part.train_step(own, {.rule = rule, .rate = 0.1F}, std::span(&error, 1));
+        EXPECT_EQ(error, errors[network]);
+        EXPECT_EQ(parameters_of(part, 0), parameters_of(whole, network));
+        std::vector<float> of_part(outputs);
+        part.evaluate(inputs, of_part);
+        EXPECT_TRUE(std::equal(of_part.begin(), of_part.end(), &of_whole[network * outputs]));
+      }
+    });
+  }
+}
+
 TEST(NetworkBank, without_weights_all_patterns_count_one) {
   Random random(4);
   constexpr std::size_t kBatch = 20;

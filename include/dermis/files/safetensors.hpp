@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "dermis/core/result.hpp"
+#include "dermis/files/content_hash.hpp"
 
 namespace dermis::files {
 
@@ -72,9 +73,10 @@ class TensorReader {
   std::optional<Error> first_error_;
 };
 
-/// Reads a file of at most 1 GiB with a header of at most 4 MiB. The tensors must fill the file without gap or overlap.
-/// Metadata and tensors must fit the checksum, if there is one.
-[[nodiscard]] Result<SafetensorsFile> read_safetensors(const std::string& path);
+/// Reads a file of at most `most_bytes` with a header of at most 4 MiB. The tensors must fill the file without gap or
+/// overlap. Metadata and tensors must fit the checksum, if there is one.
+[[nodiscard]] Result<SafetensorsFile> read_safetensors(const std::string& path,
+                                                       std::size_t most_bytes = std::size_t{1} << 30U);
 /// The same from memory; `name` stands for the path in messages.
 [[nodiscard]] Result<SafetensorsFile> safetensors_from_bytes(std::string_view bytes, const std::string& name);
 
@@ -95,5 +97,18 @@ struct FileFormat {
 /// Writes the file atomically, with a checksum as its metadata "checksum". The same content gives the same bytes;
 /// tensors are aligned to their element size.
 [[nodiscard]] Status write_safetensors(const std::string& path, const SafetensorsFile& file);
+
+/// The part of a file before large tensors that are written piece by piece.
+struct SafetensorsBeginning {
+  std::string bytes;             ///< Length, header and the first tensors; the large ones follow.
+  std::size_t header_bytes = 0;  ///< Of those, length and header.
+  std::size_t checksum = 0;      ///< Where the text of the checksum is in the header, to be put in.
+  ContentHash hash;              ///< It becomes the checksum: all that follows the header is to be added.
+};
+
+/// The beginning of the file that write_safetensors() makes of `file` and of tensors of F32 with these names, sorted,
+/// which all have this shape. The tensors of `file` have elements of eight bytes.
+[[nodiscard]] SafetensorsBeginning begin_safetensors(const SafetensorsFile& file, const std::vector<std::string>& names,
+                                                     const std::vector<std::size_t>& shape);
 
 }  // namespace dermis::files

@@ -32,6 +32,9 @@ struct BankStep {
   float epsilon = 1e-8F;
 };
 
+/// Running means that Adam keeps, of the gradient and of its square.
+enum class AdamMoment : std::uint8_t { first, second };
+
 /// Many networks of one shape and different weights, evaluated and trained side by side, single precision.
 /// The paper's bank is one N-N-N-1 network a taxel. Results do not depend on the number of threads, but those of
 /// evaluate_batch() differ from those of evaluate() by rounding. An object holds work space: one call at a time.
@@ -44,6 +47,8 @@ class NetworkBank {
  public:
   /// All parameters 0. The shape must be valid.
   NetworkBank(NetworkShape shape, std::size_t networks);
+  /// A part of a bank of `whole` networks, with the bits that these have there.
+  NetworkBank(NetworkShape shape, std::size_t networks, std::size_t whole);
   ~NetworkBank();
   NetworkBank(NetworkBank&&) noexcept;
   NetworkBank& operator=(NetworkBank&&) noexcept;
@@ -56,6 +61,16 @@ class NetworkBank {
   /// Parameters of one network as NetworkShape orders them, [shape.parameter_count()]. Its moments of Adam start anew.
   void set_parameters(std::size_t network, std::span<const float> parameters);
   void parameters(std::size_t network, std::span<float> parameters) const;
+
+  /// A moment of one network, in the order of its parameters; 0 before the first step of Adam.
+  void moment(AdamMoment which, std::size_t network, std::span<float> values) const;
+  /// With the parameters, both moments and the steps of all networks, a training goes on where another ended.
+  void set_moment(AdamMoment which, std::size_t network, std::span<const float> values);
+  void set_adam_steps(std::size_t steps);
+
+  /// Memory of such a part while Adam trains it in batches of this size.
+  [[nodiscard]] static std::size_t training_bytes(const NetworkShape& shape, std::size_t networks, std::size_t whole,
+                                                  std::size_t batch);
 
   /// One frame: inputs [inputs], the same for all networks -> outputs [networks, outputs].
   void evaluate(std::span<const float> inputs, std::span<float> outputs);

@@ -10,6 +10,7 @@
 
 #include "dermis/calibration/evaluation.hpp"
 #include "dermis/paper/network_bank.hpp"
+#include "dermis/paper/ranks.hpp"
 
 namespace dermis::paper {
 
@@ -26,8 +27,8 @@ inline constexpr const char* kPaperBankName = "paper_bank";
   return taxels * (2 * taxels * taxels + taxels) + taxels * (2 * taxels + 1);
 }
 
-/// The largest bank that is trained or read: 512 MiB of weights, 20 x 20 taxels.
-inline constexpr std::size_t kMostUnknowns = std::size_t{1} << 27U;
+/// The largest bank that is trained or read: 2 GiB of weights, 25 x 25 taxels.
+inline constexpr std::size_t kMostUnknowns = std::size_t{1} << 29U;
 
 /// The paper's estimator (Fig. 7): a bank of N-N-N-1 BP networks, one a taxel. Each sees the readings of the whole
 /// array and gives the force on its own taxel. Crosstalk, material and temperature are all left to the networks.
@@ -42,8 +43,10 @@ class PaperBank : public calibration::FurtherEstimator {
     double high = 1.0;  ///< > low
   };
 
-  /// All parameters 0. `ratio` [taxels]; a temperature range makes temperature an input.
-  PaperBank(std::vector<Range> ratio, std::optional<Range> celsius, double heaviest_newtons);
+  /// All parameters 0. `ratio` [taxels]; a temperature range makes temperature an input. With the networks of some
+  /// taxels alone, it cannot estimate.
+  PaperBank(std::vector<Range> ratio, std::optional<Range> celsius, double heaviest_newtons,
+            std::optional<Part> taxels = {});
 
   [[nodiscard]] std::string name() const override { return kPaperBankName; }
   [[nodiscard]] std::string description() const override;
@@ -51,6 +54,8 @@ class PaperBank : public calibration::FurtherEstimator {
   [[nodiscard]] const std::vector<Range>& ratio() const noexcept { return ratio_; }
   [[nodiscard]] const std::optional<Range>& celsius() const noexcept { return celsius_; }
   [[nodiscard]] double heaviest_newtons() const noexcept { return heaviest_newtons_; }
+  /// The taxels whose networks it has.
+  [[nodiscard]] Part part() const noexcept { return part_; }
   [[nodiscard]] NetworkBank& networks() noexcept { return networks_; }
   [[nodiscard]] const NetworkBank& networks() const noexcept { return networks_; }
 
@@ -69,6 +74,7 @@ class PaperBank : public calibration::FurtherEstimator {
   std::vector<Range> ratio_;
   std::optional<Range> celsius_;
   double heaviest_newtons_;
+  Part part_;
   NetworkBank networks_;
   std::vector<float> inputs_;
 };

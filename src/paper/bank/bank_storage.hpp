@@ -19,6 +19,9 @@ class BankStorage {
 
   virtual void set_parameters(std::size_t network, std::span<const float> parameters) = 0;
   virtual void parameters(std::size_t network, std::span<float> parameters) const = 0;
+  virtual void moment(AdamMoment which, std::size_t network, std::span<float> values) const = 0;
+  virtual void set_moment(AdamMoment which, std::size_t network, std::span<const float> values) = 0;
+  virtual void set_adam_steps(std::size_t steps) = 0;
   virtual void evaluate(std::span<const float> inputs, std::span<float> outputs) = 0;
   virtual void evaluate_batch(std::span<const float> inputs, std::span<float> outputs) = 0;
   virtual void train_step(const BankBatch& batch, const BankStep& step, std::span<float> errors) = 0;

@@ -9,12 +9,15 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include "dermis/calibration/parallel.hpp"
 #include "dermis/calibration/sample_temperatures.hpp"
 #include "dermis/paper/initialisation.hpp"
 #include "dermis/paper/structured_start.hpp"
+#include "paper/bank/bank_checkpoint.hpp"
 
 namespace dermis::paper {
 
@@ -23,12 +26,13 @@ using calibration::SampleDatabase;
 
 namespace {
 
-constexpr std::size_t kBatch = 16;       // larger ones converge in as many steps
+constexpr std::size_t kMostBatch = 65'536;
 constexpr double kRelativeDownTo = 0.5;  // of the heaviest force
 constexpr double kRateOfSum = 2.0;       // of N connections together in a step: more breaks up the paper's start
 constexpr double kHighestRate = 0.05;
 constexpr double kLowestRate = 1e-5;
-constexpr float kSecondDecay = 0.97F;  // 0.999 takes twice the steps
+constexpr std::size_t kOtherBytes = std::size_t{16} << 20U;  // buffers of MPI, and rows of files
+constexpr float kSecondDecay = 0.97F;                        // 0.999 takes twice the steps
 
 /// The range of each taxel over all samples; a taxel that never changes gets a range of 1.
 std::vector<PaperBank::Range> ratio_ranges(const SampleDatabase& database) {
@@ -88,7 +92,25 @@ std::vector<float> with_further_input(const std::vector<float>& parameters, std:
   return widened;
 }
 
-Status check_bank_samples(const SampleDatabase& database) {
+/// Taxels that no sample loads.
+std::vector<std::size_t> never_loaded(const SampleDatabase& database) {
+  std::vector<std::size_t> taxels;
+  for (std::size_t taxel = 0; taxel < database.array.taxel_count(); ++taxel) {
+    const bool is_loaded = std::any_of(database.samples.begin(), database.samples.end(),
+                                       [&](const Sample& sample) { return sample.known_newtons[taxel] > 0.0F; });
+    if (!is_loaded) taxels.push_back(taxel);
+  }
+  return taxels;
+}
+
+/// The rate of a step, which falls along a cosine.
+float rate_at(std::size_t step, std::size_t steps, std::size_t taxels) {
+  const double highest = std::min(kRateOfSum / static_cast<double>(taxels), kHighestRate);
+  const double share = static_cast<double>(step) / static_cast<double>(steps);
+  return static_cast<float>(kLowestRate + (highest - kLowestRate) * 0.5 * (1.0 + std::cos(std::numbers::pi * share)));
+}
+
+Status check_bank_samples(const SampleDatabase& database, const Ranks& ranks) {
   if (heaviest_force(database) <= 0.0) {
     return bad_input("the paper's bank needs loads on single taxels; these loads tell only totals or none");
   }
@@ -99,30 +121,49 @@ Status check_bank_samples(const SampleDatabase& database) {
                     "rises with the third power of the taxels",
                     database.array.taxel_count(), unknowns, kMostUnknowns));
   }
+  if (ranks.count() > database.array.taxel_count()) {
+    return bad_input(fmt::format("the paper's bank of {} taxels has too few networks for {} ranks",
+                                 database.array.taxel_count(), ranks.count()));
+  }
   return Done{};
 }
 
 }  // namespace
 
-Result<BankTraining> BankTraining::create(const SampleDatabase& database, std::uint64_t seed) {
-  if (Status checked = check_bank_samples(database); !checked) return checked.error();
-  return BankTraining(database,
-                      PaperBank(ratio_ranges(database), temperature_range(database), heaviest_force(database)), seed);
+Status BankTrainingOptions::validate() const {
+  if (steps < 1) return bad_field("steps", "must be 1 or more, is 0");
+  if (batch < 1 || batch > kMostBatch) {
+    return bad_field("batch", fmt::format("must be 1 to {}, is {}", kMostBatch, batch));
+  }
+  if (interval < 1) return bad_field("interval", "must be 1 or more, is 0");
+  return Done{};
 }
 
-BankTraining::BankTraining(const SampleDatabase& database, PaperBank bank, std::uint64_t seed)
-    : bank_(std::move(bank)),
+Result<BankTraining> BankTraining::create(const SampleDatabase& database, std::uint64_t seed, Ranks& ranks,
+                                          std::size_t batch) {
+  if (Status checked = check_bank_samples(database, ranks); !checked) return checked.error();
+  const Part part = own_part(ranks, database.array.taxel_count());
+  PaperBank bank(ratio_ranges(database), temperature_range(database), heaviest_force(database), part);
+  return BankTraining(database, std::move(bank), seed, ranks, batch);
+}
+
+BankTraining::BankTraining(const SampleDatabase& database, PaperBank bank, std::uint64_t seed, Ranks& ranks,
+                           std::size_t batch)
+    : ranks_(&ranks),
+      bank_(std::move(bank)),
       rows_(database.array.rows),
       cols_(database.array.cols),
       seed_(seed),
-      chosen_(bank_.taxel_count() * kBatch),
-      chosen_weights_(bank_.taxel_count() * kBatch),
+      batch_(batch),
+      chosen_(bank_.part().count * batch),
+      chosen_weights_(chosen_.size()),
       errors_(bank_.taxel_count()) {
   fill_patterns(database);
 }
 
 void BankTraining::fill_patterns(const SampleDatabase& database) {
-  const std::size_t networks = bank_.taxel_count();
+  const Part part = bank_.part();
+  const std::size_t networks = part.count;
   const std::size_t width = bank_.networks().shape().inputs;
   const double floor_n = kRelativeDownTo * bank_.heaviest_newtons();
   inputs_.resize(database.samples.size() * width);
@@ -133,23 +174,23 @@ void BankTraining::fill_patterns(const SampleDatabase& database) {
     const Sample& sample = database.samples[p];
     const std::vector<double> ratio(sample.ratio.begin(), sample.ratio.end());
     bank_.normalise(ratio, sample.temperature_celsius, std::span(inputs_).subspan(p * width, width));
-    for (std::size_t taxel = 0; taxel < networks; ++taxel) {
-      const double newtons = sample.known_newtons[taxel];
+    for (std::size_t network = 0; network < networks; ++network) {
+      const double newtons = sample.known_newtons[part.first + network];
       if (std::isnan(newtons)) continue;
-      targets_[p * networks + taxel] = bank_.target(newtons);
+      targets_[p * networks + network] = bank_.target(newtons);
       const double relative = floor_n / std::max(newtons, floor_n);
-      weights_[p * networks + taxel] = static_cast<float>(relative * relative);
-      Choice& choice = choices_[taxel];
+      weights_[p * networks + network] = static_cast<float>(relative * relative);
+      Choice& choice = choices_[network];
       (newtons > 0.0 ? choice.loaded : choice.unloaded).push_back(static_cast<std::uint32_t>(p));
     }
   }
 }
 
 void BankTraining::start(BankStart start) {
-  calibration::parallel_for(bank_.taxel_count(), [&](std::size_t taxel) {
-    Random random = Random::stream(seed_, taxel);
-    bank_.networks().set_parameters(taxel, start_parameters(start, random.bits()));
-    choices_[taxel].random = random;
+  calibration::parallel_for(choices_.size(), [&](std::size_t network) {
+    Random random = Random::stream(seed_, bank_.part().first + network);
+    bank_.networks().set_parameters(network, start_parameters(start, random.bits()));
+    choices_[network].random = random;
   });
 }
 
@@ -169,53 +210,76 @@ std::vector<float> BankTraining::start_parameters(BankStart start, std::uint64_t
 
 void BankTraining::draw_batch() {
   const std::size_t networks = choices_.size();
-  for (std::size_t taxel = 0; taxel < networks; ++taxel) {
-    Choice& choice = choices_[taxel];
-    for (std::size_t k = 0; k < kBatch; ++k) {
-      const bool want_loaded = (k < kBatch / 2 && !choice.loaded.empty()) || choice.unloaded.empty();
+  for (std::size_t network = 0; network < networks; ++network) {
+    Choice& choice = choices_[network];
+    for (std::size_t k = 0; k < batch_; ++k) {
+      const bool want_loaded = (k < batch_ / 2 && !choice.loaded.empty()) || choice.unloaded.empty();
       const std::vector<std::uint32_t>& from = want_loaded ? choice.loaded : choice.unloaded;
       if (from.empty()) break;  // no sample has this taxel: its chosen weights stay 0
       const std::uint32_t sample = from[choice.random.below(from.size())];
-      chosen_[taxel * kBatch + k] = sample;
-      chosen_weights_[taxel * kBatch + k] = weights_[sample * networks + taxel];
+      chosen_[network * batch_ + k] = sample;
+      chosen_weights_[network * batch_ + k] = weights_[sample * networks + network];
     }
   }
 }
 
-std::vector<std::size_t> BankTraining::never_loaded() const {
-  std::vector<std::size_t> taxels;
-  for (std::size_t taxel = 0; taxel < choices_.size(); ++taxel) {
-    if (choices_[taxel].loaded.empty()) taxels.push_back(taxel);
-  }
-  return taxels;
+void BankTraining::skip(std::size_t steps) {
+  for (std::size_t k = 0; k < steps; ++k) draw_batch();
 }
 
 double BankTraining::step(const BankStep& step) {
   draw_batch();
-  bank_.networks().train_step({kBatch, inputs_, targets_, chosen_, chosen_weights_}, step, errors_);
+  const Part part = bank_.part();
+  bank_.networks().train_step({batch_, inputs_, targets_, chosen_, chosen_weights_}, step,
+                              std::span(errors_).subspan(part.first, part.count));
+  gather(*ranks_, std::span(errors_));
   return std::accumulate(errors_.begin(), errors_.end(), 0.0) / static_cast<double>(errors_.size());
 }
 
-Result<TrainedBank> train_paper_bank(const SampleDatabase& database, std::size_t steps, std::uint64_t seed,
-                                     const std::function<void(double)>& progress) {
-  Result<BankTraining> training = BankTraining::create(database, seed);
+Result<TrainedBank> train_paper_bank(const SampleDatabase& database, const BankTrainingOptions& options, Ranks& ranks) {
+  if (Status valid = options.validate(); !valid) return valid.error();
+  Result<BankTraining> training = BankTraining::create(database, options.seed, ranks, options.batch);
   if (!training) return training.error();
   training->start(BankStart::structured);
-  const double highest_rate = std::min(kRateOfSum / static_cast<double>(database.array.taxel_count()), kHighestRate);
-  BankTrainingReport report{
-      training->bank().networks().parameter_count(), steps, {}, training->never_loaded(), constant_readings(database)};
-  for (std::size_t k = 0; k < steps; ++k) {
-    const double share = static_cast<double>(k) / static_cast<double>(steps);
+  const std::size_t taxels = database.array.taxel_count();
+  NetworkBank& networks = training->bank().networks();
+  BankTrainingReport report;
+  report.unknowns = taxels * networks.shape().parameter_count();
+  report.steps = options.steps;
+  report.never_loaded = never_loaded(database);
+  report.constant_readings = constant_readings(database);
+
+  std::optional<BankCheckpoint> checkpoint;
+  if (!options.checkpoint.empty()) {
+    checkpoint.emplace(database, options, ranks);
+    Result<std::vector<double>> curve = checkpoint->read(networks);
+    if (!curve) return curve.error();
+    report.curve = *std::move(curve);
+    report.resumed_at = report.curve.size();
+    training->skip(report.resumed_at);
+  }
+  for (std::size_t k = report.resumed_at; k < options.steps; ++k) {
     BankStep step;
     step.rule = BankStep::Rule::adam;
     step.second_decay = kSecondDecay;
-    step.rate = static_cast<float>(kLowestRate +
-                                   (highest_rate - kLowestRate) * 0.5 * (1.0 + std::cos(std::numbers::pi * share)));
+    step.rate = rate_at(k, options.steps, taxels);
     report.curve.push_back(training->step(step));
     if (!std::isfinite(report.curve.back())) return failed("the training of the paper's bank diverged");
-    if (progress) progress(static_cast<double>(k + 1) / static_cast<double>(steps));
+    if (options.progress) options.progress(static_cast<double>(k + 1) / static_cast<double>(options.steps));
+    if (!checkpoint || (k + 1) % options.interval != 0 || k + 1 == options.steps) continue;
+    if (Status written = checkpoint->write(networks, report.curve); !written) return written.error();
   }
   return TrainedBank{std::move(training->bank()), std::move(report)};
+}
+
+std::size_t bank_training_bytes(const SampleDatabase& database, std::size_t batch, const Ranks& ranks) {
+  const std::size_t taxels = database.array.taxel_count();
+  const std::size_t networks = own_part(ranks, taxels).count;
+  const NetworkShape shape = paper_network_shape(taxels, temperature_range(database).has_value());
+  // Inputs; target, weight and twice the index, as a vector grows, of each network.
+  const std::size_t patterns = database.samples.size() * (shape.inputs + 4 * networks) * sizeof(float);
+  const std::size_t drawn = 2 * networks * batch * sizeof(float);
+  return patterns + drawn + NetworkBank::training_bytes(shape, networks, taxels, batch) + kOtherBytes;
 }
 
 }  // namespace dermis::paper

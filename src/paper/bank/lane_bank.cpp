@@ -243,6 +243,11 @@ LaneBank::LaneBank(const NetworkShape& shape, std::size_t networks)
       values_(groups_ * group_size_),
       adam_steps_(groups_ * kGroup) {}
 
+std::size_t LaneBank::training_bytes(const NetworkShape& shape, std::size_t networks, std::size_t batch) {
+  const std::size_t values = (networks + kGroup - 1) / kGroup * kGroup * shape.parameter_count();
+  return 3 * values * sizeof(float) + worker_count(values * batch) * LaneSpace(shape).bytes();
+}
+
 void LaneBank::set_parameters(std::size_t network, std::span<const float> parameters) {
   const std::size_t first = network / kGroup * group_size_ + network % kGroup;
   for (std::size_t i = 0; i < parameters.size(); ++i) values_[first + i * kGroup] = parameters[i];
@@ -257,6 +262,28 @@ void LaneBank::set_parameters(std::size_t network, std::span<const float> parame
 void LaneBank::parameters(std::size_t network, std::span<float> parameters) const {
   const std::size_t first = network / kGroup * group_size_ + network % kGroup;
   for (std::size_t i = 0; i < parameters.size(); ++i) parameters[i] = values_[first + i * kGroup];
+}
+
+void LaneBank::moment(AdamMoment which, std::size_t network, std::span<float> values) const {
+  const HugeVector<float>& moments = which == AdamMoment::first ? first_moments_ : second_moments_;
+  const std::size_t first = network / kGroup * group_size_ + network % kGroup;
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = moments.empty() ? 0.0F : moments[first + i * kGroup];
+}
+
+void LaneBank::set_moment(AdamMoment which, std::size_t network, std::span<const float> values) {
+  reserve_moments();
+  HugeVector<float>& moments = which == AdamMoment::first ? first_moments_ : second_moments_;
+  const std::size_t first = network / kGroup * group_size_ + network % kGroup;
+  for (std::size_t i = 0; i < values.size(); ++i) moments[first + i * kGroup] = values[i];
+}
+
+void LaneBank::set_adam_steps(std::size_t steps) {
+  std::fill(adam_steps_.begin(), adam_steps_.end(), steps);
+}
+
+void LaneBank::reserve_moments() {
+  first_moments_.resize(values_.size());
+  second_moments_.resize(values_.size());
 }
 
 void LaneBank::reserve_spaces(std::size_t workers) {
@@ -364,10 +391,7 @@ void LaneBank::train_group(const BankBatch& batch, const BankStep& step, std::si
 void LaneBank::train_step(const BankBatch& batch, const BankStep& step, std::span<float> errors) {
   const std::size_t workers = worker_count(values_.size() * batch.batch);
   reserve_spaces(workers);
-  if (step.rule == BankStep::Rule::adam) {
-    first_moments_.resize(values_.size());
-    second_moments_.resize(values_.size());
-  }
+  if (step.rule == BankStep::Rule::adam) reserve_moments();
   share_among_workers(groups_, workers, [&](std::size_t group, std::size_t worker) {
     train_group(batch, step, group, spaces_[worker], errors);
   });

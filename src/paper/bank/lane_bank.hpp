@@ -28,6 +28,8 @@ class LaneSpace {
   /// Weights of the patterns, over the size of the batch, [patterns, 16].
   [[nodiscard]] float* weights() { return values_.data() + starts_.back(); }
 
+  [[nodiscard]] std::size_t bytes() const { return (values_.size() + gradient.size()) * sizeof(float); }
+
   HugeVector<float> gradient;  ///< [parameters, 16]
 
  private:
@@ -49,14 +51,20 @@ struct LaneParameters {
 class LaneBank final : public BankStorage {
  public:
   LaneBank(const NetworkShape& shape, std::size_t networks);
+  /// See NetworkBank::training_bytes().
+  [[nodiscard]] static std::size_t training_bytes(const NetworkShape& shape, std::size_t networks, std::size_t batch);
 
   void set_parameters(std::size_t network, std::span<const float> parameters) override;
   void parameters(std::size_t network, std::span<float> parameters) const override;
+  void moment(AdamMoment which, std::size_t network, std::span<float> values) const override;
+  void set_moment(AdamMoment which, std::size_t network, std::span<const float> values) override;
+  void set_adam_steps(std::size_t steps) override;
   void evaluate(std::span<const float> inputs, std::span<float> outputs) override;
   void evaluate_batch(std::span<const float> inputs, std::span<float> outputs) override;
   void train_step(const BankBatch& batch, const BankStep& step, std::span<float> errors) override;
 
  private:
+  void reserve_moments();
   void reserve_spaces(std::size_t workers);
   void evaluate_group(std::size_t group, std::size_t first, std::size_t count, LaneSpace& space,
                       std::span<float> outputs);

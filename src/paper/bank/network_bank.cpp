@@ -24,16 +24,18 @@ bool belongs_in_lanes(const NetworkShape& shape, std::size_t networks) {
   return static_cast<double>(shape.parameter_count()) <= kMostParameters * filled * filled;
 }
 
-std::unique_ptr<BankStorage> make_storage(const NetworkShape& shape, std::size_t networks) {
-  assert(shape.validate());
-  if (belongs_in_lanes(shape, networks)) return std::make_unique<LaneBank>(shape, networks);
+std::unique_ptr<BankStorage> make_storage(const NetworkShape& shape, std::size_t networks, std::size_t whole) {
+  assert(shape.validate() && networks <= whole);
+  if (belongs_in_lanes(shape, whole)) return std::make_unique<LaneBank>(shape, networks);
   return std::make_unique<PanelBank>(shape, networks);
 }
 
 }  // namespace
 
 NetworkBank::NetworkBank(NetworkShape shape, std::size_t networks)
-    : shape_(std::move(shape)), networks_(networks), storage_(make_storage(shape_, networks)) {}
+    : NetworkBank(std::move(shape), networks, networks) {}
+NetworkBank::NetworkBank(NetworkShape shape, std::size_t networks, std::size_t whole)
+    : shape_(std::move(shape)), networks_(networks), storage_(make_storage(shape_, networks, whole)) {}
 NetworkBank::~NetworkBank() = default;
 NetworkBank::NetworkBank(NetworkBank&&) noexcept = default;
 NetworkBank& NetworkBank::operator=(NetworkBank&&) noexcept = default;
@@ -46,6 +48,26 @@ void NetworkBank::set_parameters(std::size_t network, std::span<const float> par
 void NetworkBank::parameters(std::size_t network, std::span<float> parameters) const {
   assert(network < networks_ && parameters.size() == shape_.parameter_count());
   storage_->parameters(network, parameters);
+}
+
+void NetworkBank::moment(AdamMoment which, std::size_t network, std::span<float> values) const {
+  assert(network < networks_ && values.size() == shape_.parameter_count());
+  storage_->moment(which, network, values);
+}
+
+void NetworkBank::set_moment(AdamMoment which, std::size_t network, std::span<const float> values) {
+  assert(network < networks_ && values.size() == shape_.parameter_count());
+  storage_->set_moment(which, network, values);
+}
+
+void NetworkBank::set_adam_steps(std::size_t steps) {
+  storage_->set_adam_steps(steps);
+}
+
+std::size_t NetworkBank::training_bytes(const NetworkShape& shape, std::size_t networks, std::size_t whole,
+                                        std::size_t batch) {
+  return belongs_in_lanes(shape, whole) ? LaneBank::training_bytes(shape, networks, batch)
+                                        : PanelBank::training_bytes(shape, networks, batch);
 }
 
 void NetworkBank::evaluate(std::span<const float> inputs, std::span<float> outputs) {

@@ -60,6 +60,12 @@ constexpr std::size_t kPackedPatterns = 1024;
 PanelBank::PanelBank(const NetworkShape& shape, std::size_t networks)
     : layout_(shape), networks_(networks), values_(networks * layout_.size()), adam_steps_(networks) {}
 
+std::size_t PanelBank::training_bytes(const NetworkShape& shape, std::size_t networks, std::size_t batch) {
+  const PanelLayout layout(shape);
+  const std::size_t values = networks * layout.size();
+  return 3 * values * sizeof(float) + worker_count(values * batch) * PatternSpace(layout, batch).bytes();
+}
+
 PanelParameters PanelBank::of(std::size_t network) {
   const std::size_t first = network * layout_.size();
   const bool has_moments = !first_moments_.empty();
@@ -79,6 +85,28 @@ void PanelBank::set_parameters(std::size_t network, std::span<const float> param
 void PanelBank::parameters(std::size_t network, std::span<float> parameters) const {
   const float* own = values_.data() + network * layout_.size();
   layout_.for_each_parameter([&](std::size_t index, std::size_t place) { parameters[index] = own[place]; });
+}
+
+void PanelBank::moment(AdamMoment which, std::size_t network, std::span<float> values) const {
+  const HugeVector<float>& moments = which == AdamMoment::first ? first_moments_ : second_moments_;
+  if (moments.empty()) return std::fill(values.begin(), values.end(), 0.0F);
+  const float* own = moments.data() + network * layout_.size();
+  layout_.for_each_parameter([&](std::size_t index, std::size_t place) { values[index] = own[place]; });
+}
+
+void PanelBank::set_moment(AdamMoment which, std::size_t network, std::span<const float> values) {
+  reserve_moments();
+  float* own = which == AdamMoment::first ? of(network).first_moments : of(network).second_moments;
+  layout_.for_each_parameter([&](std::size_t index, std::size_t place) { own[place] = values[index]; });
+}
+
+void PanelBank::set_adam_steps(std::size_t steps) {
+  std::fill(adam_steps_.begin(), adam_steps_.end(), steps);
+}
+
+void PanelBank::reserve_moments() {
+  first_moments_.resize(values_.size());
+  second_moments_.resize(values_.size());
 }
 
 void PanelBank::evaluate(std::span<const float> inputs, std::span<float> outputs) {
@@ -127,10 +155,7 @@ void PanelBank::evaluate_batch(std::span<const float> inputs, std::span<float> o
 void PanelBank::train_step(const BankBatch& batch, const BankStep& step, std::span<float> errors) {
   const std::size_t workers = worker_count(values_.size() * batch.batch);
   reserve(batch_spaces_, workers, batch.batch);
-  if (step.rule == BankStep::Rule::adam) {
-    first_moments_.resize(values_.size());
-    second_moments_.resize(values_.size());
-  }
+  if (step.rule == BankStep::Rule::adam) reserve_moments();
   share_among_workers(networks_, workers, [&](std::size_t network, std::size_t worker) {
     errors[network] = train_network(batch, step, network, batch_spaces_[worker]);
   });

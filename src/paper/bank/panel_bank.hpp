@@ -18,14 +18,20 @@ namespace dermis::paper {
 class PanelBank final : public BankStorage {
  public:
   PanelBank(const NetworkShape& shape, std::size_t networks);
+  /// See NetworkBank::training_bytes().
+  [[nodiscard]] static std::size_t training_bytes(const NetworkShape& shape, std::size_t networks, std::size_t batch);
 
   void set_parameters(std::size_t network, std::span<const float> parameters) override;
   void parameters(std::size_t network, std::span<float> parameters) const override;
+  void moment(AdamMoment which, std::size_t network, std::span<float> values) const override;
+  void set_moment(AdamMoment which, std::size_t network, std::span<const float> values) override;
+  void set_adam_steps(std::size_t steps) override;
   void evaluate(std::span<const float> inputs, std::span<float> outputs) override;
   void evaluate_batch(std::span<const float> inputs, std::span<float> outputs) override;
   void train_step(const BankBatch& batch, const BankStep& step, std::span<float> errors) override;
 
  private:
+  void reserve_moments();
   void reserve(std::vector<PatternSpace>& spaces, std::size_t workers, std::size_t patterns) const;
   PanelParameters of(std::size_t network);
   float train_network(const BankBatch& batch, const BankStep& step, std::size_t network, PatternSpace& space);

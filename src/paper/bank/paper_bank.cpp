@@ -27,11 +27,13 @@ NetworkShape paper_network_shape(std::size_t taxels, bool with_temperature) {
           {{taxels, Activation::log_sigmoid}, {taxels, Activation::log_sigmoid}, {1, Activation::log_sigmoid}}};
 }
 
-PaperBank::PaperBank(std::vector<Range> ratio, std::optional<Range> celsius, double heaviest_newtons)
+PaperBank::PaperBank(std::vector<Range> ratio, std::optional<Range> celsius, double heaviest_newtons,
+                     std::optional<Part> taxels)
     : ratio_(std::move(ratio)),
       celsius_(celsius),
       heaviest_newtons_(heaviest_newtons),
-      networks_(paper_network_shape(ratio_.size(), celsius.has_value()), ratio_.size()),
+      part_(taxels.value_or(Part{0, ratio_.size()})),
+      networks_(paper_network_shape(ratio_.size(), celsius.has_value()), part_.count, ratio_.size()),
       inputs_(networks_.shape().inputs) {
   assert(heaviest_newtons > 0.0);
   assert(std::all_of(ratio_.begin(), ratio_.end(), [](const Range& range) { return range.low < range.high; }));
@@ -62,6 +64,7 @@ float PaperBank::target(double newtons) const noexcept {
 
 void PaperBank::estimate(std::span<const double> ratio, std::optional<double> temperature_celsius,
                          std::span<float> newtons) {
+  assert(part_.count == ratio_.size());
   normalise(ratio, temperature_celsius, inputs_);
   networks_.evaluate(inputs_, newtons);
   for (float& value : newtons) {

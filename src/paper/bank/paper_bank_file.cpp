@@ -10,11 +10,15 @@
 #include <vector>
 
 #include "dermis/files/safetensors.hpp"
+#include "paper/bank/bank_rows_file.hpp"
 
 namespace dermis::paper {
 namespace {
 
 using files::SafetensorsFile;
+
+/// The weights and, by far, all else.
+constexpr std::size_t kMostBytes = kMostUnknowns * sizeof(float) + (std::size_t{1} << 24U);
 
 bool all_finite(std::span<const float> values) {
   return std::all_of(values.begin(), values.end(), [](float value) { return std::isfinite(value); });
@@ -71,26 +75,23 @@ Result<PaperBank> bank_from(const SafetensorsFile& file) {
 
 }  // namespace
 
-Status write_paper_bank(const std::string& path, const PaperBank& bank) {
+Status write_paper_bank(const std::string& path, const PaperBank& bank, Ranks& ranks) {
   const std::size_t taxels = bank.taxel_count();
-  const std::size_t parameters = bank.networks().shape().parameter_count();
-  SafetensorsFile file;
-  file.metadata["format"] = kPaperBankFormat.name;
+  SafetensorsFile first;
+  first.metadata["format"] = kPaperBankFormat.name;
   std::vector<double> ratio;
   for (const PaperBank::Range& range : bank.ratio()) ratio.insert(ratio.end(), {range.low, range.high});
-  file.tensors["ratio"] = {{taxels, 2}, std::move(ratio)};
-  if (bank.celsius()) file.tensors["celsius"] = {{2}, std::vector<double>{bank.celsius()->low, bank.celsius()->high}};
-  file.tensors["heaviest_newtons"] = {{1}, std::vector<double>{bank.heaviest_newtons()}};
-  std::vector<float> values(taxels * parameters);
-  for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
-    bank.networks().parameters(taxel, std::span(values).subspan(taxel * parameters, parameters));
-  }
-  file.tensors["parameters"] = {{taxels, parameters}, std::move(values)};
-  return files::write_safetensors(path, file);
+  first.tensors["ratio"] = {{taxels, 2}, std::move(ratio)};
+  if (bank.celsius()) first.tensors["celsius"] = {{2}, std::vector<double>{bank.celsius()->low, bank.celsius()->high}};
+  first.tensors["heaviest_newtons"] = {{1}, std::vector<double>{bank.heaviest_newtons()}};
+  const BankRowsFile file(first, {{"parameters"}, taxels, bank.networks().shape().parameter_count()}, ranks);
+  return file.write(path, [&](std::size_t /*tensor*/, std::size_t network, std::span<float> values) {
+    bank.networks().parameters(network, values);
+  });
 }
 
 Result<PaperBank> read_paper_bank(const std::string& path) {
-  const Result<SafetensorsFile> file = files::read_safetensors(path);
+  const Result<SafetensorsFile> file = files::read_safetensors(path, kMostBytes);
   if (!file) return file.error();
   if (const Status right = files::check_format(*file, kPaperBankFormat); !right) {
     return bad_input(path + ": " + right.error().message);

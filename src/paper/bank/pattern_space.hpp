@@ -33,6 +33,7 @@ class PatternSpace {
   /// Values for the layer below, of the same form.
   [[nodiscard]] float* columns_below() { return values_.data() + columns_below_; }
   [[nodiscard]] std::size_t column_stride() const { return column_stride_; }
+  [[nodiscard]] std::size_t bytes() const { return values_.size() * sizeof(float); }
 
   std::vector<float> targets;  ///< [patterns, outputs]
   std::vector<float> weights;  ///< [patterns], over the number of patterns.

@@ -163,8 +163,9 @@ Status reproduce_bank(const ArrayDescription& array, const BankEffort& effort,
     if (!std::isfinite(found.convergence.back().value.back())) return failed("gradient descent of the bank diverged");
   }
 
-  Result<TrainedBank> trained =
-      train_paper_bank(*database, effort.training_steps, kBankSeed, [&](double share) { progress("bank", share); });
+  Result<TrainedBank> trained = train_paper_bank(
+      *database,
+      {.steps = effort.training_steps, .seed = kBankSeed, .progress = [&](double share) { progress("bank", share); }});
   if (!trained) return trained.error();
   found.bank_training.name = "Adam from the paper's start";
   for (std::size_t k = 0; k < trained->report.curve.size(); ++k) {
