@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -35,8 +34,9 @@ struct JudgedPress {
 std::map<std::size_t, double> newtons_by_frame(const std::vector<Load>& loads, const ArrayDescription& array) {
   std::map<std::size_t, double> newtons;
   for (const Load& load : loads) {
-    const double area_m2 =
-        load.kind == LoadKind::pressure ? array.taxel_area_m2.value_or(0.0) * static_cast<double>(load.where.taxel_count()) : 1.0;
+    const double area_m2 = load.kind == LoadKind::pressure
+                               ? array.taxel_area_m2.value_or(0.0) * static_cast<double>(load.where.taxel_count())
+                               : 1.0;
     newtons[load.frame] += area_m2 * load.value;
   }
   return newtons;
@@ -122,24 +122,24 @@ Status evaluate_left_out(const LeftOutEvaluation& evaluation, const std::string&
   const Result<CalibrationInput> input = CalibrationInput::read({evaluation.array, frames_path, loads_path, 0.0}, {});
   if (!input) return input.error();
   const auto& [array, settle, frames, loads] = *input;
-  const std::vector<RecordedPress> presses = calibration::recorded_presses(frames, loads);
-  Progress progress(array.name);
-  std::mutex progress_mutex;
-  const auto calibrations =
-      calibration::calibrate_without_each(array, frames, loads, settle, presses, [&](double share) {
-        const std::lock_guard lock(progress_mutex);
-        progress.show("presses", share);
-      });
-  if (!calibrations) return calibrations.error();
-  Result<ForceTables> tables = ForceTables::create(evaluation.tables, calibrations->front().model);
+  pipeline::Model of_array;
+  of_array.array = array;
+  Result<ForceTables> tables = ForceTables::create(evaluation.tables, of_array);
   if (!tables) return tables.error();
+  const std::vector<RecordedPress> presses = calibration::recorded_presses(frames, loads);
   const std::map<std::size_t, double> newtons = newtons_by_frame(loads, array);
   std::vector<JudgedPress> judged;
-  for (std::size_t k = 0; k < presses.size(); ++k) {
-    Result<JudgedPress> press = judge(presses[k], (*calibrations)[k], frames, newtons, *tables);
-    if (!press) return press.error();
-    judged.push_back(*std::move(press));
-  }
+  Progress progress(array.name);
+  progress.show("presses", 0.0);
+  Status done = calibration::judge_each_left_out(
+      array, frames, loads, presses, [&](const RecordedPress& press, const Calibration& without_it) -> Status {
+        Result<JudgedPress> result = judge(press, without_it, frames, newtons, *tables);
+        if (!result) return result.error();
+        judged.push_back(*result);
+        progress.show("presses", static_cast<double>(judged.size()) / static_cast<double>(presses.size()));
+        return Done{};
+      });
+  if (!done) return done;
   if (Status committed = tables->commit(); !committed) return committed;
   json ? print_json(judged) : print_text(judged);
   return Done{};

@@ -3,11 +3,9 @@
 #include "dermis/calibration/recorded_presses.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <optional>
-#include <utility>
 
 #include "dermis/calibration/parallel.hpp"
 
@@ -15,6 +13,7 @@ namespace dermis::calibration {
 namespace {
 
 constexpr Nanos kLeastPause = std::chrono::seconds(1);
+constexpr std::size_t kSideBySide = 16;  // calibrations that are kept at a time
 
 enum class Label : std::uint8_t { none, unloaded, loaded };
 
@@ -64,24 +63,23 @@ std::vector<RecordedPress> recorded_presses(std::span<const RawFrame> frames, st
   return presses;
 }
 
-Result<std::vector<Calibration>> calibrate_without_each(const ArrayDescription& array, std::span<const RawFrame> frames,
-                                                        std::span<const Load> loads, Nanos settle_time,
-                                                        std::span<const RecordedPress> presses,
-                                                        const std::function<void(double)>& progress) {
+Status judge_each_left_out(const ArrayDescription& array, std::span<const RawFrame> frames, std::span<const Load> loads,
+                           std::span<const RecordedPress> presses, const PressJudge& judge) {
   if (presses.size() < 2) return bad_input("fewer than two presses: none can be left out");
-  std::vector<std::optional<Result<Calibration>>> trained(presses.size());
-  std::atomic<std::size_t> done = 0;
-  parallel_for(presses.size(), [&](std::size_t k) {
-    const Rest rest(frames, loads, presses[k]);
-    trained[k] = calibrate(array, rest.frames, rest.loads, settle_time);
-    if (progress) progress(static_cast<double>(++done) / static_cast<double>(presses.size()));
-  });
-  std::vector<Calibration> calibrations;
-  for (std::optional<Result<Calibration>>& result : trained) {
-    if (!*result) return result->error();
-    calibrations.push_back(*std::move(*result));
+  for (std::size_t first = 0; first < presses.size(); first += kSideBySide) {
+    const auto some = presses.subspan(first, std::min(kSideBySide, presses.size() - first));
+    std::vector<std::optional<Result<Calibration>>> calibrations(some.size());
+    parallel_for(some.size(), [&](std::size_t k) {
+      const Rest rest(frames, loads, some[k]);
+      calibrations[k] = calibrate(array, rest.frames, rest.loads);
+    });
+    for (std::size_t k = 0; k < some.size(); ++k) {
+      const Result<Calibration>& without_it = *calibrations[k];
+      if (!without_it) return without_it.error();
+      if (Status judged = judge(some[k], *without_it); !judged) return judged;
+    }
   }
-  return calibrations;
+  return Done{};
 }
 
 }  // namespace dermis::calibration

@@ -27,12 +27,12 @@ struct RecordedPress {
 [[nodiscard]] std::vector<RecordedPress> recorded_presses(std::span<const RawFrame> frames,
                                                           std::span<const Load> loads);
 
-/// A calibration without each of the presses. They run side by side. Errors: those of
-/// calibrate(); no two presses. `progress` gets the share done, from any thread.
-[[nodiscard]] Result<std::vector<Calibration>> calibrate_without_each(const ArrayDescription& array,
-                                                                      std::span<const RawFrame> frames,
-                                                                      std::span<const Load> loads, Nanos settle_time,
-                                                                      std::span<const RecordedPress> presses,
-                                                                      const std::function<void(double)>& progress = {});
+using PressJudge = std::function<Status(const RecordedPress& press, const Calibration& without_it)>;
+
+/// Calls `judge` with each press and a calibration without it, by rising frame. A few calibrations run side by side, so
+/// that memory does not grow with the presses. Errors: those of calibrate() and `judge`; no two presses.
+[[nodiscard]] Status judge_each_left_out(const ArrayDescription& array, std::span<const RawFrame> frames,
+                                         std::span<const Load> loads, std::span<const RecordedPress> presses,
+                                         const PressJudge& judge);
 
 }  // namespace dermis::calibration
