@@ -17,6 +17,7 @@
 
 #include "commands.hpp"
 #include "dermis/dds/publisher.hpp"
+#include "dermis/fleet/frame_publisher.hpp"
 #include "dermis/recordings/frame_files.hpp"
 #include "dermis/recordings/recording.hpp"
 #include "dermis/recordings/suit_recording.hpp"
@@ -35,6 +36,8 @@ struct ServeOptions {
   serve::SessionOptions session;
   bool dds = false;
   std::optional<std::uint64_t> domain{};
+  std::string publish{};
+  std::string robot{};
 };
 
 Status check(const ServeOptions& options) {
@@ -76,6 +79,13 @@ Result<dds::PublisherOptions> dds_options(const std::optional<std::uint64_t>& wa
       environment("ROS_LOCALHOST_ONLY") == "1" || environment("ROS_AUTOMATIC_DISCOVERY_RANGE") == "LOCALHOST";
   if (Status valid = options.validate(); !valid) return valid.error();
   return options;
+}
+
+Result<fleet::PublisherOptions> publisher_options(const ServeOptions& options) {
+  const Result<fleet::BrokerAddress> broker = fleet::parse_broker_address(options.publish);
+  if (!broker) return bad_input("--publish: " + broker.error().message);
+  if (Status good = fleet::check_name("--robot", options.robot); !good) return good.error();
+  return fleet::PublisherOptions{.broker = *broker, .robot = options.robot};
 }
 
 std::string address(const stream::ServerOptions& server, std::uint16_t port) {
@@ -129,6 +139,11 @@ Status serve_suit(ServeOptions& options) {
     if (!dds) return dds.error();
     options.session.dds = *dds;
   }
+  if (!options.publish.empty()) {
+    Result<fleet::PublisherOptions> publish = publisher_options(options);
+    if (!publish) return publish.error();
+    options.session.publish = *std::move(publish);
+  }
   const std::atomic<bool>& stop = stop_flag();
   const std::span<const stream::Asset> page = viewer::assets();
   options.session.page.assign(page.begin(), page.end());
@@ -173,6 +188,9 @@ void add_serve(Command& command) {
   command.option("--token", options->session.server.token, "Every client must present it");
   const Option dds = command.flag("--dds", options->dds, "Topics for ROS 2, too (docs/ros.md)");
   command.option("--domain", options->domain, "Their domain; else that of ROS_DOMAIN_ID, or 0").needs(dds);
+  const Option publish =
+      command.option("--publish", options->publish, "nats://HOST: keep all frames in a stream, too (docs/fleet.md)");
+  command.option("--robot", options->robot, "The name of this robot in the fleet").needs(publish);
   command.action([options] { return serve_suit(*options); });
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dermis/recordings/mcap.hpp"
+#include "recordings/compression.hpp"
 #include "recordings/mcap_bytes.hpp"
 
 namespace dermis::recordings {
@@ -55,8 +56,28 @@ struct Batch {
   }
 };
 
-void append_map(Bytes& bytes, const std::map<std::string, std::string>& values);
-void append_schema(Bytes& bytes, std::uint16_t id, const McapChannel& channel);
-void append_channel(Bytes& bytes, std::uint16_t id, const WrittenChannel& channel);
+/// Makes batches of what is added, as McapWriter documents it. The first one begins the file.
+class BatchBuilder {
+ public:
+  void begin_file();
+  [[nodiscard]] std::uint16_t add_channel(const McapChannel& channel);
+  void add_attachment(const McapAttachment& attachment);
+  void add_metadata(const McapMetadata& metadata);
+  void add_message(const McapMessage& message);
+
+  /// The open batch, which may be taken away or cleared.
+  [[nodiscard]] Batch& batch() noexcept { return batch_; }
+  [[nodiscard]] const Batch& batch() const noexcept { return batch_; }
+
+ private:
+  [[nodiscard]] std::uint16_t schema_id(const McapChannel& channel);
+
+  Batch batch_;
+  std::vector<WrittenChannel> channels_;  ///< Of the numbers 1, 2, ...
+  std::vector<McapChannel> schemas_;      ///< Of the numbers 1, 2, ...
+};
+
+/// Appends the chunk of the batch, compressed; returns its compressed size.
+std::size_t append_chunk(Bytes& bytes, const Batch& batch, McapCompression compression, Compressor& compressor);
 
 }  // namespace dermis::recordings

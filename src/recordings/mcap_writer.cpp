@@ -1,29 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include <algorithm>
-#include <cassert>
-#include <limits>
 #include <mutex>
 #include <optional>
 #include <utility>
 
-#include "dermis/core/version.hpp"
 #include "dermis/recordings/mcap.hpp"
 #include "recordings/compression.hpp"
-#include "recordings/crc32.hpp"
 #include "recordings/growing_file.hpp"
 #include "recordings/mcap_batch.hpp"
 #include "recordings/mcap_bytes.hpp"
 #include "recordings/mcap_summary.hpp"
 
 namespace dermis::recordings {
-namespace {
-
-bool has_same_schema(const McapChannel& a, const McapChannel& b) {
-  return a.schema_name == b.schema_name && a.schema_encoding == b.schema_encoding && a.schema == b.schema;
-}
-
-}  // namespace
 
 struct McapWriter::State {
   State(GrowingFile growing_file, McapCompression chunk_compression)
@@ -32,10 +20,7 @@ struct McapWriter::State {
         compressor(chunk_compression),
         summary(file.place_beside()) {}
 
-  // Used by the thread that adds.
-  Batch open;
-  std::vector<WrittenChannel> channels;  ///< Of the numbers 1, 2, ...
-  std::vector<McapChannel> schemas;      ///< Of the numbers 1, 2, ...
+  BatchBuilder added;  ///< Used by the thread that adds.
 
   std::mutex mutex;  ///< Of the batches between the threads.
   std::vector<Batch> sealed;
@@ -50,14 +35,11 @@ struct McapWriter::State {
   Bytes pending;  ///< Whole records that are not yet in the file.
   McapSummary summary;
 
-  void begin();
   [[nodiscard]] std::uint64_t place() const { return file.size() + pending.size(); }
-  [[nodiscard]] std::uint16_t schema_id(const McapChannel& channel);
   void seal();
   [[nodiscard]] bool next_sealed();
   void write(const Batch& batch);
   void append_placed_indexes(const Batch& batch);
-  [[nodiscard]] std::uint64_t append_chunk(const Batch& batch);
   void end_chunk(const Batch& batch);
   void append_message_indexes(const Batch& batch, Bytes& places);
   void note(const Status& status);
@@ -66,27 +48,9 @@ struct McapWriter::State {
   [[nodiscard]] Status status() const;
 };
 
-void McapWriter::State::begin() {
-  append_characters(open.records, kMcapMagic);
-  const Record header(open.records, Opcode::header);
-  append_text(open.records, "ros2");
-  append_text(open.records, "dermis " DERMIS_VERSION);
-}
-
-std::uint16_t McapWriter::State::schema_id(const McapChannel& channel) {
-  if (channel.schema_name.empty()) return 0;
-  const auto found = std::find_if(schemas.begin(), schemas.end(),
-                                  [&](const McapChannel& schema) { return has_same_schema(schema, channel); });
-  const auto id = static_cast<std::uint16_t>(found - schemas.begin() + 1);
-  if (found == schemas.end()) {
-    schemas.push_back(channel);
-    for (Bytes* const bytes : {&open.records, &open.declarations}) append_schema(*bytes, id, channel);
-  }
-  return id;
-}
-
 /// Added data now wait to be written.
 void McapWriter::State::seal() {
+  Batch& open = added.batch();
   if (open.is_empty()) return;
   const std::scoped_lock lock(mutex);
   sealed.push_back(std::move(open));
@@ -109,24 +73,10 @@ bool McapWriter::State::next_sealed() {
   return true;
 }
 
-/// Compresses the chunk behind the pending records; returns its compressed size.
-std::uint64_t McapWriter::State::append_chunk(const Batch& batch) {
-  const Record record(pending, Opcode::chunk);
-  append_number(pending, batch.first_time);
-  append_number(pending, batch.last_time);
-  append_number(pending, std::uint64_t{batch.chunk.size()});
-  append_number(pending, crc32(0, batch.chunk));
-  append_text(pending, to_string(compression));
-  const LengthBefore<std::uint64_t> length(pending);
-  const std::size_t begin = pending.size();
-  compressor.append(batch.chunk, pending);
-  return pending.size() - begin;
-}
-
 /// Appends the chunk and its indexes to the pending records and to the summary.
 void McapWriter::State::end_chunk(const Batch& batch) {
   const std::uint64_t chunk_place = place();
-  const std::uint64_t compressed_bytes = append_chunk(batch);
+  const std::size_t compressed_bytes = append_chunk(pending, batch, compression, compressor);
   const std::uint64_t chunk_end = place();
   Bytes& index = summary.chunk_index;
   const Record record(index, Opcode::chunk_index);
@@ -137,7 +87,7 @@ void McapWriter::State::end_chunk(const Batch& batch) {
   append_message_indexes(batch, index);
   append_number(index, place() - chunk_end);
   append_text(index, to_string(compression));
-  append_number(index, compressed_bytes);
+  append_number(index, std::uint64_t{compressed_bytes});
   append_number(index, std::uint64_t{batch.chunk.size()});
 }
 
@@ -221,79 +171,28 @@ Result<std::unique_ptr<McapWriter>> McapWriter::create(const std::string& path, 
   Result<GrowingFile> file = GrowingFile::create(path);
   if (!file) return file.error();
   auto state = std::make_unique<State>(*std::move(file), compression);
-  state->begin();
+  state->added.begin_file();
   return std::unique_ptr<McapWriter>(new McapWriter(std::move(state)));
 }
 
 std::uint16_t McapWriter::add_channel(const McapChannel& channel) {
-  assert(state_->channels.size() < std::numeric_limits<std::uint16_t>::max());
-  WrittenChannel added;
-  added.description = channel;
-  added.schema_id = state_->schema_id(channel);
-  state_->channels.push_back(std::move(added));
-  const auto id = static_cast<std::uint16_t>(state_->channels.size());
-  Batch& open = state_->open;
-  for (Bytes* const bytes : {&open.records, &open.declarations}) append_channel(*bytes, id, state_->channels.back());
-  return id;
+  return state_->added.add_channel(channel);
 }
 
 void McapWriter::add_attachment(const McapAttachment& attachment) {
-  Bytes& bytes = state_->open.records;
-  PlacedRecord placed{Opcode::attachment_index, bytes.size(), 0, {}};
-  {
-    const Record record(bytes, Opcode::attachment);
-    const std::size_t begin = bytes.size();
-    append_number(bytes, std::uint64_t{0});  // log time
-    append_number(bytes, std::uint64_t{0});  // create time
-    append_text(bytes, attachment.name);
-    append_text(bytes, attachment.media_type);
-    append_number(bytes, std::uint64_t{attachment.data.size()});
-    append_characters(bytes, attachment.data);
-    append_number(bytes, crc32(0, ByteView(bytes).subspan(begin)));
-  }
-  placed.bytes = bytes.size() - placed.offset;
-  append_number(placed.rest, std::uint64_t{0});  // log time
-  append_number(placed.rest, std::uint64_t{0});  // create time
-  append_number(placed.rest, std::uint64_t{attachment.data.size()});
-  append_text(placed.rest, attachment.name);
-  append_text(placed.rest, attachment.media_type);
-  state_->open.placed.push_back(std::move(placed));
+  state_->added.add_attachment(attachment);
 }
 
 void McapWriter::add_metadata(const McapMetadata& metadata) {
-  Bytes& bytes = state_->open.records;
-  PlacedRecord placed{Opcode::metadata_index, bytes.size(), 0, {}};
-  {
-    const Record record(bytes, Opcode::metadata);
-    append_text(bytes, metadata.name);
-    append_map(bytes, metadata.values);
-  }
-  placed.bytes = bytes.size() - placed.offset;
-  append_text(placed.rest, metadata.name);
-  state_->open.placed.push_back(std::move(placed));
+  state_->added.add_metadata(metadata);
 }
 
 void McapWriter::add_message(const McapMessage& message) {
-  assert(message.channel >= 1 && message.channel <= state_->channels.size());
-  Batch& open = state_->open;
-  Bytes& chunk = open.chunk;
-  if (chunk.empty()) open.first_time = open.last_time = message.log_time;
-  open.first_time = std::min(open.first_time, message.log_time);
-  open.last_time = std::max(open.last_time, message.log_time);
-  if (open.indexes.size() < state_->channels.size()) open.indexes.resize(state_->channels.size());
-  Bytes& index = open.indexes[message.channel - 1U];
-  append_number(index, message.log_time);
-  append_number(index, std::uint64_t{chunk.size()});
-  const Record record(chunk, Opcode::message);
-  append_number(chunk, message.channel);
-  append_number(chunk, message.sequence);
-  append_number(chunk, message.log_time);
-  append_number(chunk, message.publish_time);
-  append_bytes(chunk, message.data);
+  state_->added.add_message(message);
 }
 
 std::size_t McapWriter::chunk_bytes() const noexcept {
-  return state_->open.chunk.size();
+  return state_->added.batch().chunk.size();
 }
 
 Status McapWriter::close_chunk() {

@@ -13,10 +13,10 @@
 #include <utility>
 
 #include "dermis/core/thread_priority.hpp"
-#include "dermis/core/version.hpp"
 #include "dermis/files/text.hpp"
 #include "dermis/recordings/suit_recording.hpp"
 #include "recordings/recording_format.hpp"
+#include "recordings/written_array.hpp"
 
 namespace dermis::recordings {
 namespace {
@@ -32,29 +32,13 @@ constexpr std::size_t kMostWaitingBytes = std::size_t{64} << 20U;  ///< For a di
 
 constexpr std::chrono::seconds kSynchronisePeriod{1};
 
-/// Declared in the file with its first message.
-struct Topic {
-  const char* name;
-  const messages::MessageType& type;
-  std::optional<std::uint16_t> channel{};
-  std::vector<std::uint8_t> message{};  ///< Bytes of the frame that is being written.
-  bool is_in_frame = false;
-};
+/// An array with what was written of it.
+struct ArrayAtWork {
+  explicit ArrayAtWork(RecordedArray description) : written(std::move(description)) {}
 
-/// An array at work.
-struct WrittenArray {
-  RecordedArray description;
-  std::string frame_id;
-  // In the order of the file. The image comes last: a frame whose image is there is whole.
-  Topic temperature{"temperature", messages::temperature_type()};
-  Topic acquisition{"acquisition", messages::acquisition_type()};
-  Topic force_status{"force_status", messages::frame_status_type()};
-  Topic force{"force", messages::grid_type()};
-  Topic raw{"raw", messages::image_type()};
-  std::uint64_t frames = 0;
+  WrittenArray written;
   std::uint64_t lost = 0;
   std::uint32_t left_out = 0;  ///< Frames since the last one that is in the file.
-  std::uint64_t log_time = 0;
 };
 
 /// A topic of messages that belong to no frame.
@@ -62,30 +46,6 @@ struct EventTopic {
   std::uint16_t channel = 0;
   std::uint32_t messages = 0;
 };
-
-/// Not of the arrival by UTC, which leaps when that clock is set.
-std::uint64_t log_time_of(Nanos time) {
-  return static_cast<std::uint64_t>(std::max<std::int64_t>(time.count(), 0));
-}
-
-void encode(WrittenArray& array, const RawFrame& frame, const ForceFrame* force_frame) {
-  assert(frame.counts.size() == array.description.shape.taxel_count());
-  array.log_time = std::max(array.log_time, log_time_of(frame.time));
-  array.temperature.is_in_frame = frame.temperature_celsius.has_value();
-  if (frame.temperature_celsius) {
-    messages::encode_temperature(*frame.temperature_celsius, frame.time, array.frame_id, array.temperature.message);
-  }
-  messages::encode_acquisition(frame, array.acquisition.message);
-  array.acquisition.is_in_frame = true;
-  array.force_status.is_in_frame = array.force.is_in_frame = force_frame != nullptr;
-  if (force_frame != nullptr) {
-    const RecordedArray& description = array.description;
-    messages::encode_frame_status(*force_frame, array.force_status.message);
-    messages::encode_grid(*force_frame, description.shape, description.pitch, array.frame_id, array.force.message);
-  }
-  messages::encode_image(frame, array.description.shape, array.frame_id, array.raw.message);
-  array.raw.is_in_frame = true;
-}
 
 Status check_topics(const std::vector<RecordedArray>& arrays) {
   for (std::size_t i = 0; i < arrays.size(); ++i) {
@@ -112,8 +72,8 @@ class SuitRecordingWriter::Implementation {
   [[nodiscard]] Status commit();
 
  private:
-  void describe(const WrittenArray& array);
-  void add(WrittenArray& array);
+  void describe(const RecordedArray& array);
+  void add(ArrayAtWork& array);
   void add(const RecordedEvent& event);
   [[nodiscard]] std::size_t most_chunks() const { return kMostWaitingBytes / chunk_bytes_; }
   template <typename Written>
@@ -129,7 +89,7 @@ class SuitRecordingWriter::Implementation {
   void stop_threads();
 
   std::unique_ptr<McapWriter> mcap_;
-  std::vector<WrittenArray> arrays_;  ///< Each of the thread that writes its frames.
+  std::vector<ArrayAtWork> arrays_;  ///< Each of the thread that writes its frames.
   std::map<std::string, EventTopic, std::less<>> event_topics_;
   bool live_;
   std::size_t chunk_bytes_;
@@ -149,13 +109,8 @@ class SuitRecordingWriter::Implementation {
 SuitRecordingWriter::Implementation::Implementation(std::unique_ptr<McapWriter> mcap, std::vector<RecordedArray> arrays,
                                                     bool live)
     : mcap_(std::move(mcap)), live_(live), chunk_bytes_(arrays.size() == 1 ? kChunkBytes : kSuitChunkBytes) {
-  for (RecordedArray& array : arrays) {
-    WrittenArray written;
-    written.frame_id = topic_part(array.name);
-    written.description = std::move(array);
-    arrays_.push_back(std::move(written));
-  }
-  for (const WrittenArray& array : arrays_) describe(array);
+  for (RecordedArray& array : arrays) arrays_.emplace_back(std::move(array));
+  for (const ArrayAtWork& array : arrays_) describe(array.written.description());
   writer_ = std::jthread([this](const std::stop_token& stop) { write_chunks(stop); });
   synchroniser_ = std::jthread([this](const std::stop_token& stop) { synchronise(stop); });
 }
@@ -167,34 +122,17 @@ SuitRecordingWriter::Implementation::~Implementation() {
   for (; waiting_chunks_ > 0; --waiting_chunks_) static_cast<void>(write_sealed());
 }
 
-void SuitRecordingWriter::Implementation::describe(const WrittenArray& array) {
-  const RecordedArray& description = array.description;
-  McapMetadata metadata = {kRecordingMetadata,
-                           {{"name", description.name},
-                            {"rows", std::to_string(description.shape.rows)},
-                            {"cols", std::to_string(description.shape.cols)},
-                            {"model_hash", description.model_hash},
-                            {"software", "dermis " DERMIS_VERSION}}};
-  if (!description.simulation.empty()) metadata.values["simulation"] = description.simulation;
-  mcap_->add_metadata(metadata);
-  if (description.array_toml.empty()) return;
+void SuitRecordingWriter::Implementation::describe(const RecordedArray& array) {
+  mcap_->add_metadata(metadata_of(array));
+  if (array.array_toml.empty()) return;
   const bool is_only_one = arrays_.size() == 1;
-  mcap_->add_attachment({is_only_one ? kArrayAttachment : array_attachment(description.name), "application/toml",
-                         description.array_toml});
+  mcap_->add_attachment(
+      {is_only_one ? kArrayAttachment : array_attachment(array.name), "application/toml", array.array_toml});
 }
 
 /// The messages of the frame go into the chunk.
-void SuitRecordingWriter::Implementation::add(WrittenArray& array) {
-  for (Topic* topic : {&array.temperature, &array.acquisition, &array.force_status, &array.force, &array.raw}) {
-    if (!topic->is_in_frame) continue;
-    if (!topic->channel) {
-      const std::string full_name = "/" + array.frame_id + "/" + topic->name;
-      topic->channel = mcap_->add_channel({full_name, "cdr", topic->type.name, "ros2msg", topic->type.definition});
-    }
-    mcap_->add_message(
-        {*topic->channel, static_cast<std::uint32_t>(array.frames), array.log_time, array.log_time, topic->message});
-  }
-  ++array.frames;
+void SuitRecordingWriter::Implementation::add(ArrayAtWork& array) {
+  array.written.add_to(*mcap_);
 }
 
 void SuitRecordingWriter::Implementation::add(const RecordedEvent& event) {
@@ -260,8 +198,8 @@ void SuitRecordingWriter::Implementation::stop_threads() {
 Status SuitRecordingWriter::Implementation::write(std::size_t index, const RawFrame& frame,
                                                   const ForceFrame* force_frame) {
   assert(index < arrays_.size());
-  WrittenArray& array = arrays_[index];
-  encode(array, frame, force_frame);
+  ArrayAtWork& array = arrays_[index];
+  array.written.encode(frame, force_frame);
   array.lost += frame.acquisition.lost_before;
   return wait_and_add(array);
 }
@@ -272,13 +210,13 @@ Status SuitRecordingWriter::Implementation::write(const RecordedEvent& event) {
 
 Result<bool> SuitRecordingWriter::Implementation::try_write(std::size_t index, const RawFrame& frame) {
   assert(index < arrays_.size());
-  WrittenArray& array = arrays_[index];
+  ArrayAtWork& array = arrays_[index];
   if (array.left_out > 0) {
     RawFrame after_gap = frame;
     after_gap.acquisition.lost_before += array.left_out;
-    encode(array, after_gap, nullptr);
+    array.written.encode(after_gap, nullptr);
   } else {
-    encode(array, frame, nullptr);
+    array.written.encode(frame, nullptr);
   }
   Result<bool> added = try_to_add(array, most_chunks());
   const bool is_left_out = added && !*added;
@@ -325,10 +263,10 @@ Status SuitRecordingWriter::Implementation::commit() {
   stop_threads();
   chunk_due_ = Clock::time_point::max();
   waiting_chunks_ = 0;
-  for (const WrittenArray& array : arrays_) {
+  for (const ArrayAtWork& array : arrays_) {
     McapMetadata totals{kTotalsMetadata,
-                        {{"frames", std::to_string(array.frames)}, {"lost", std::to_string(array.lost)}}};
-    if (arrays_.size() > 1) totals.values["name"] = array.description.name;
+                        {{"frames", std::to_string(array.written.frames())}, {"lost", std::to_string(array.lost)}}};
+    if (arrays_.size() > 1) totals.values["name"] = array.written.description().name;
     mcap_->add_metadata(totals);
   }
   const Status finished = mcap_->finish();

@@ -7,6 +7,7 @@
 #include "dermis/acquisition/device_source.hpp"
 #include "dermis/core/turned_source.hpp"
 #include "dermis/files/taxel_text.hpp"
+#include "dermis/fleet/frame_stream.hpp"
 #include "dermis/recordings/frame_files.hpp"
 #include "dermis/recordings/suit_recording.hpp"
 #include "dermis/sources/recorded_order.hpp"
@@ -86,9 +87,24 @@ Result<std::unique_ptr<FrameSource>> open_device(const acquisition::SourceUri& u
   return turned_source(*std::move(device), order, uri.text);
 }
 
+/// Its frames were turned before they were published.
+Result<std::unique_ptr<FrameSource>> open_stream(const fleet::StreamAddress& address, const SourceOptions& options) {
+  Result<std::unique_ptr<fleet::FrameStream>> stream =
+      fleet::FrameStream::open(address, {.stop = options.stop, .notice = options.notice});
+  if (!stream) return stream.error();
+  const std::optional<FrameShape> wanted = shape_of(options.array);
+  const FrameShape shape = *(*stream)->shape();
+  if (wanted && *wanted != shape) {
+    return bad_input("'" + address.text + "': frames are " + files::size_text(shape) + ", the array is " +
+                     files::size_text(*wanted));
+  }
+  return std::unique_ptr<FrameSource>(*std::move(stream));
+}
+
 }  // namespace
 
 Result<std::unique_ptr<FrameSource>> open_source(const SourceName& from, const SourceOptions& options) {
+  if (from.stream) return open_stream(*from.stream, options);
   if (!from.uri) {
     if (Status order = check_order(from.text, options.array); !order) return order.error();
     return recordings::open_frames(from.text,
@@ -129,6 +145,7 @@ Result<std::vector<std::string>> several_arrays(const SourceName& from) {
 recordings::FrameNotes notes_of_source(const FrameSource& source, const std::string& from) {
   const Result<SourceName> name = SourceName::parse(from);
   if (name && name->kind == SourceKind::simulation) return {.simulation = from};
+  if (const auto* const stream = dynamic_cast<const fleet::FrameStream*>(&source)) return stream->notes();
   if (source.is_live()) return {};
   const Result<recordings::FrameNotes> notes = recordings::read_frame_notes(from);
   return notes ? *notes : recordings::FrameNotes{};

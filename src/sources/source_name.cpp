@@ -38,6 +38,13 @@ bool is_recording(const std::string& path) {
 Result<SourceName> SourceName::parse(const std::string& text) {
   SourceName name{.text = text};
   std::string path = text;
+  if (fleet::is_stream_address(text)) {
+    Result<fleet::StreamAddress> address = fleet::parse_stream_address(text);
+    if (!address) return address.error();
+    name.kind = SourceKind::stream;
+    name.stream = *std::move(address);
+    return name;
+  }
   if (acquisition::is_source_uri(text)) {
     Result<acquisition::SourceUri> uri = acquisition::parse_source_uri(text);
     if (!uri) return uri.error();

@@ -41,6 +41,8 @@ BRINGS = {
     "libhdf5-dev": "hdf5-serial",
     "pybind11-dev": "pybind11",
     "libfastrtps-dev": "fastrtps",
+    "libnats-dev": "libnats",
+    "nats-server": "nats-server",
     "python3-numpy": "numpy",
     "libgtest-dev": "GTest",
     "libbenchmark-dev": "benchmark",

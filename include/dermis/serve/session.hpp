@@ -11,6 +11,7 @@
 
 #include "dermis/core/result.hpp"
 #include "dermis/dds/publisher.hpp"
+#include "dermis/fleet/frame_publisher.hpp"
 #include "dermis/serve/served_suit.hpp"
 #include "dermis/stream/server.hpp"
 
@@ -24,6 +25,7 @@ struct SessionOptions {
   std::string record{};
   std::string recordings{};                    ///< A recording in whose folder clients record; empty: that of `record`.
   std::optional<dds::PublisherOptions> dds{};  ///< Topics for nodes of ROS 2 (docs/ros.md); empty: none.
+  std::optional<fleet::PublisherOptions> publish{};  ///< Frames for a fleet (docs/fleet.md); empty: none.
 };
 
 /// A suit at work and the server that shows it.

@@ -7,6 +7,7 @@
 
 #include "dermis/acquisition/source_uri.hpp"
 #include "dermis/core/result.hpp"
+#include "dermis/fleet/stream_address.hpp"
 
 namespace dermis::sources {
 
@@ -15,17 +16,20 @@ enum class SourceKind {
   simulation,  ///< sim:SCENE
   recording,   ///< MCAP, of one or several arrays.
   file,        ///< Any other file of frames, by its path or by file:PATH?rate=...
+  stream,      ///< nats://HUB?robot=...&array=...
 };
 
 /// The name of a source, parsed (docs/devices.md). Opens nothing.
 struct SourceName {
   std::string text;  ///< As it was given.
   SourceKind kind = SourceKind::file;
-  std::string file{};                           ///< Path of the file, recording or bytes; empty: it is none.
-  std::string array{};                          ///< "chest" of "rec.mcap#chest"; empty: none is named.
-  std::optional<acquisition::SourceUri> uri{};  ///< Empty: the name is the path of a file.
+  std::string file{};                            ///< Path of the file, recording or bytes; empty: it is none.
+  std::string array{};                           ///< "chest" of "rec.mcap#chest"; empty: none is named.
+  std::optional<acquisition::SourceUri> uri{};   ///< Empty: the name is the path of a file.
+  std::optional<fleet::StreamAddress> stream{};  ///< A stream of NATS; empty: it is none.
 
-  /// Fails on a URI that acquisition::parse_source_uri() refuses. Everything else is the path of a file.
+  /// Fails on a URI that acquisition::parse_source_uri() or fleet::parse_stream_address() refuses. Everything else is
+  /// the path of a file.
   [[nodiscard]] static Result<SourceName> parse(const std::string& text);
 
   /// "rec.mcap#chest": the file without its folder, as tables name it.

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "dermis/core/frames.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/fleet/stream_address.hpp"
+#include "dermis/recordings/suit_recording.hpp"
+
+namespace dermis::fleet {
+
+struct PublisherOptions {
+  BrokerAddress broker{};
+  std::string robot;                          ///< check_name()
+  std::uint64_t most_bytes = 0;               ///< A new stream of the robot keeps at most so many; 0: no limit.
+  std::function<void(std::string)> notice{};  ///< Told in one line where the server goes and comes back. Thread-safe.
+};
+
+/// How publishing goes.
+struct PublisherCounts {
+  std::uint64_t batches = 0;   ///< That the server has stored.
+  std::uint64_t frames = 0;    ///< In them.
+  std::uint64_t bytes = 0;     ///< In the batches.
+  std::uint64_t left_out = 0;  ///< Frames without room, while the server did not follow.
+};
+
+/// Publishes the frames of a robot's arrays as batches of at most 100 ms (recordings/frame_batches.hpp). The server
+/// stores each batch once, and those of an array in order: the next one is sent when it has acknowledged the last.
+/// Where it does not answer, 16 MB of each array wait.
+class FramePublisher {
+ public:
+  /// Fails where the plugin is not there, and on names that are no part of a subject. A server that does not answer is
+  /// told to `notice` and asked again.
+  [[nodiscard]] static Result<std::unique_ptr<FramePublisher>> create(std::vector<recordings::RecordedArray> arrays,
+                                                                      PublisherOptions options);
+  FramePublisher(const FramePublisher&) = delete;
+  FramePublisher& operator=(const FramePublisher&) = delete;
+  /// Sends what waits, for at most 2 s.
+  ~FramePublisher();
+
+  /// Never waits for the server. One thread for each array.
+  void publish(std::size_t array, const RawFrame& frame);
+
+  [[nodiscard]] PublisherCounts counts() const noexcept;
+
+ private:
+  class Implementation;
+  explicit FramePublisher(std::unique_ptr<Implementation> implementation);
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace dermis::fleet

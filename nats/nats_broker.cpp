@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <nats/nats.h>
+
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "fleet/broker.hpp"
+
+/// The plugin that dermis::fleet loads.
+namespace dermis::fleet {
+namespace {
+
+constexpr std::int64_t kConnectMs = 2000;
+constexpr std::int64_t kReconnectMs = 200;
+constexpr std::int64_t kAnswerMs = 2000;
+constexpr int kForEver = -1;
+constexpr const char* kIdHeader = "Nats-Msg-Id";
+
+/// Frees what the library has made.
+template <auto Destroy>
+struct Destroyer {
+  template <typename Made>
+  void operator()(Made* made) const {
+    Destroy(made);
+  }
+};
+using Options = std::unique_ptr<natsOptions, Destroyer<natsOptions_Destroy>>;
+using Connection = std::unique_ptr<natsConnection, Destroyer<natsConnection_Destroy>>;
+using JetStream = std::unique_ptr<jsCtx, Destroyer<jsCtx_Destroy>>;
+using Message = std::unique_ptr<natsMsg, Destroyer<natsMsg_Destroy>>;
+using PublishAck = std::unique_ptr<jsPubAck, Destroyer<jsPubAck_Destroy>>;
+
+Error error_of(const std::string& place, natsStatus status) {
+  const char* const last = nats_GetLastError(nullptr);
+  const bool has_detail = last != nullptr && *last != '\0';
+  return failed(place + ": " + natsStatus_GetText(status) + (has_detail ? std::string(" (") + last + ")" : ""));
+}
+
+StoredMessage stored_message(natsMsg* message) {
+  StoredMessage stored;
+  stored.sequence = natsMsg_GetSequence(message);
+  stored.time = Nanos(natsMsg_GetTime(message));
+  const char* id = nullptr;
+  if (natsMsgHeader_Get(message, kIdHeader, &id) == NATS_OK) stored.id = id;
+  const auto* const data = reinterpret_cast<const std::uint8_t*>(natsMsg_GetData(message));
+  stored.bytes.assign(data, data + natsMsg_GetDataLength(message));
+  return stored;
+}
+
+class NatsBroker final : public Broker {
+ public:
+  NatsBroker(std::string url, Connection connection, JetStream jet_stream)
+      : url_(std::move(url)), connection_(std::move(connection)), jet_stream_(std::move(jet_stream)) {}
+
+  [[nodiscard]] Result<std::string> ask(const std::string& subject, const std::string& request) override;
+  [[nodiscard]] Result<std::optional<Delivery>> take(const std::string& subject, const std::string& request) override;
+  [[nodiscard]] Status send(const std::string& subject, const std::string& text) override;
+  [[nodiscard]] Result<std::uint64_t> store(const std::string& subject, const std::string& id,
+                                            std::span<const std::uint8_t> bytes) override;
+  [[nodiscard]] Result<std::optional<StoredMessage>> last(const std::string& stream,
+                                                          const std::string& subject) override;
+  [[nodiscard]] Result<std::optional<StoredMessage>> next(const std::string& stream, const std::string& subject,
+                                                          std::uint64_t sequence) override;
+
+ private:
+  [[nodiscard]] Result<std::optional<StoredMessage>> get(const std::string& stream, jsDirectGetMsgOptions& which);
+
+  const std::string url_;
+  const Connection connection_;
+  const JetStream jet_stream_;
+};
+
+Result<std::string> NatsBroker::ask(const std::string& subject, const std::string& request) {
+  natsMsg* got = nullptr;
+  const natsStatus asked =
+      natsConnection_RequestString(&got, connection_.get(), subject.c_str(), request.c_str(), kAnswerMs);
+  const Message answer(got);
+  if (asked != NATS_OK) return error_of(url_, asked);
+  return std::string(natsMsg_GetData(answer.get()), static_cast<std::size_t>(natsMsg_GetDataLength(answer.get())));
+}
+
+Result<std::optional<Delivery>> NatsBroker::take(const std::string& subject, const std::string& request) {
+  natsMsg* got = nullptr;
+  const natsStatus asked =
+      natsConnection_RequestString(&got, connection_.get(), subject.c_str(), request.c_str(), kAnswerMs);
+  const Message message(got);
+  if (asked == NATS_TIMEOUT) return std::optional<Delivery>();
+  if (asked != NATS_OK) return error_of(url_, asked);
+  const char* lease = natsMsg_GetReply(message.get());
+  if (lease == nullptr) return std::optional<Delivery>();  // the server says that there is none
+  const auto length = static_cast<std::size_t>(natsMsg_GetDataLength(message.get()));
+  return std::optional(Delivery{std::string(natsMsg_GetData(message.get()), length), lease});
+}
+
+Status NatsBroker::send(const std::string& subject, const std::string& text) {
+  const natsStatus sent = natsConnection_PublishString(connection_.get(), subject.c_str(), text.c_str());
+  if (sent != NATS_OK) return error_of(url_, sent);
+  return Done{};
+}
+
+Result<std::uint64_t> NatsBroker::store(const std::string& subject, const std::string& id,
+                                        std::span<const std::uint8_t> bytes) {
+  natsMsg* created = nullptr;
+  const natsStatus made = natsMsg_Create(&created, subject.c_str(), nullptr,
+                                         reinterpret_cast<const char*>(bytes.data()), static_cast<int>(bytes.size()));
+  const Message message(created);
+  if (made != NATS_OK) return error_of(url_, made);
+  jsPubOptions options;
+  jsPubOptions_Init(&options);
+  if (!id.empty()) options.MsgId = id.c_str();
+  options.MaxWait = kAnswerMs;
+  jsPubAck* answer = nullptr;
+  const natsStatus published = js_PublishMsg(&answer, jet_stream_.get(), message.get(), &options, nullptr);
+  const PublishAck acknowledged(answer);
+  if (published != NATS_OK) return error_of(url_ + ": " + subject, published);
+  return acknowledged->Sequence;
+}
+
+Result<std::optional<StoredMessage>> NatsBroker::get(const std::string& stream, jsDirectGetMsgOptions& which) {
+  natsMsg* got = nullptr;
+  jsOptions options;
+  jsOptions_Init(&options);
+  options.Wait = kAnswerMs;
+  const natsStatus asked = js_DirectGetMsg(&got, jet_stream_.get(), stream.c_str(), &options, &which);
+  const Message message(got);
+  if (asked == NATS_NOT_FOUND) return std::optional<StoredMessage>();
+  if (asked != NATS_OK) return error_of(url_ + ": stream " + stream, asked);
+  return std::optional(stored_message(message.get()));
+}
+
+Result<std::optional<StoredMessage>> NatsBroker::last(const std::string& stream, const std::string& subject) {
+  jsDirectGetMsgOptions which;
+  jsDirectGetMsgOptions_Init(&which);
+  which.LastBySubject = subject.c_str();
+  return get(stream, which);
+}
+
+Result<std::optional<StoredMessage>> NatsBroker::next(const std::string& stream, const std::string& subject,
+                                                      std::uint64_t sequence) {
+  jsDirectGetMsgOptions which;
+  jsDirectGetMsgOptions_Init(&which);
+  which.Sequence = sequence;
+  which.NextBySubject = subject.c_str();
+  return get(stream, which);
+}
+
+natsStatus set_options(natsOptions* options, const BrokerAddress& address) {
+  const auto both = [](natsStatus first, natsStatus second) { return first != NATS_OK ? first : second; };
+  natsStatus status = natsOptions_SetURL(options, address.url.c_str());
+  status = both(status, natsOptions_SetTimeout(options, kConnectMs));
+  status = both(status, natsOptions_SetMaxReconnect(options, kForEver));
+  status = both(status, natsOptions_SetReconnectWait(options, kReconnectMs));
+  status = both(status, natsOptions_SetFailRequestsOnDisconnect(options, true));
+  status = both(status, natsOptions_SetName(options, "dermis"));
+  if (!address.ca.empty()) status = both(status, natsOptions_LoadCATrustedCertificates(options, address.ca.c_str()));
+  return status;
+}
+
+Result<std::unique_ptr<Broker>> connect(const BrokerAddress& address) {
+  natsOptions* made_options = nullptr;
+  natsStatus status = natsOptions_Create(&made_options);
+  const Options options(made_options);
+  if (status == NATS_OK) status = set_options(options.get(), address);
+  if (status != NATS_OK) return error_of(address.url, status);
+  natsConnection* made_connection = nullptr;
+  status = natsConnection_Connect(&made_connection, options.get());
+  Connection connection(made_connection);
+  if (status != NATS_OK) return error_of(address.url, status);
+  jsCtx* made_context = nullptr;
+  status = natsConnection_JetStream(&made_context, connection.get(), nullptr);
+  JetStream jet_stream(made_context);
+  if (status != NATS_OK) return error_of(address.url, status);
+  return std::unique_ptr<Broker>(
+      std::make_unique<NatsBroker>(address.url, std::move(connection), std::move(jet_stream)));
+}
+
+}  // namespace
+}  // namespace dermis::fleet
+
+extern "C" __attribute__((visibility("default"))) void dermis_connect_broker(
+    const dermis::fleet::BrokerAddress& address, dermis::Result<std::unique_ptr<dermis::fleet::Broker>>& connected) {
+  connected = dermis::fleet::connect(address);
+}

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/fleet/job.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "dermis/files/config_table.hpp"
+
+namespace dermis::fleet {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::size_t kMostWords = 200;
+constexpr std::size_t kMostCharacters = 4096;
+const std::set<std::string, std::less<>> kCommands = {"calibrate", "convert", "evaluate", "run", "simulate"};
+
+/// A path within the folder, or no path at all.
+bool stays_within(std::string_view word) {
+  const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7F; };
+  if (std::any_of(word.begin(), word.end(), is_control)) return false;
+  if (word.starts_with('/') || word.starts_with('~')) return false;
+  const bool is_short_option = word.size() > 1 && word[0] == '-' && word[1] != '-';
+  if (is_short_option && word.find_first_not_of("0123456789.eE+-") != std::string_view::npos) return false;
+  for (const std::string_view way_out : {"..", "=/", ":/", "%", "#/", "//"}) {
+    if (word.find(way_out) != std::string_view::npos) return false;
+  }
+  for (const std::string_view device : {"serial:", "tcp:", "tcp-listen:", "udp:", "stdin:", "nats:", "tls:", "file:"}) {
+    if (word.find(device) != std::string_view::npos) return false;
+  }
+  return true;
+}
+
+std::string command_list() {
+  std::string list;
+  for (const std::string& command : kCommands) list += (list.empty() ? "" : ", ") + command;
+  return list;
+}
+
+Result<std::vector<Job>> jobs_of(files::ConfigFile& file, const std::string& name) {
+  std::vector<Job> jobs(file.table_count("job"));
+  if (jobs.empty()) return bad_input(name + ": has no [[job]]");
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const std::string table = "job[" + std::to_string(i) + "].";
+    jobs[i].name = name + " " + std::to_string(i + 1);
+    file.text(table + "name", jobs[i].name);
+    file.require(table + "words");
+    file.texts(table + "words", jobs[i].words);
+    if (const Status good = check_job(jobs[i]); !good) file.fail(table + "words", good.error().message);
+  }
+  if (const Status finished = file.finish(); !finished) return finished.error();
+  return jobs;
+}
+
+}  // namespace
+
+Status check_job(const Job& job) {
+  if (job.words.empty() || !kCommands.contains(job.words.front())) {
+    return bad_input("words: a job begins with one of " + command_list());
+  }
+  if (job.words.size() > kMostWords || job.name.size() > kMostCharacters) return bad_input("words: are more than 200");
+  for (const std::string& word : job.words) {
+    if (word.size() > kMostCharacters) return bad_input("words: one is longer than 4096 characters");
+    if (!stays_within(word)) {
+      return bad_input("words: '" + word + "' may lead out of the folder; name files by relative paths");
+    }
+  }
+  return Done{};
+}
+
+Result<std::vector<Job>> read_jobs(const std::string& path) {
+  Result<files::ConfigFile> file = files::ConfigFile::read(path);
+  if (!file) return file.error();
+  return jobs_of(*file, path);
+}
+
+Result<std::vector<Job>> parse_jobs(std::string_view text, const std::string& name) {
+  Result<files::ConfigFile> file = files::ConfigFile::parse(text, name);
+  if (!file) return file.error();
+  return jobs_of(*file, name);
+}
+
+std::string job_to_json(const Job& job) {
+  return Json({{"name", job.name}, {"words", job.words}}).dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Result<Job> job_from_json(std::string_view text) {
+  const Json json = Json::parse(text, nullptr, false);
+  const bool is_job =
+      json.is_object() && json.contains("name") && json["name"].is_string() && json.contains("words") &&
+      json["words"].is_array() &&
+      std::all_of(json["words"].begin(), json["words"].end(), [](const Json& word) { return word.is_string(); });
+  if (!is_job) return bad_input("is no job: needs name and words");
+  Job job{json["name"], json["words"]};
+  if (const Status good = check_job(job); !good) return good.error();
+  return job;
+}
+
+}  // namespace dermis::fleet

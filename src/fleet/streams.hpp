@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+#include "dermis/core/result.hpp"
+#include "fleet/broker.hpp"
+
+/// Streams of JetStream (https://docs.nats.io/reference/reference-protocols/nats_api_reference).
+namespace dermis::fleet {
+
+/// The stream of a robot, on the disk of its own server. One that is there keeps its settings. `most_bytes`: the oldest
+/// messages make room; 0: no limit.
+[[nodiscard]] Status make_stream(Broker& broker, const std::string& robot, std::uint64_t most_bytes);
+
+/// A copy of a robot's stream, with the same numbers, which follows that of the robot's server. One that is there
+/// stays.
+[[nodiscard]] Status mirror_stream(Broker& broker, const std::string& robot);
+
+/// A stream from which a message is away when a worker has acknowledged it, and its consumer of the same name. Another
+/// worker gets a message that is not acknowledged within `lease`.
+[[nodiscard]] Status make_work_queue(Broker& broker, const std::string& name, const std::string& subject,
+                                     std::chrono::nanoseconds lease);
+
+/// A stream that keeps all messages.
+[[nodiscard]] Status make_log(Broker& broker, const std::string& name, const std::string& subjects);
+
+}  // namespace dermis::fleet

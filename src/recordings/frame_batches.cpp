@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/recordings/frame_batches.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <deque>
+#include <mutex>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "recordings/compression.hpp"
+#include "recordings/mcap_batch.hpp"
+#include "recordings/recording_format.hpp"
+#include "recordings/written_array.hpp"
+
+namespace dermis::recordings {
+namespace {
+
+constexpr std::size_t kBatchBytes = std::size_t{256} << 10U;  // before it is compressed; servers take 1 MB
+
+/// Whole messages that are not yet compressed.
+struct WaitingBatch {
+  Batch batch;
+  std::size_t frames = 0;
+};
+
+}  // namespace
+
+class FrameBatchWriter::Implementation {
+ public:
+  explicit Implementation(RecordedArray array);
+
+  [[nodiscard]] std::span<const std::uint8_t> description() const noexcept { return description_; }
+  [[nodiscard]] std::uint64_t left_out() const noexcept { return left_out_; }
+  void add(const RawFrame& frame);
+  [[nodiscard]] std::optional<FrameBatch> take(bool unfinished);
+
+ private:
+  void seal();
+  [[nodiscard]] std::optional<WaitingBatch> next(bool unfinished);
+
+  std::mutex mutex_;  ///< Guards the next four.
+  BatchBuilder open_;
+  std::size_t open_frames_ = 0;
+  std::deque<WaitingBatch> waiting_;
+  std::size_t waiting_bytes_ = 0;
+
+  WrittenArray array_;             ///< The thread that adds uses it.
+  std::uint32_t lost_before_ = 0;  ///< Frames that were left out since the last one.
+  std::atomic<std::uint64_t> left_out_ = 0;
+  Compressor compressor_{McapCompression::zstd};  ///< The thread that takes uses it.
+  Bytes description_;
+};
+
+FrameBatchWriter::Implementation::Implementation(RecordedArray array) : array_(std::move(array)) {
+  const RecordedArray& described = array_.description();
+  open_.begin_file();
+  open_.add_metadata(metadata_of(described));
+  if (!described.array_toml.empty()) open_.add_attachment({kArrayAttachment, "application/toml", described.array_toml});
+  array_.declare(open_);
+  description_ = open_.batch().records;
+  open_.batch().clear();
+}
+
+void FrameBatchWriter::Implementation::add(const RawFrame& frame) {
+  const std::scoped_lock lock(mutex_);
+  if (waiting_bytes_ >= kMostWaitingBytes) {
+    ++left_out_;
+    lost_before_ += frame.acquisition.lost_before + 1;
+    return;
+  }
+  if (lost_before_ > 0) {
+    RawFrame after_gap = frame;
+    after_gap.acquisition.lost_before += std::exchange(lost_before_, 0);
+    array_.encode(after_gap, nullptr);
+  } else {
+    array_.encode(frame, nullptr);
+  }
+  const std::uint64_t begun = open_.batch().first_time;
+  if (open_frames_ > 0 && log_time_of(frame.time) > begun + static_cast<std::uint64_t>(kLongest.count())) seal();
+  array_.add_to(open_);
+  ++open_frames_;
+  if (open_.batch().chunk.size() >= kBatchBytes) seal();
+}
+
+/// The open batch waits to be taken.
+void FrameBatchWriter::Implementation::seal() {
+  waiting_bytes_ += open_.batch().chunk.size();
+  waiting_.push_back({std::move(open_.batch()), std::exchange(open_frames_, 0)});
+  open_.batch() = waiting_.back().batch.empty_like();
+}
+
+std::optional<WaitingBatch> FrameBatchWriter::Implementation::next(bool unfinished) {
+  const std::scoped_lock lock(mutex_);
+  if (waiting_.empty() && unfinished && open_frames_ > 0) seal();
+  if (waiting_.empty()) return std::nullopt;
+  WaitingBatch taken = std::move(waiting_.front());
+  waiting_.pop_front();
+  waiting_bytes_ -= taken.batch.chunk.size();
+  return taken;
+}
+
+std::optional<FrameBatch> FrameBatchWriter::Implementation::take(bool unfinished) {
+  const std::optional<WaitingBatch> taken = next(unfinished);
+  if (!taken) return std::nullopt;
+  FrameBatch batch{Nanos(static_cast<std::int64_t>(taken->batch.first_time)),
+                   Nanos(static_cast<std::int64_t>(taken->batch.last_time)),
+                   taken->frames,
+                   {}};
+  append_chunk(batch.bytes, taken->batch, McapCompression::zstd, compressor_);
+  return batch;
+}
+
+FrameBatchWriter::FrameBatchWriter(RecordedArray array)
+    : implementation_(std::make_unique<Implementation>(std::move(array))) {}
+
+FrameBatchWriter::~FrameBatchWriter() = default;
+
+std::span<const std::uint8_t> FrameBatchWriter::description() const noexcept {
+  return implementation_->description();
+}
+
+void FrameBatchWriter::add(const RawFrame& frame) {
+  implementation_->add(frame);
+}
+
+std::uint64_t FrameBatchWriter::left_out() const noexcept {
+  return implementation_->left_out();
+}
+
+std::optional<FrameBatch> FrameBatchWriter::take(bool unfinished) {
+  return implementation_->take(unfinished);
+}
+
+Result<ReadBatch> read_frame_batch(std::span<const std::uint8_t> description, std::span<const std::uint8_t> batch) {
+  std::string file(description.begin(), description.end());
+  file.append(batch.begin(), batch.end());
+  Result<std::unique_ptr<SuitRecordingReader>> reader =
+      SuitRecordingReader::open(std::make_unique<std::istringstream>(std::move(file)), "batch");
+  if (!reader) return reader.error();
+  ReadBatch read;
+  std::size_t array = 0;
+  while (true) {
+    RawFrame frame;
+    const Result<bool> got_frame = (*reader)->next(array, frame);
+    if (!got_frame) return got_frame.error();
+    if (!*got_frame) break;
+    read.frames.push_back(std::move(frame));
+  }
+  if (read.frames.empty()) return bad_input("batch: holds no frame");
+  read.array = (*reader)->arrays().front();
+  return read;
+}
+
+}  // namespace dermis::recordings

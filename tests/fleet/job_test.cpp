@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/fleet/job.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/mutations.hpp"
+
+namespace dermis::fleet {
+namespace {
+
+const Job kJob{"first", {"run", "--model", "chest.safetensors", "--in", "day/rec.mcap#chest", "--out", "forces.csv"}};
+
+TEST(Job, commands_that_read_and_write_files_are_jobs) {
+  EXPECT_TRUE(check_job(kJob));
+  EXPECT_TRUE(check_job({"", {"simulate", "--scene", "contacts", "--seed", "-3", "--out", "sim"}}));
+}
+
+TEST(Job, other_commands_are_refused) {
+  for (const char* command : {"watch", "serve", "record", "emulate", "work", "fleet", "sh", "/bin/sh", "", "RUN"}) {
+    EXPECT_FALSE(check_job({"", {command}})) << command;
+  }
+  EXPECT_FALSE(check_job({"", {}}));
+}
+
+TEST(Job, no_word_leads_out_of_the_folder) {
+  for (const char* word : {"/etc/passwd", "../model", "a/../../b", "--out=/etc/cron.d/x", "-o/etc/x", "~/.ssh/id",
+                           "serial:///dev/ttyACM0", "tcp://host:1", "nats://hub?robot=r&array=a", "file:/etc/passwd",
+                           "sim:contacts?array=/etc/x", "sim:contacts?array=%2Fetc", "stdin:", "a\nb"}) {
+    EXPECT_FALSE(check_job({"", {"run", "--in", word}})) << word;
+  }
+}
+
+TEST(Job, survives_its_message) {
+  const Result<Job> read = job_from_json(job_to_json(kJob));
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(*read, kJob);
+}
+
+TEST(Job, any_message_is_a_job_that_may_be_done_or_an_error_of_one_line) {
+  for (std::uint64_t seed = 0; seed < 5000; ++seed) {
+    const Result<Job> read = job_from_json(support::mutated(job_to_json(kJob), seed));
+    if (read) {
+      EXPECT_TRUE(check_job(*read)) << "seed " << seed;
+    } else {
+      EXPECT_EQ(read.error().message.find('\n'), std::string::npos) << "seed " << seed;
+    }
+  }
+  EXPECT_FALSE(job_from_json(std::string(100'000, '[')));
+}
+
+TEST(Job, a_file_holds_many) {
+  const auto jobs = parse_jobs(R"([[job]]
+name = "first"
+words = ["run", "--model", "chest.safetensors", "--in", "day/rec.mcap#chest", "--out", "forces.csv"]
+[[job]]
+words = ["convert", "a.mcap", "a.csv"]
+)",
+                               "jobs.toml");
+  ASSERT_TRUE(jobs) << jobs.error().message;
+  ASSERT_EQ(jobs->size(), 2U);
+  EXPECT_EQ(jobs->front(), kJob);
+  EXPECT_EQ(jobs->back().name, "jobs.toml 2");
+}
+
+TEST(Job, errors_of_a_file_name_the_line) {
+  const auto error = [](const char* text) { return parse_jobs(text, "jobs.toml").error().message; };
+  EXPECT_EQ(error(""), "jobs.toml: has no [[job]]");
+  EXPECT_EQ(error("[[job]]\nwords = [\"sh\"]\n").find("jobs.toml:2: job[0].words: "), 0U);
+  EXPECT_NE(error("[[job]]\nwodrs = [\"run\"]\n").find("words"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace dermis::fleet
