@@ -22,8 +22,11 @@ struct EvaluateOptions {
 Status evaluate_without_each(const EvaluateOptions& options) {
   const auto& [forces, left_out, classes, examples] = options;
   if (left_out.leave_out != "press") return bad_input("--leave-out " + left_out.leave_out + ": not known; say press");
-  if (!forces.model.empty() || !forces.report.empty() || !classes.empty()) {
-    return bad_input("--leave-out: excludes --model, --report and --classes; it calibrates anew");
+  if (!forces.model.empty() || !forces.report.empty()) {
+    return bad_input("--leave-out: excludes --model and --report; it calibrates anew");
+  }
+  if (!classes.empty() || !examples.in.empty() || !examples.data.labels.empty()) {
+    return bad_input("--leave-out: excludes --classes, --in and --labels, which are of classes");
   }
   if (left_out.array.empty() || forces.frames.empty() || forces.loads.empty()) {
     return bad_input("--leave-out: needs --array, --frames and --loads");
