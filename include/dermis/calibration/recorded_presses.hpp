@@ -23,7 +23,7 @@ struct RecordedPress {
 };
 
 /// The presses of a recording, by rising frame. One ends where frames are labelled unloaded again, or where no frame
-/// came for a second and more. What has no load in it is none.
+/// came for a second and more. A piece without a load is no press.
 [[nodiscard]] std::vector<RecordedPress> recorded_presses(std::span<const RawFrame> frames,
                                                           std::span<const Load> loads);
 
