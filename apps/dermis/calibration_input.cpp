@@ -25,7 +25,7 @@ Result<CalibrationInput> CalibrationInput::read(const CalibrationFiles& files, c
   if (!settle) return settle.error();
   Result<ArrayDescription> array = files::read_array(files.array);
   if (!array) return array.error();
-  if (Status writable = check_writable(out); !writable) return writable.error();
+  if (Status writable = out.empty() ? Done{} : check_writable(out); !writable) return writable.error();
   Result<std::vector<RawFrame>> frames = sources::read_frames(files.frames, source_options(&*array));
   if (!frames) return frames.error();
   Result<std::vector<Load>> loads = files::read_loads(files.loads, *array, frames->size());

@@ -30,7 +30,7 @@ struct CalibrationInput {
   std::vector<RawFrame> frames;
   std::vector<Load> loads;
 
-  /// Fails before the frames are read where `out` cannot be written.
+  /// Fails before the frames are read where `out`, if it is named, cannot be written.
   [[nodiscard]] static Result<CalibrationInput> read(const CalibrationFiles& files, const std::string& out);
 };
 

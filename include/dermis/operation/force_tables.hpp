@@ -22,6 +22,8 @@ struct ForceTablePaths {
   std::string sigmas;  ///< Of the forces, their standard deviations.
   std::string contacts;
   std::string totals{};  ///< The force on the whole array.
+
+  [[nodiscard]] bool is_any() const { return !(forces + sigmas + contacts + totals).empty(); }
 };
 
 /// The forces of a model frame by frame as tables. Each appears complete with commit(), or not at all. Not thread-safe.

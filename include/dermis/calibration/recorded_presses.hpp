@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "dermis/calibration/calibrate.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/loads.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::calibration {
+
+/// The frames of a press, with those before it in which nothing presses: [first, end).
+struct RecordedPress {
+  std::size_t first = 0;
+  std::size_t end = 0;
+
+  bool operator==(const RecordedPress&) const = default;
+};
+
+/// The presses of a recording, by rising frame. One ends where frames are labelled unloaded again, or where no frame
+/// came for a second and more. A piece without a load is no press.
+[[nodiscard]] std::vector<RecordedPress> recorded_presses(std::span<const RawFrame> frames,
+                                                          std::span<const Load> loads);
+
+using PressJudge = std::function<Status(const RecordedPress& press, const Calibration& without_it)>;
+
+/// Calls `judge` with each press and a calibration without it, by rising frame. A few calibrations run side by side, so
+/// that memory does not grow with the presses. Errors: those of calibrate() and `judge`; no two presses.
+[[nodiscard]] Status judge_each_left_out(const ArrayDescription& array, std::span<const RawFrame> frames,
+                                         std::span<const Load> loads, std::span<const RecordedPress> presses,
+                                         const PressJudge& judge);
+
+}  // namespace dermis::calibration
