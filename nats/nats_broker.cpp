@@ -114,6 +114,7 @@ Result<std::uint64_t> NatsBroker::store(const std::string& subject, const std::s
   jsPubAck* answer = nullptr;
   const natsStatus published = js_PublishMsg(&answer, jet_stream_.get(), message.get(), &options, nullptr);
   const PublishAck acknowledged(answer);
+  if (published == NATS_MAX_PAYLOAD) return bad_input(url_ + ": " + subject + ": the server takes no message so large");
   if (published != NATS_OK) return error_of(url_ + ": " + subject, published);
   return acknowledged->Sequence;
 }
@@ -146,6 +147,13 @@ Result<std::optional<StoredMessage>> NatsBroker::next(const std::string& stream,
   return get(stream, which);
 }
 
+/// "hub" of "tls://user:password@hub:4222".
+std::string host_of(const std::string& url) {
+  const std::string rest = without_password(url).substr(url.find("://") + 3);
+  const std::size_t end = rest.starts_with('[') ? rest.find(']') : rest.find_first_of(":/");
+  return rest.starts_with('[') ? rest.substr(1, end - 1) : rest.substr(0, end);
+}
+
 natsStatus set_options(natsOptions* options, const BrokerAddress& address) {
   const auto both = [](natsStatus first, natsStatus second) { return first != NATS_OK ? first : second; };
   natsStatus status = natsOptions_SetURL(options, address.url.c_str());
@@ -154,6 +162,10 @@ natsStatus set_options(natsOptions* options, const BrokerAddress& address) {
   status = both(status, natsOptions_SetReconnectWait(options, kReconnectMs));
   status = both(status, natsOptions_SetFailRequestsOnDisconnect(options, true));
   status = both(status, natsOptions_SetName(options, "dermis"));
+  if (address.url.starts_with("tls:")) {
+    status = both(status, natsOptions_SetSecure(options, true));
+    status = both(status, natsOptions_SetExpectedHostname(options, host_of(address.url).c_str()));
+  }
   if (!address.ca.empty()) status = both(status, natsOptions_LoadCATrustedCertificates(options, address.ca.c_str()));
   return status;
 }
@@ -163,17 +175,17 @@ Result<std::unique_ptr<Broker>> connect(const BrokerAddress& address) {
   natsStatus status = natsOptions_Create(&made_options);
   const Options options(made_options);
   if (status == NATS_OK) status = set_options(options.get(), address);
-  if (status != NATS_OK) return error_of(address.url, status);
+  if (status != NATS_OK) return error_of(without_password(address.url), status);
   natsConnection* made_connection = nullptr;
   status = natsConnection_Connect(&made_connection, options.get());
   Connection connection(made_connection);
-  if (status != NATS_OK) return error_of(address.url, status);
+  if (status != NATS_OK) return error_of(without_password(address.url), status);
   jsCtx* made_context = nullptr;
   status = natsConnection_JetStream(&made_context, connection.get(), nullptr);
   JetStream jet_stream(made_context);
-  if (status != NATS_OK) return error_of(address.url, status);
+  if (status != NATS_OK) return error_of(without_password(address.url), status);
   return std::unique_ptr<Broker>(
-      std::make_unique<NatsBroker>(address.url, std::move(connection), std::move(jet_stream)));
+      std::make_unique<NatsBroker>(without_password(address.url), std::move(connection), std::move(jet_stream)));
 }
 
 }  // namespace

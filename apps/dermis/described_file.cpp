@@ -9,6 +9,7 @@
 #include "dermis/sources/open_source.hpp"
 #include "lost_input.hpp"
 #include "status_line.hpp"
+#include "stop_flag.hpp"
 
 namespace dermis::app {
 namespace {
@@ -25,7 +26,8 @@ acquisition::SourceUri uri_of_path(const std::string& name) {
 
 /// The frames of a robot, of which a file is to be made or told.
 Result<std::unique_ptr<FrameSource>> open_stream(const std::string& name) {
-  Result<std::unique_ptr<FrameSource>> stream = sources::open_source(name, {.notice = print_notice});
+  Result<std::unique_ptr<FrameSource>> stream =
+      sources::open_source(name, {.stop = &stop_flag(), .notice = print_notice});
   if (stream && (*stream)->is_live()) return bad_input("'" + name + "': has no end; add from=1&to=last");
   return stream;
 }

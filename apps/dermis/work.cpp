@@ -3,10 +3,12 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <thread>
 
 #include "child_process.hpp"
@@ -23,11 +25,19 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kLook{2};
 constexpr std::chrono::seconds kExtendEvery{5};
 constexpr std::chrono::seconds kRetryAfter{1};
+constexpr int kBadInput = 2;  // exit status: another try would end alike
 
 struct WorkOptions {
   std::string hub;
   std::string folder = ".";
 };
+
+Result<std::string> own_program() {
+  std::error_code failure;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", failure);
+  if (failure) return failed("/proc/self/exe: " + failure.message());
+  return program.string();
+}
 
 std::string name_of_worker() {
   std::array<char, 256> host{};
@@ -35,24 +45,57 @@ std::string name_of_worker() {
   return fmt::format("{}-{}", host.data(), ::getpid());
 }
 
-/// Does the job in a process of its own, in the current folder; an empty text, or what went wrong. An output that is
-/// there is of an earlier try.
-std::string do_job(fleet::JobQueue& queue, const fleet::TakenJob& taken) {
-  std::vector<std::string> command = {std::filesystem::read_symlink("/proc/self/exe").string()};
+/// Where the word names a file of the folder or below, or none. `folder`: without links.
+bool stays_in(const std::filesystem::path& folder, const std::string& word) {
+  const std::size_t equals = word.starts_with("--") ? word.find('=') : std::string::npos;
+  const std::string name = equals == std::string::npos ? word : word.substr(equals + 1);
+  std::error_code failure;
+  const std::filesystem::path place = std::filesystem::weakly_canonical(name.substr(0, name.find('#')), failure);
+  if (failure) return false;
+  const auto [end_of_folder, rest] = std::mismatch(folder.begin(), folder.end(), place.begin(), place.end());
+  return end_of_folder == folder.end();
+}
+
+/// The job as a process that does not outlive this one. An output that an earlier try has written is replaced.
+Result<ChildProcess> start(const fleet::TakenJob& taken, const std::string& program) {
+  const std::filesystem::path folder = std::filesystem::canonical(".");
+  for (const std::string& word : taken.job.words) {
+    if (!stays_in(folder, word)) return bad_input("'" + word + "' leads out of the folder");
+  }
+  std::vector<std::string> command = {"setpriv", "--pdeathsig", "KILL", program};
   command.insert(command.end(), taken.job.words.begin(), taken.job.words.end());
-  command.emplace_back("--force");
-  Result<ChildProcess> child = ChildProcess::start(command);
-  if (!child) return child.error().message;
+  if (taken.tries > 1) command.emplace_back("--force");
+  return ChildProcess::start(command);
+}
+
+/// Waits for the job and extends its lease; empty where the worker is stopped.
+std::optional<int> exit_status_of(ChildProcess& child, fleet::JobQueue& queue, const fleet::TakenJob& taken) {
   Clock::time_point extended = Clock::now();
-  std::optional<int> status;
-  while (!(status = child->exit_status())) {
-    if (stop_flag()) return "its worker was stopped";
+  while (!stop_flag()) {
+    if (const std::optional<int> status = child.exit_status()) return status;
     std::this_thread::sleep_for(kLook);
     if (Clock::now() - extended < kExtendEvery) continue;
     static_cast<void>(queue.extend(taken));
     extended = Clock::now();
   }
-  return *status == 0 ? "" : fmt::format("exit status {}", *status);
+  return std::nullopt;
+}
+
+/// The outcome but for its times; empty where the worker is stopped.
+std::optional<fleet::JobOutcome> do_job(fleet::JobQueue& queue, const fleet::TakenJob& taken,
+                                        const std::string& program) {
+  fleet::JobOutcome outcome;
+  outcome.name = taken.job.name;
+  Result<ChildProcess> child = start(taken, program);
+  if (!child) {
+    outcome.error = child.error().message;
+    return outcome;
+  }
+  const std::optional<int> status = exit_status_of(*child, queue, taken);
+  if (!status) return std::nullopt;
+  if (*status != 0) outcome.error = fmt::format("exit status {}", *status);
+  outcome.is_final = *status == kBadInput;
+  return outcome;
 }
 
 /// Tries until the server has it: a job that was done is not to be done again.
@@ -71,8 +114,10 @@ Status work(const WorkOptions& options) {
   if (failure) return bad_input(options.folder + ": " + failure.message());
   const Result<std::unique_ptr<fleet::JobQueue>> queue = fleet::JobQueue::connect(*address);
   if (!queue) return queue.error();
+  const Result<std::string> program = own_program();
+  if (!program) return program.error();
   const std::string worker = name_of_worker();
-  print_notice(fmt::format("{} works for {} (Ctrl-C ends it)", worker, options.hub));
+  print_notice(fmt::format("{} works for {} (Ctrl-C ends it)", worker, fleet::without_password(options.hub)));
   while (!stop_flag()) {
     const Result<std::optional<fleet::TakenJob>> taken = (*queue)->take();
     if (!taken) {
@@ -82,11 +127,12 @@ Status work(const WorkOptions& options) {
     }
     if (!*taken) continue;
     const Clock::time_point begun = Clock::now();
-    const std::string error = do_job(**queue, **taken);
-    const double seconds = std::chrono::duration<double>(Clock::now() - begun).count();
-    if (!error.empty()) print_notice(fmt::format("{}: {}", (*taken)->job.name, error));
-    if (stop_flag()) break;  // the lease ends, and another has the job
-    finish(**queue, **taken, {(*taken)->job.name, worker, seconds, error});
+    std::optional<fleet::JobOutcome> outcome = do_job(**queue, **taken, *program);
+    if (!outcome) break;  // the lease ends, and another has the job
+    outcome->worker = worker;
+    outcome->seconds = std::chrono::duration<double>(Clock::now() - begun).count();
+    if (!outcome->error.empty()) print_notice(fmt::format("{}: {}", outcome->name, outcome->error));
+    finish(**queue, **taken, *outcome);
   }
   return Done{};
 }

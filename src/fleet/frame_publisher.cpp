@@ -6,10 +6,14 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <mutex>
 #include <optional>
+#include <span>
+#include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "dermis/recordings/frame_batches.hpp"
 #include "fleet/broker.hpp"
@@ -61,12 +65,15 @@ class FramePublisher::Implementation {
   [[nodiscard]] PublisherCounts counts() const noexcept;
 
  private:
+  /// Of a message: late where there was no time left.
+  enum class Fate : std::uint8_t { stored, refused, late };
+
   void work(std::size_t first, std::size_t stride, const std::stop_token& stop);
   [[nodiscard]] bool send_waiting(PublishedArray& array, bool unfinished);
   [[nodiscard]] bool describe(PublishedArray& array);
-  [[nodiscard]] bool store(const std::string& subject, const std::string& id, std::span<const std::uint8_t> bytes);
-  [[nodiscard]] bool try_to_store(const std::string& subject, const std::string& id,
-                                  std::span<const std::uint8_t> bytes);
+  [[nodiscard]] Fate store(const std::string& subject, const std::string& id, std::span<const std::uint8_t> bytes);
+  [[nodiscard]] std::optional<Fate> try_to_store(const std::string& subject, const std::string& id,
+                                                 std::span<const std::uint8_t> bytes);
   [[nodiscard]] bool has_stored(const std::string& subject, const std::string& id);
   [[nodiscard]] Broker* broker();
   void tell(const Status& outcome);
@@ -82,6 +89,7 @@ class FramePublisher::Implementation {
   std::atomic<std::uint64_t> batches_ = 0;
   std::atomic<std::uint64_t> frames_ = 0;
   std::atomic<std::uint64_t> bytes_ = 0;
+  std::atomic<std::uint64_t> refused_ = 0;  ///< Frames that the server will never take.
   std::atomic<Clock::time_point> end_ = Clock::time_point::max();
   std::vector<std::jthread> threads_;
 };
@@ -126,11 +134,17 @@ void FramePublisher::Implementation::work(std::size_t first, std::size_t stride,
 
 /// false: there is no time left.
 bool FramePublisher::Implementation::send_waiting(PublishedArray& array, bool unfinished) {
-  const bool is_due = Clock::now() - array.begun > recordings::FrameBatchWriter::kLongest;
+  bool is_due = Clock::now() - array.begun > recordings::FrameBatchWriter::kLongest;
   while (const std::optional<recordings::FrameBatch> batch = array.writer.take(unfinished || is_due)) {
+    is_due = false;  // what comes meanwhile is for the next round
     array.begun = Clock::now();
-    if (!describe(array)) return false;
-    if (!store(array.frames, array.first_id + std::to_string(array.next_id++), batch->bytes)) return false;
+    if (is_over() || !describe(array)) return false;
+    const Fate fate = store(array.frames, array.first_id + std::to_string(array.next_id++), batch->bytes);
+    if (fate == Fate::late) return false;
+    if (fate == Fate::refused) {
+      refused_ += batch->frames;
+      continue;
+    }
     ++batches_;
     frames_ += batch->frames;
     bytes_ += batch->bytes.size();
@@ -138,38 +152,40 @@ bool FramePublisher::Implementation::send_waiting(PublishedArray& array, bool un
   return true;
 }
 
-/// Streams forget: the description is there again once a minute.
+/// Streams forget: the description is there again once a minute. false: there is no time left.
 bool FramePublisher::Implementation::describe(PublishedArray& array) {
   const bool is_fresh = array.described != Clock::time_point{} && Clock::now() - array.described < kDescribeEvery;
   if (is_fresh) return true;
-  if (!store(array.description, array.first_id + "d" + std::to_string(array.next_id++), array.writer.description())) {
-    return false;
-  }
+  const std::string id = array.first_id + "d" + std::to_string(array.next_id++);
+  if (store(array.description, id, array.writer.description()) == Fate::late) return false;
   array.described = Clock::now();
   return true;
 }
 
-/// Tries until the server has stored it; false: there is no time left.
-bool FramePublisher::Implementation::store(const std::string& subject, const std::string& id,
-                                           std::span<const std::uint8_t> bytes) {
-  while (!try_to_store(subject, id, bytes)) {
-    if (is_over()) return false;
+/// Tries until the server has stored or refused it, or there is no time left.
+FramePublisher::Implementation::Fate FramePublisher::Implementation::store(const std::string& subject,
+                                                                           const std::string& id,
+                                                                           std::span<const std::uint8_t> bytes) {
+  while (true) {
+    if (const std::optional<Fate> fate = try_to_store(subject, id, bytes)) return *fate;
+    if (is_over()) return Fate::late;
     std::this_thread::sleep_for(kRetryAfter);
-    if (has_stored(subject, id)) return true;
+    if (has_stored(subject, id)) return Fate::stored;
   }
-  return true;
 }
 
-bool FramePublisher::Implementation::try_to_store(const std::string& subject, const std::string& id,
-                                                  std::span<const std::uint8_t> bytes) {
+/// Empty: it is to be tried again.
+std::optional<FramePublisher::Implementation::Fate> FramePublisher::Implementation::try_to_store(
+    const std::string& subject, const std::string& id, std::span<const std::uint8_t> bytes) {
   Broker* const server = broker();
-  if (server == nullptr) return false;
+  if (server == nullptr) return std::nullopt;
   Result<std::uint64_t> stored = server->store(subject, id, bytes);
-  if (!stored && make_stream(*server, options_.robot, options_.most_bytes)) {
+  if (!stored && stored.error().kind == ErrorKind::failed && make_stream(*server, options_.robot)) {
     stored = server->store(subject, id, bytes);
   }
   tell(stored ? Status(Done{}) : Status(stored.error()));
-  return static_cast<bool>(stored);
+  if (stored) return Fate::stored;
+  return stored.error().kind == ErrorKind::bad_input ? std::optional(Fate::refused) : std::nullopt;
 }
 
 /// A server may have stored a message and gone before it said so.
@@ -193,12 +209,14 @@ void FramePublisher::Implementation::tell(const Status& outcome) {
   if (static_cast<bool>(outcome) == answers_) return;
   answers_ = static_cast<bool>(outcome);
   if (!options_.notice) return;
-  options_.notice(outcome ? options_.broker.url + ": stores frames again"
-                          : outcome.error().message + "; frames wait, and it is asked again");
+  options_.notice(outcome
+                      ? without_password(options_.broker.url) + ": stores frames again"
+                      : outcome.error().message +
+                            (outcome.error().kind == ErrorKind::failed ? "; frames wait, and it is asked again" : ""));
 }
 
 PublisherCounts FramePublisher::Implementation::counts() const noexcept {
-  PublisherCounts counts{batches_, frames_, bytes_, 0};
+  PublisherCounts counts{batches_, frames_, bytes_, refused_};
   for (const auto& array : arrays_) counts.left_out += array->writer.left_out();
   return counts;
 }

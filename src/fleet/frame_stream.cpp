@@ -147,6 +147,9 @@ Result<bool> FrameStream::Implementation::fetch() {
   next_sequence_ = (*message)->sequence + 1;
   Result<recordings::ReadBatch> read = recordings::read_frame_batch(description_, (*message)->bytes);
   if (!read) return bad_input(place() + ": " + read.error().message);
+  if (read->array.shape != shape_) {
+    return bad_input(place() + ": frames of another shape begin here; read the others from this number on");
+  }
   frames_ = std::move(read->frames);
   next_frame_ = 0;
   return true;
@@ -170,7 +173,8 @@ void FrameStream::Implementation::tell(const Error& outage) {
 }
 
 void FrameStream::Implementation::tell_of_return() {
-  if (!std::exchange(answers_, true) && options_.notice) options_.notice(address_.broker.url + ": answers again");
+  if (!std::exchange(answers_, true) && options_.notice)
+    options_.notice(without_password(address_.broker.url) + ": answers again");
 }
 
 FrameStream::FrameStream(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}

@@ -2,18 +2,17 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/fleet/hub.hpp"
 
-#include <nlohmann/json.hpp>
-#include <set>
 #include <utility>
 
 #include "fleet/broker.hpp"
+#include "fleet/json_values.hpp"
 #include "fleet/parse_utc.hpp"
 #include "fleet/streams.hpp"
 
 namespace dermis::fleet {
 namespace {
 
-using Json = nlohmann::json;
+constexpr std::size_t kMostRobots = 1'000'000;
 
 std::string hub_file(const FleetPlan& plan) {
   return "# The hub of a fleet of dermis: nats-server -c hub.conf\n"
@@ -30,9 +29,9 @@ std::string hub_file(const FleetPlan& plan) {
 std::string robot_file(const FleetPlan& plan, const std::string& robot) {
   return "# The server on robot " + robot + ": nats-server -c " + robot +
          ".conf\n"
-         "server_name: " +
+         "server_name: \"" +
          robot +
-         "\n"
+         "\"\n"
          "listen: \"127.0.0.1:" +
          std::to_string(plan.port) +
          "\"\n"
@@ -44,19 +43,22 @@ std::string robot_file(const FleetPlan& plan, const std::string& robot) {
 }
 
 RobotState state_of(const Json& stream) {
+  const Json state = object_at(stream, "state");
   RobotState robot;
-  robot.name = stream.at("config").at("name").get<std::string>().substr(stream_of("").size());
-  const Json& state = stream.at("state");
-  robot.messages = state.at("messages");
-  robot.bytes = state.at("bytes");
-  if (robot.messages > 0) robot.last = parse_utc(state.at("last_ts").get<std::string>()).value_or(Nanos{});
-  robot.lag = stream.value("mirror", Json::object()).value("lag", std::uint64_t{0});
+  robot.name = text_at(object_at(stream, "config"), "name").substr(stream_of("").size());
+  robot.messages = number_at(state, "messages");
+  robot.bytes = number_at(state, "bytes");
+  if (robot.messages > 0) robot.last = parse_utc(text_at(state, "last_ts")).value_or(Nanos{});
+  robot.lag = number_at(object_at(stream, "mirror"), "lag");
   return robot;
 }
 
 }  // namespace
 
 Result<std::map<std::string, std::string>> server_files(const FleetPlan& plan) {
+  if (plan.hub.empty() || plan.hub.find_first_of("\"\\{}[]/ \n") != std::string::npos) {
+    return bad_input("hub: '" + plan.hub + "' must be the name or the address of a machine");
+  }
   std::map<std::string, std::string> files = {{"hub.conf", hub_file(plan)}};
   for (const std::string& robot : plan.robots) {
     if (const Status good = check_name("robot", robot); !good) return good.error();
@@ -84,25 +86,18 @@ Status Hub::add_robot(const std::string& name) {
 
 Result<std::vector<RobotState>> Hub::robots() {
   std::vector<RobotState> robots;
-  for (std::size_t total = 1, offset = 0; offset < total;) {
-    const Result<std::string> answer =
-        broker_->ask("$JS.API.STREAM.LIST", Json({{"offset", offset}, {"subject", ""}}).dump());
+  for (std::size_t offset = 0, total = 1; offset < total && robots.size() < kMostRobots;) {
+    const Result<std::string> answer = broker_->ask("$JS.API.STREAM.LIST", Json({{"offset", offset}}).dump());
     if (!answer) return answer.error();
     const Json list = Json::parse(*answer, nullptr, false);
     if (!list.is_object() || !list.contains("streams") || !list["streams"].is_array()) break;
-    total = list.value("total", std::size_t{0});
-    const Json& streams = list["streams"];
-    if (streams.empty()) break;
-    offset += streams.size();
-    try {
-      for (const Json& stream : streams) {
-        if (stream.at("config").at("name").get<std::string>().starts_with(stream_of(""))) {
-          robots.push_back(state_of(stream));
-        }
-      }
-    } catch (const Json::exception&) {
-      return failed("the server's list of streams cannot be read");
+    if (list["streams"].empty()) break;
+    for (const Json& stream : list["streams"]) {
+      const std::string name = text_at(object_at(stream, "config"), "name");
+      if (name.starts_with(stream_of(""))) robots.push_back(state_of(stream));
     }
+    offset += list["streams"].size();
+    total = number_at(list, "total");
   }
   return robots;
 }

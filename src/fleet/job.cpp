@@ -21,13 +21,14 @@ const std::set<std::string, std::less<>> kCommands = {"calibrate", "convert", "e
 bool stays_within(std::string_view word) {
   const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7F; };
   if (std::any_of(word.begin(), word.end(), is_control)) return false;
-  if (word.starts_with('/') || word.starts_with('~')) return false;
+  if (word.starts_with('/') || word.starts_with('~') || word == "--" || word.starts_with("--force")) return false;
   const bool is_short_option = word.size() > 1 && word[0] == '-' && word[1] != '-';
   if (is_short_option && word.find_first_not_of("0123456789.eE+-") != std::string_view::npos) return false;
   for (const std::string_view way_out : {"..", "=/", ":/", "%", "#/", "//"}) {
     if (word.find(way_out) != std::string_view::npos) return false;
   }
-  for (const std::string_view device : {"serial:", "tcp:", "tcp-listen:", "udp:", "stdin:", "nats:", "tls:", "file:"}) {
+  for (const std::string_view device :
+       {"serial:", "tcp:", "tcp-listen:", "udp:", "stdin:", "nats:", "tls:", "file:", "sim:"}) {
     if (word.find(device) != std::string_view::npos) return false;
   }
   return true;
@@ -60,7 +61,11 @@ Status check_job(const Job& job) {
   if (job.words.empty() || !kCommands.contains(job.words.front())) {
     return bad_input("words: a job begins with one of " + command_list());
   }
-  if (job.words.size() > kMostWords || job.name.size() > kMostCharacters) return bad_input("words: are more than 200");
+  if (job.words.size() > kMostWords) return bad_input("words: are more than 200");
+  const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7F; };
+  if (job.name.size() > kMostCharacters || std::any_of(job.name.begin(), job.name.end(), is_control)) {
+    return bad_input("name: must be one line of at most 4096 characters");
+  }
   for (const std::string& word : job.words) {
     if (word.size() > kMostCharacters) return bad_input("words: one is longer than 4096 characters");
     if (!stays_within(word)) {

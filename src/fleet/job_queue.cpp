@@ -4,23 +4,22 @@
 
 #include <algorithm>
 #include <charconv>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <utility>
 
 #include "fleet/broker.hpp"
+#include "fleet/json_values.hpp"
 #include "fleet/streams.hpp"
 
 namespace dermis::fleet {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr const char* kJobs = "dermis-jobs";  // a stream and its consumer
 constexpr const char* kJobSubject = "dermis-jobs.job";
 constexpr const char* kOutcomes = "dermis-outcomes";
-constexpr const char* kDone = "dermis-outcomes.done";
-constexpr const char* kGivenUp = "dermis-outcomes.given-up";
+constexpr const char* kDone = "dermis-outcomes.done.";  // and the number of the job
+constexpr const char* kGivenUp = "dermis-outcomes.given-up.";
+constexpr const char* kLater = R"(-NAK {"delay": 2000000000})";  // nanoseconds, for another worker
 constexpr std::chrono::nanoseconds kTakeWait = std::chrono::seconds(1);
 constexpr std::size_t kMostOfLease = 4096;
 
@@ -53,28 +52,19 @@ std::string to_json(const JobOutcome& outcome) {
       .dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+/// In one line each: the texts are of others.
 JobOutcome outcome_of(const std::vector<std::uint8_t>& bytes) {
   const Json json = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
-  if (!json.is_object()) return {};
-  const auto text = [&](const char* key) {
-    return json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : "";
-  };
-  return {text("name"), text("worker"), 0.0, text("error")};
+  const auto line_at = [&](const char* key) { return bad_input(text_at(json, key)).message; };
+  return {line_at("name"), line_at("worker"), 0.0, line_at("error")};
 }
 
-Result<Json> state_of(Broker& broker, const std::string& stream) {
-  const Result<std::string> answer =
-      broker.ask("$JS.API.STREAM.INFO." + stream, Json({{"subjects_filter", ">"}}).dump());
+/// How many subjects of the stream begin so; each has one message.
+Result<std::uint64_t> subjects_of(Broker& broker, const std::string& stream, const std::string& begin) {
+  const std::string wanted = Json({{"subjects_filter", begin + ">"}}).dump();
+  const Result<std::string> answer = broker.ask("$JS.API.STREAM.INFO." + stream, wanted);
   if (!answer) return answer.error();
-  const Json info = Json::parse(*answer, nullptr, false);
-  if (!info.is_object() || !info.contains("state") || !info["state"].is_object()) {
-    return failed("stream " + stream + ": its state cannot be read");
-  }
-  return info["state"];
-}
-
-std::uint64_t number_at(const Json& json, const char* key) {
-  return json.contains(key) && json[key].is_number_unsigned() ? json[key].get<std::uint64_t>() : 0;
+  return std::uint64_t{object_at(object_at(Json::parse(*answer, nullptr, false), "state"), "subjects").size()};
 }
 
 }  // namespace
@@ -106,6 +96,7 @@ Result<std::optional<TakenJob>> JobQueue::take() {
   if (!delivery) return delivery.error();
   if (!*delivery) return std::optional<TakenJob>();
   const LeaseParts lease = parts_of((*delivery)->lease);
+  if (lease.number.empty()) return failed("the server's lease of a job cannot be read");
   TakenJob taken;
   taken.id = lease.number;
   taken.tries = lease.tries;
@@ -123,24 +114,25 @@ Status JobQueue::extend(const TakenJob& job) {
 }
 
 Status JobQueue::give_up(const TakenJob& job, const std::string& why) {
-  if (Status stored = store_outcome(kGivenUp, job.id, {job.job.name, "", 0.0, why}); !stored) return stored;
+  if (Status stored = store_outcome(kGivenUp + job.id, {job.job.name, "", 0.0, why}); !stored) return stored;
   const Result<std::string> away = broker_->ask(job.lease, "+TERM");
   return away ? Status(Done{}) : Status(away.error());
 }
 
 Status JobQueue::finish(const TakenJob& job, const JobOutcome& outcome) {
   if (!outcome.error.empty()) {
-    return job.tries < kMostTries ? broker_->send(job.lease, "-NAK") : give_up(job, outcome.error);
+    const bool is_last = outcome.is_final || job.tries >= kMostTries;
+    return is_last ? give_up(job, outcome.error) : broker_->send(job.lease, kLater);
   }
-  if (Status stored = store_outcome(kDone, job.id, outcome); !stored) return stored;
+  if (Status stored = store_outcome(kDone + job.id, outcome); !stored) return stored;
   const Result<std::string> away = broker_->ask(job.lease, "+ACK");
   return away ? Status(Done{}) : Status(away.error());
 }
 
-Status JobQueue::store_outcome(const std::string& subject, const std::string& id, const JobOutcome& outcome) {
+Status JobQueue::store_outcome(const std::string& subject, const JobOutcome& outcome) {
   const std::string text = to_json(outcome);
   const std::span bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
-  const Result<std::uint64_t> stored = broker_->store(subject, "job-" + id, bytes);
+  const Result<std::uint64_t> stored = broker_->store(subject, "", bytes);
   return stored ? Status(Done{}) : Status(stored.error());
 }
 
@@ -152,18 +144,19 @@ Result<JobCounts> JobQueue::counts() {
   if (!consumer.is_object()) return failed("the state of the jobs cannot be read");
   counts.waiting = number_at(consumer, "num_pending");
   counts.taken = number_at(consumer, "num_ack_pending");
-  const Result<Json> outcomes = state_of(*broker_, kOutcomes);
-  if (!outcomes) return outcomes.error();
-  const Json subjects = outcomes->value("subjects", Json::object());
-  counts.done = number_at(subjects, kDone);
-  counts.given_up = number_at(subjects, kGivenUp);
+  const Result<std::uint64_t> done = subjects_of(*broker_, kOutcomes, kDone);
+  if (!done) return done.error();
+  const Result<std::uint64_t> given_up = subjects_of(*broker_, kOutcomes, kGivenUp);
+  if (!given_up) return given_up.error();
+  counts.done = *done;
+  counts.given_up = *given_up;
   return counts;
 }
 
 Result<std::vector<JobOutcome>> JobQueue::given_up() {
   std::vector<JobOutcome> outcomes;
   for (std::uint64_t next = 1;;) {
-    const Result<std::optional<StoredMessage>> message = broker_->next(kOutcomes, kGivenUp, next);
+    const Result<std::optional<StoredMessage>> message = broker_->next(kOutcomes, std::string(kGivenUp) + "*", next);
     if (!message) return message.error();
     if (!*message) return outcomes;
     outcomes.push_back(outcome_of((*message)->bytes));

@@ -2,16 +2,15 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "fleet/streams.hpp"
 
-#include <nlohmann/json.hpp>
+#include "fleet/json_values.hpp"
 
 namespace dermis::fleet {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr std::int64_t kDuplicatesNanos = 120'000'000'000;
-constexpr int kStreamNameInUse = 10058;    // one of the name is there, with other settings
-constexpr int kConsumerNameInUse = 10013;  // the same
+constexpr std::uint64_t kStreamNameInUse = 10058;  // one of the name is there, with other settings
+constexpr std::uint64_t kNoStream = 10059;
+constexpr std::uint64_t kConsumerNameInUse = 10013;  // the same
 
 /// Asks for something of a name to be made. One that is there stays as it is.
 Status create(Broker& broker, const std::string& what, const std::string& subject, const Json& settings) {
@@ -19,10 +18,19 @@ Status create(Broker& broker, const std::string& what, const std::string& subjec
   if (!answer) return answer.error();
   const Json made = Json::parse(*answer, nullptr, false);
   if (!made.is_object()) return failed(what + ": the server's answer is no JSON");
-  const Json error = made.value("error", Json::object());
-  const int code = error.value("err_code", 0);
-  if (error.empty() || code == kStreamNameInUse || code == kConsumerNameInUse) return Done{};
-  return failed(what + ": " + error.value("description", "refused"));
+  if (!made.contains("error")) return Done{};
+  const Json error = object_at(made, "error");
+  const std::uint64_t code = number_at(error, "err_code");
+  if (code == kStreamNameInUse || code == kConsumerNameInUse) return Done{};
+  return failed(what + ": the server refuses it: " + text_at(error, "description"));
+}
+
+Result<Json> stream_info(Broker& broker, const std::string& name) {
+  const Result<std::string> answer = broker.ask("$JS.API.STREAM.INFO." + name, "");
+  if (!answer) return answer.error();
+  Json info = Json::parse(*answer, nullptr, false);
+  if (!info.is_object()) return failed("stream " + name + ": the server's answer is no JSON");
+  return info;
 }
 
 /// With `settings` besides the usual ones.
@@ -36,23 +44,29 @@ Status create_stream(Broker& broker, const std::string& name, const Json& settin
 
 }  // namespace
 
-Status make_stream(Broker& broker, const std::string& robot, std::uint64_t most_bytes) {
+Status make_stream(Broker& broker, const std::string& robot) {
   Json settings = {{"duplicate_window", kDuplicatesNanos}};
   settings["subjects"] = Json::array({"dermis." + robot + ".>"});
-  if (most_bytes > 0) settings["max_bytes"] = most_bytes;
   return create_stream(broker, stream_of(robot), settings);
 }
 
 Status mirror_stream(Broker& broker, const std::string& robot) {
   const Json origin = {{"name", stream_of(robot)}, {"external", {{"api", "$JS." + robot + ".API"}}}};
-  return create_stream(broker, stream_of(robot), {{"mirror", origin}});
+  const std::string name = stream_of(robot);
+  if (Status made = create_stream(broker, name, {{"mirror", origin}}); !made) return made;
+  const Result<Json> info = stream_info(broker, name);
+  if (!info) return info.error();
+  if (!object_at(object_at(*info, "config"), "mirror").empty()) return Done{};
+  return bad_input("robot '" + robot + "' publishes to this server itself; its stream " + name + " is no copy");
 }
 
 Result<bool> has_stream(Broker& broker, const std::string& name) {
-  const Result<std::string> answer = broker.ask("$JS.API.STREAM.INFO." + name, "");
-  if (!answer) return answer.error();
-  const Json info = Json::parse(*answer, nullptr, false);
-  return info.is_object() && !info.contains("error");
+  const Result<Json> info = stream_info(broker, name);
+  if (!info) return info.error();
+  const Json error = object_at(*info, "error");
+  if (error.empty()) return true;
+  if (number_at(error, "err_code") == kNoStream) return false;
+  return failed("stream " + name + ": " + text_at(error, "description"));
 }
 
 Status make_work_queue(Broker& broker, const std::string& name, const std::string& subject,
@@ -68,7 +82,7 @@ Status make_work_queue(Broker& broker, const std::string& name, const std::strin
 }
 
 Status make_log(Broker& broker, const std::string& name, const std::string& subjects) {
-  Json settings = {{"duplicate_window", kDuplicatesNanos}};
+  Json settings = {{"max_msgs_per_subject", 1}};
   settings["subjects"] = Json::array({subjects});
   return create_stream(broker, name, settings);
 }

@@ -12,9 +12,8 @@
 /// Streams of JetStream (https://docs.nats.io/reference/reference-protocols/nats_api_reference).
 namespace dermis::fleet {
 
-/// The stream of a robot, on the disk of its own server. One that is there keeps its settings. `most_bytes`: the oldest
-/// messages make room; 0: no limit.
-[[nodiscard]] Status make_stream(Broker& broker, const std::string& robot, std::uint64_t most_bytes);
+/// The stream of a robot, on the disk of its own server. One that is there keeps its settings.
+[[nodiscard]] Status make_stream(Broker& broker, const std::string& robot);
 
 /// A copy of a robot's stream, with the same numbers, which follows that of the robot's server. One that is there
 /// stays.
@@ -28,7 +27,7 @@ namespace dermis::fleet {
 [[nodiscard]] Status make_work_queue(Broker& broker, const std::string& name, const std::string& subject,
                                      std::chrono::nanoseconds lease);
 
-/// A stream that keeps all messages.
+/// A stream that keeps the last message of each subject.
 [[nodiscard]] Status make_log(Broker& broker, const std::string& name, const std::string& subjects);
 
 }  // namespace dermis::fleet

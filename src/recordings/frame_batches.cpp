@@ -140,6 +140,7 @@ Result<ReadBatch> read_frame_batch(std::span<const std::uint8_t> description, st
   Result<std::unique_ptr<SuitRecordingReader>> reader =
       SuitRecordingReader::open(std::make_unique<std::istringstream>(std::move(file)), "batch");
   if (!reader) return reader.error();
+  if ((*reader)->arrays().size() != 1) return bad_input("batch: its description is of several arrays");
   ReadBatch read;
   std::size_t array = 0;
   while (true) {

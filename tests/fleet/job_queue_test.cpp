@@ -4,9 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <memory>
 #include <set>
 #include <string>
+#include <thread>
 
 #include "nats_server.hpp"
 
@@ -57,6 +59,7 @@ TEST_F(Jobs, are_taken_once_each) {
 TEST_F(Jobs, that_fail_three_times_are_given_up_with_the_reason) {
   ASSERT_TRUE(queue->submit(job_number(1)));
   for (std::uint64_t tries = 1; tries <= JobQueue::kMostTries; ++tries) {
+    if (tries > 1) std::this_thread::sleep_for(std::chrono::milliseconds(2500));
     const TakenJob taken = take();
     EXPECT_EQ(taken.tries, tries);
     ASSERT_TRUE(queue->finish(taken, {taken.job.name, "w", 0.1, "exit status 2"}));
@@ -67,6 +70,14 @@ TEST_F(Jobs, that_fail_three_times_are_given_up_with_the_reason) {
   ASSERT_EQ(given_up->size(), 1U);
   EXPECT_EQ(given_up->front().name, "job 1");
   EXPECT_EQ(given_up->front().error, "exit status 2");
+}
+
+TEST_F(Jobs, with_a_final_error_are_given_up_at_once) {
+  ASSERT_TRUE(queue->submit(job_number(1)));
+  const TakenJob taken = take();
+  ASSERT_TRUE(queue->finish(taken, {taken.job.name, "w", 0.1, "exit status 2", true}));
+  EXPECT_FALSE(*queue->take());
+  EXPECT_EQ(queue->counts()->given_up, 1U);
 }
 
 TEST_F(Jobs, survive_a_server_that_is_killed) {

@@ -24,11 +24,17 @@ TEST(Job, other_commands_are_refused) {
 }
 
 TEST(Job, no_word_leads_out_of_the_folder) {
-  for (const char* word : {"/etc/passwd", "../model", "a/../../b", "--out=/etc/cron.d/x", "-o/etc/x", "~/.ssh/id",
-                           "serial:///dev/ttyACM0", "tcp://host:1", "nats://hub?robot=r&array=a", "file:/etc/passwd",
-                           "sim:contacts?array=/etc/x", "sim:contacts?array=%2Fetc", "stdin:", "a\nb"}) {
+  for (const char* word :
+       {"/etc/passwd", "../model", "a/../../b", "--out=/etc/cron.d/x", "-o/etc/x", "~/.ssh/id", "serial:///dev/ttyACM0",
+        "tcp://host:1", "nats://hub?robot=r&array=a", "file:/etc/passwd", "sim:contacts?array=/etc/x", "sim:contacts",
+        "--", "--force", "sim:contacts?array=%2Fetc", "stdin:", "a\nb"}) {
     EXPECT_FALSE(check_job({"", {"run", "--in", word}})) << word;
   }
+}
+
+TEST(Job, names_are_of_one_line) {
+  EXPECT_FALSE(check_job({"a\nb", kJob.words}));
+  EXPECT_FALSE(check_job({"\x1b[2J", kJob.words}));
 }
 
 TEST(Job, survives_its_message) {

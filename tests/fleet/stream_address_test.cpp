@@ -15,11 +15,9 @@ std::string error_of(const std::string& text) {
 }
 
 TEST(StreamAddress, names_the_frames_of_an_array) {
-  const Result<StreamAddress> parsed =
-      parse_stream_address("tls://hub:4222?robot=r-1&array=left_hand&nkey=robot.nk&ca=hub.pem");
+  const Result<StreamAddress> parsed = parse_stream_address("tls://hub:4222?robot=r-1&array=left_hand&ca=hub.pem");
   ASSERT_TRUE(parsed) << parsed.error().message;
   EXPECT_EQ(parsed->broker.url, "tls://hub:4222");
-  EXPECT_EQ(parsed->broker.nkey, "robot.nk");
   EXPECT_EQ(parsed->broker.ca, "hub.pem");
   EXPECT_EQ(parsed->robot, "r-1");
   EXPECT_EQ(parsed->array, "left_hand");
@@ -59,6 +57,19 @@ TEST(StreamAddress, any_text_is_an_address_or_an_error_of_one_line) {
     EXPECT_EQ(error_of(support::mutated(valid, seed)).find('\n'), std::string::npos) << "seed " << seed;
   }
   EXPECT_FALSE(error_of(std::string(5000, 'x')).empty());
+}
+
+TEST(StreamAddress, passwords_are_not_shown) {
+  const auto parsed = parse_stream_address("nats://user:secret@hub:4222?robot=r&array=a");
+  ASSERT_TRUE(parsed);
+  EXPECT_EQ(parsed->text, "nats://hub:4222?robot=r&array=a");
+  EXPECT_EQ(parsed->broker.url, "nats://user:secret@hub:4222");
+  EXPECT_EQ(error_of("nats://user:secret@hub?array=a").find("secret"), std::string::npos);
+}
+
+TEST(StreamAddress, times_are_of_the_calendar) {
+  EXPECT_FALSE(parse_stream_address("nats://hub?robot=r&array=a&from=2026-99-28T05:00:00Z"));
+  EXPECT_FALSE(parse_stream_address("nats://hub?robot=r&array=a&from=2026-11-28T25:00:00Z"));
 }
 
 TEST(StreamAddress, names_are_no_subjects) {

@@ -72,6 +72,23 @@ class Work(unittest.TestCase):
         printed = self.wait_for("waiting 0, taken 0, done 0, given up 1")
         self.assertIn("given up: jobs.toml 1: exit status 2", printed)
 
+    def test_no_link_leads_out_of_the_folder(self):
+        inner = self.folder / "inner"
+        inner.mkdir()
+        (self.folder / "a.mcap").rename(inner / "a.mcap")
+        (inner / "link").symlink_to(self.folder)
+        self.assertEqual(self.submit([("convert", "a.mcap", "link/out.csv")]).returncode, 0)
+        self.start([DERMIS, "work", self.hub, "--folder", "inner"])
+        self.assertIn("leads out of the folder", self.wait_for("waiting 0, taken 0, done 0, given up 1"))
+        self.assertFalse((self.folder / "out.csv").exists())
+
+    def test_a_file_that_is_there_stays(self):
+        (self.folder / "out.csv").write_text("mine")
+        self.assertEqual(self.submit([("convert", "a.mcap", "out.csv")]).returncode, 0)
+        self.start([DERMIS, "work", self.hub])
+        self.wait_for("waiting 0, taken 0, done 0, given up 1")
+        self.assertEqual((self.folder / "out.csv").read_text(), "mine")
+
     def test_a_job_is_no_shell(self):
         for words in (("sh", "-c", "touch x"), ("convert", "/etc/passwd", "x.csv"), ("convert", "a.mcap", "../x.csv")):
             refused = self.submit([words])

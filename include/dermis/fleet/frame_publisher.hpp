@@ -19,7 +19,6 @@ namespace dermis::fleet {
 struct PublisherOptions {
   BrokerAddress broker{};
   std::string robot;                          ///< check_name()
-  std::uint64_t most_bytes = 0;               ///< A new stream of the robot keeps at most so many; 0: no limit.
   std::function<void(std::string)> notice{};  ///< Told in one line where the server goes and comes back. Thread-safe.
 };
 
@@ -28,7 +27,7 @@ struct PublisherCounts {
   std::uint64_t batches = 0;   ///< That the server has stored.
   std::uint64_t frames = 0;    ///< In them.
   std::uint64_t bytes = 0;     ///< In the batches.
-  std::uint64_t left_out = 0;  ///< Frames without room, while the server did not follow.
+  std::uint64_t left_out = 0;  ///< Frames without room, while the server did not follow, or too large for it.
 };
 
 /// Publishes the frames of a robot's arrays as batches of at most 100 ms (recordings/frame_batches.hpp). The server
@@ -42,7 +41,7 @@ class FramePublisher {
                                                                       PublisherOptions options);
   FramePublisher(const FramePublisher&) = delete;
   FramePublisher& operator=(const FramePublisher&) = delete;
-  /// Sends what waits, for at most 2 s.
+  /// Sends what waits for 2 s. A server that does not answer may take as long again.
   ~FramePublisher();
 
   /// Never waits for the server. One thread for each array.

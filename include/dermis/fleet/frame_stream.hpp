@@ -15,7 +15,8 @@
 namespace dermis::fleet {
 
 struct FrameStreamOptions {
-  const std::atomic<bool>* stop = nullptr;           ///< Set: next() returns false within 100 ms.
+  const std::atomic<bool>* stop =
+      nullptr;  ///< Set: next() returns false within 100 ms, or 2 s where no server answers.
   std::function<void(const std::string&)> notice{};  ///< Told in one line where the server goes and comes back.
 };
 

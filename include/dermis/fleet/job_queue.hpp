@@ -30,7 +30,8 @@ struct JobOutcome {
   std::string name;
   std::string worker;
   double seconds = 0.0;
-  std::string error;  ///< Empty: it is done.
+  std::string error;      ///< Empty: it is done.
+  bool is_final = false;  ///< An error that another try would not mend.
 };
 
 struct JobCounts {
@@ -67,7 +68,7 @@ class JobQueue {
 
  private:
   explicit JobQueue(std::unique_ptr<Broker> broker);
-  [[nodiscard]] Status store_outcome(const std::string& subject, const std::string& id, const JobOutcome& outcome);
+  [[nodiscard]] Status store_outcome(const std::string& subject, const JobOutcome& outcome);
   [[nodiscard]] Status give_up(const TakenJob& job, const std::string& why);
 
   std::unique_ptr<Broker> broker_;

@@ -15,9 +15,8 @@ namespace dermis::fleet {
 
 /// A server, and who asks it.
 struct BrokerAddress {
-  std::string url{};   ///< "nats://hub:4222", "tls://hub:4222", also with "user:password@".
-  std::string nkey{};  ///< Path of a file with the seed of an nkey; empty: none.
-  std::string ca{};    ///< Path of the certificates that sign that of the server; empty: those of the machine.
+  std::string url{};  ///< "nats://hub:4222", "tls://hub:4222", also with "user:password@".
+  std::string ca{};   ///< Path of the certificates that sign that of the server; empty: those of the machine.
 };
 
 /// A place in a stream: after all that is there, at a number of the stream, or at a time by UTC.
@@ -26,7 +25,7 @@ using StreamPlace = std::variant<Newest, std::uint64_t, Nanos>;
 
 /// The frames of one array, as nats://HUB?robot=R&array=A&from=TIME|SEQUENCE|new&to=TIME|SEQUENCE|last.
 struct StreamAddress {
-  std::string text;  ///< As it was given.
+  std::string text;  ///< As it was given, without user and password.
   BrokerAddress broker{};
   std::string robot{};
   std::string array{};
@@ -41,8 +40,18 @@ struct StreamAddress {
 /// Fails, with the mend, on an unknown or a missing part.
 [[nodiscard]] Result<StreamAddress> parse_stream_address(const std::string& text);
 
-/// nats://HOST[:PORT][?nkey=FILE&ca=FILE]
+/// nats://HOST[:PORT][?ca=FILE]
 [[nodiscard]] Result<BrokerAddress> parse_broker_address(const std::string& text);
+
+/// An address as it may be shown: without user and password.
+[[nodiscard]] inline std::string without_password(const std::string& text) {
+  const std::size_t begin = text.find("://");
+  if (begin == std::string::npos) return text;
+  const std::size_t end = text.find_first_of("/?", begin + 3);
+  const std::size_t at = text.substr(0, end).rfind('@');
+  if (at == std::string::npos) return text;
+  return text.substr(0, begin + 3) + text.substr(at + 1);
+}
 
 /// Names of robots and arrays are parts of subjects: letters, digits, '_' and '-', at most 64. Fails on others.
 [[nodiscard]] Status check_name(const std::string& what, const std::string& name);
