@@ -50,7 +50,8 @@ bool stays_in(const std::filesystem::path& folder, const std::string& word) {
   const std::size_t equals = word.starts_with("--") ? word.find('=') : std::string::npos;
   const std::string name = equals == std::string::npos ? word : word.substr(equals + 1);
   std::error_code failure;
-  const std::filesystem::path place = std::filesystem::weakly_canonical(name.substr(0, name.find('#')), failure);
+  const std::filesystem::path place =
+      std::filesystem::weakly_canonical(folder / name.substr(0, name.find('#')), failure);
   if (failure) return false;
   const auto [end_of_folder, rest] = std::mismatch(folder.begin(), folder.end(), place.begin(), place.end());
   return end_of_folder == folder.end();
