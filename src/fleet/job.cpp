@@ -17,11 +17,15 @@ constexpr std::size_t kMostWords = 200;
 constexpr std::size_t kMostCharacters = 4096;
 const std::set<std::string, std::less<>> kCommands = {"calibrate", "convert", "evaluate", "run", "simulate"};
 
+bool is_option(std::string_view word, std::string_view name) {
+  return word.starts_with("--") && word.substr(2).starts_with(name);
+}
+
 /// A path within the folder, or no path at all.
 bool stays_within(std::string_view word) {
   const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7F; };
   if (std::any_of(word.begin(), word.end(), is_control)) return false;
-  if (word.starts_with('/') || word.starts_with('~') || word == "--" || word.starts_with("--force")) return false;
+  if (word.starts_with('/') || word.starts_with('~') || word == "--" || is_option(word, "force")) return false;
   const bool is_short_option = word.size() > 1 && word[0] == '-' && word[1] != '-';
   if (is_short_option && word.find_first_not_of("0123456789.eE+-") != std::string_view::npos) return false;
   for (const std::string_view way_out : {"..", "=/", ":/", "%", "#/", "//"}) {
