@@ -6,8 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "calibration_input.hpp"
@@ -30,21 +31,8 @@ struct JudgedPress {
   double estimate_n = 0.0;
 };
 
-/// The load on the array in each frame that names one.
-std::map<std::size_t, double> newtons_by_frame(const std::vector<Load>& loads, const ArrayDescription& array) {
-  std::map<std::size_t, double> newtons;
-  for (const Load& load : loads) {
-    const double area_m2 = load.kind == LoadKind::pressure
-                               ? array.taxel_area_m2.value_or(0.0) * static_cast<double>(load.where.taxel_count())
-                               : 1.0;
-    newtons[load.frame] += area_m2 * load.value;
-  }
-  return newtons;
-}
-
-Result<JudgedPress> judge(const RecordedPress& press, const Calibration& calibration,
-                          const std::vector<RawFrame>& frames, const std::map<std::size_t, double>& newtons,
-                          ForceTables& tables) {
+Result<JudgedPress> judge(const RecordedPress& press, std::span<const std::optional<double>> newtons,
+                          const Calibration& calibration, const std::vector<RawFrame>& frames, ForceTables& tables) {
   Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(calibration.model);
   if (!pipeline) return pipeline.error();
   JudgedPress judged{press};
@@ -53,9 +41,9 @@ Result<JudgedPress> judge(const RecordedPress& press, const Calibration& calibra
   for (std::size_t k = press.first; k < press.end; ++k) {
     pipeline->process(frames[k], force);
     if (Status written = tables.write(force); !written) return written.error();
-    const auto load = newtons.find(k);
-    if (load == newtons.end() || load->second <= 0.0) continue;
-    judged.newtons += load->second;
+    const double load_n = newtons[k - press.first].value_or(0.0);
+    if (load_n <= 0.0) continue;
+    judged.newtons += load_n;
     judged.estimate_n += force.total().newtons;
     count += 1.0;
   }
@@ -127,13 +115,14 @@ Status evaluate_left_out(const LeftOutEvaluation& evaluation, const std::string&
   Result<ForceTables> tables = ForceTables::create(evaluation.tables, of_array);
   if (!tables) return tables.error();
   const std::vector<RecordedPress> presses = calibration::recorded_presses(frames, loads);
-  const std::map<std::size_t, double> newtons = newtons_by_frame(loads, array);
   std::vector<JudgedPress> judged;
   Progress progress(array.name);
   progress.show("presses", 0.0);
   Status done = calibration::judge_each_left_out(
-      array, frames, loads, presses, [&](const RecordedPress& press, const Calibration& without_it) -> Status {
-        Result<JudgedPress> result = judge(press, without_it, frames, newtons, *tables);
+      array, frames, loads, presses,
+      [&](const RecordedPress& press, std::span<const std::optional<double>> newtons,
+          const Calibration& without_it) -> Status {
+        Result<JudgedPress> result = judge(press, newtons, without_it, frames, *tables);
         if (!result) return result.error();
         judged.push_back(*result);
         progress.show("presses", static_cast<double>(judged.size()) / static_cast<double>(presses.size()));

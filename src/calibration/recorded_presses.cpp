@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "calibration/labels/labels.hpp"
 #include "dermis/calibration/parallel.hpp"
 
 namespace dermis::calibration {
@@ -66,6 +67,7 @@ std::vector<RecordedPress> recorded_presses(std::span<const RawFrame> frames, st
 Status judge_each_left_out(const ArrayDescription& array, std::span<const RawFrame> frames, std::span<const Load> loads,
                            std::span<const RecordedPress> presses, const PressJudge& judge) {
   if (presses.size() < 2) return bad_input("fewer than two presses: none can be left out");
+  const std::vector<std::optional<double>> newtons = newtons_of_frames(array, frames.size(), loads);
   for (std::size_t first = 0; first < presses.size(); first += kSideBySide) {
     const auto some = presses.subspan(first, std::min(kSideBySide, presses.size() - first));
     std::vector<std::optional<Result<Calibration>>> calibrations(some.size());
@@ -76,7 +78,9 @@ Status judge_each_left_out(const ArrayDescription& array, std::span<const RawFra
     for (std::size_t k = 0; k < some.size(); ++k) {
       const Result<Calibration>& without_it = *calibrations[k];
       if (!without_it) return without_it.error();
-      if (Status judged = judge(some[k], *without_it); !judged) return judged;
+      const auto [begin, end] = some[k];
+      const std::span known = std::span(newtons).subspan(begin, end - begin);
+      if (Status judged = judge(some[k], known, *without_it); !judged) return judged;
     }
   }
   return Done{};

@@ -46,8 +46,9 @@ TEST(RecordedPresses, what_has_no_load_is_no_press) {
 
 TEST(RecordedPresses, one_press_cannot_be_left_out) {
   const std::vector<RecordedPress> presses{{0, 3}};
-  const Status judged = judge_each_left_out({}, frames_of(3, 3), loads_of({0, 5, 5}), presses,
-                                            [](const RecordedPress&, const Calibration&) -> Status { return Done{}; });
+  const Status judged =
+      judge_each_left_out({}, frames_of(3, 3), loads_of({0, 5, 5}), presses,
+                          [](const RecordedPress&, auto, const Calibration&) -> Status { return Done{}; });
   ASSERT_FALSE(judged);
   EXPECT_NE(judged.error().message.find("fewer than two presses"), std::string::npos);
 }

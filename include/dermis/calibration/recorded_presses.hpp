@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,7 +28,10 @@ struct RecordedPress {
 [[nodiscard]] std::vector<RecordedPress> recorded_presses(std::span<const RawFrame> frames,
                                                           std::span<const Load> loads);
 
-using PressJudge = std::function<Status(const RecordedPress& press, const Calibration& without_it)>;
+/// Judges a press by a calibration without it. `newtons`: the load on the array in each frame of the press; empty where
+/// no label names one.
+using PressJudge = std::function<Status(const RecordedPress& press, std::span<const std::optional<double>> newtons,
+                                        const Calibration& without_it)>;
 
 /// Calls `judge` with each press and a calibration without it, by rising frame. A few calibrations run side by side, so
 /// that memory does not grow with the presses. Errors: those of calibrate() and `judge`; no two presses.

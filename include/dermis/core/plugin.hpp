@@ -15,7 +15,7 @@ struct Plugin {
   std::string needs;  ///< "of a build with DERMIS_BUILD_DDS, and Fast DDS (Debian: libfastrtps2.9)"
 };
 
-/// The function of this name in the plugin, which is loaded with the first call and never unloaded: threads of its
+/// The function of this name in the plugin. It is loaded with the first call and never unloaded, as threads of its
 /// libraries live as long as the process. Fails where the plugin or one of its libraries is not there. Thread-safe.
 [[nodiscard]] Result<void*> find_plugin_function(const Plugin& plugin, const char* name);
 
