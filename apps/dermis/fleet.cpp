@@ -26,10 +26,12 @@ struct AddOptions {
   std::vector<std::string> robots;
 };
 
-Result<std::unique_ptr<fleet::Hub>> connect(const std::string& text) {
+/// A Hub or a JobQueue.
+template <typename Served>
+Result<std::unique_ptr<Served>> connect(const std::string& text) {
   const Result<fleet::BrokerAddress> address = fleet::parse_broker_address(text);
   if (!address) return address.error();
-  return fleet::Hub::connect(*address);
+  return Served::connect(*address);
 }
 
 Status init(const InitOptions& options) {
@@ -51,7 +53,7 @@ Status init(const InitOptions& options) {
 }
 
 Status add(const AddOptions& options) {
-  const Result<std::unique_ptr<fleet::Hub>> hub = connect(options.hub);
+  const Result<std::unique_ptr<fleet::Hub>> hub = connect<fleet::Hub>(options.hub);
   if (!hub) return hub.error();
   for (const std::string& robot : options.robots) {
     if (Status added = (*hub)->add_robot(robot); !added) return added;
@@ -68,7 +70,7 @@ std::string age_of(Nanos last) {
 }
 
 Status list(const std::string& text) {
-  const Result<std::unique_ptr<fleet::Hub>> hub = connect(text);
+  const Result<std::unique_ptr<fleet::Hub>> hub = connect<fleet::Hub>(text);
   if (!hub) return hub.error();
   const Result<std::vector<fleet::RobotState>> robots = (*hub)->robots();
   if (!robots) return robots.error();
@@ -85,16 +87,10 @@ struct SubmitOptions {
   std::string jobs;
 };
 
-Result<std::unique_ptr<fleet::JobQueue>> connect_jobs(const std::string& text) {
-  const Result<fleet::BrokerAddress> address = fleet::parse_broker_address(text);
-  if (!address) return address.error();
-  return fleet::JobQueue::connect(*address);
-}
-
 Status submit(const SubmitOptions& options) {
   const Result<std::vector<fleet::Job>> jobs = fleet::read_jobs(options.jobs);
   if (!jobs) return jobs.error();
-  const Result<std::unique_ptr<fleet::JobQueue>> queue = connect_jobs(options.hub);
+  const Result<std::unique_ptr<fleet::JobQueue>> queue = connect<fleet::JobQueue>(options.hub);
   if (!queue) return queue.error();
   for (std::size_t i = 0; i < jobs->size(); ++i) {
     const Status submitted = (*queue)->submit((*jobs)[i]);
@@ -106,7 +102,7 @@ Status submit(const SubmitOptions& options) {
 }
 
 Status show_jobs(const std::string& text) {
-  const Result<std::unique_ptr<fleet::JobQueue>> queue = connect_jobs(text);
+  const Result<std::unique_ptr<fleet::JobQueue>> queue = connect<fleet::JobQueue>(text);
   if (!queue) return queue.error();
   const Result<fleet::JobCounts> counts = (*queue)->counts();
   if (!counts) return counts.error();
@@ -116,6 +112,10 @@ Status show_jobs(const std::string& text) {
   if (!given_up) return given_up.error();
   for (const fleet::JobOutcome& outcome : *given_up) fmt::print("given up: {}: {}\n", outcome.name, outcome.error);
   return Done{};
+}
+
+void require_hub(Command& command, std::string& hub) {
+  command.option("hub", hub, "nats://HOST of the hub").required();
 }
 
 }  // namespace
@@ -132,24 +132,24 @@ void add_fleet(Command& command) {
 
   auto added = std::make_shared<AddOptions>();
   Command add_command = command.subcommand("add", "Have the hub keep the frames of robots");
-  add_command.option("hub", added->hub, "nats://HOST of the hub").required();
+  require_hub(add_command, added->hub);
   add_command.option("--robot", added->robots, "Its name; for each robot").required();
   add_command.action([added] { return add(*added); });
 
   auto hub = std::make_shared<std::string>();
   Command list_command = command.subcommand("list", "The robots of a hub, and how their frames come");
-  list_command.option("hub", *hub, "nats://HOST of the hub").required();
+  require_hub(list_command, *hub);
   list_command.action([hub] { return list(*hub); });
 
   auto submitted = std::make_shared<SubmitOptions>();
   Command submit_command = command.subcommand("submit", "Give jobs to the workers of a hub ('dermis work')");
-  submit_command.option("hub", submitted->hub, "nats://HOST of the hub").required();
+  require_hub(submit_command, submitted->hub);
   submit_command.input_file("jobs", submitted->jobs, "jobs.toml (docs/fleet.md)").required();
   submit_command.action([submitted] { return submit(*submitted); });
 
   auto jobs_hub = std::make_shared<std::string>();
   Command jobs_command = command.subcommand("jobs", "How the jobs of a hub do");
-  jobs_command.option("hub", *jobs_hub, "nats://HOST of the hub").required();
+  require_hub(jobs_command, *jobs_hub);
   jobs_command.action([jobs_hub] { return show_jobs(*jobs_hub); });
 }
 

@@ -17,14 +17,17 @@ constexpr std::size_t kMostWords = 200;
 constexpr std::size_t kMostCharacters = 4096;
 const std::set<std::string, std::less<>> kCommands = {"calibrate", "convert", "evaluate", "run", "simulate"};
 
+bool has_control_characters(std::string_view text) {
+  return std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; });
+}
+
 bool is_option(std::string_view word, std::string_view name) {
   return word.starts_with("--") && word.substr(2).starts_with(name);
 }
 
 /// A path within the folder, or no path at all.
 bool stays_within(std::string_view word) {
-  const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7F; };
-  if (std::any_of(word.begin(), word.end(), is_control)) return false;
+  if (has_control_characters(word)) return false;
   if (word.starts_with('/') || word.starts_with('~') || word == "--" || is_option(word, "force")) return false;
   const bool is_short_option = word.size() > 1 && word[0] == '-' && word[1] != '-';
   if (is_short_option && word.find_first_not_of("0123456789.eE+-") != std::string_view::npos) return false;
@@ -66,8 +69,7 @@ Status check_job(const Job& job) {
     return bad_input("words: a job begins with one of " + command_list());
   }
   if (job.words.size() > kMostWords) return bad_input("words: are more than 200");
-  const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7F; };
-  if (job.name.size() > kMostCharacters || std::any_of(job.name.begin(), job.name.end(), is_control)) {
+  if (job.name.size() > kMostCharacters || has_control_characters(job.name)) {
     return bad_input("name: must be one line of at most 4096 characters");
   }
   for (const std::string& word : job.words) {
