@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/fleet/frame_publisher.hpp"
 
+#include <pthread.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -119,6 +121,7 @@ Status FramePublisher::Implementation::begin(std::vector<recordings::RecordedArr
 
 /// Sends the batches of every `stride`th array.
 void FramePublisher::Implementation::work(std::size_t first, std::size_t stride, const std::stop_token& stop) {
+  ::pthread_setname_np(::pthread_self(), "publish");
   std::mutex mutex;
   std::unique_lock lock(mutex);
   std::condition_variable_any stopped;

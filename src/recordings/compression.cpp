@@ -10,8 +10,6 @@
 namespace dermis::recordings {
 namespace {
 
-constexpr int kZstdLevel = 1;
-
 void append_lz4(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& out) {
   LZ4F_preferences_t preferences{};
   preferences.frameInfo.blockSizeID = LZ4F_max4MB;
@@ -24,19 +22,20 @@ void append_lz4(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& 
   out.resize(begin + size);
 }
 
-void append_zstd(ZSTD_CCtx* context, std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& out) {
+void append_zstd(ZSTD_CCtx* context, int level, std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& out) {
   const std::size_t begin = out.size();
   const std::size_t bound = ZSTD_compressBound(bytes.size());
   out.resize(begin + bound);
-  const std::size_t size =
-      ZSTD_compressCCtx(context, out.data() + begin, bound, bytes.data(), bytes.size(), kZstdLevel);
+  const std::size_t size = ZSTD_compressCCtx(context, out.data() + begin, bound, bytes.data(), bytes.size(), level);
   out.resize(begin + size);
 }
 
 }  // namespace
 
-Compressor::Compressor(McapCompression compression)
-    : compression_(compression), zstd_(compression == McapCompression::zstd ? ZSTD_createCCtx() : nullptr) {}
+Compressor::Compressor(McapCompression compression, int zstd_level)
+    : compression_(compression),
+      zstd_level_(zstd_level),
+      zstd_(compression == McapCompression::zstd ? ZSTD_createCCtx() : nullptr) {}
 
 Compressor::~Compressor() {
   ZSTD_freeCCtx(zstd_);
@@ -46,7 +45,7 @@ void Compressor::append(std::span<const std::uint8_t> bytes, std::vector<std::ui
   switch (compression_) {
     case McapCompression::none: out.insert(out.end(), bytes.begin(), bytes.end()); break;
     case McapCompression::lz4: append_lz4(bytes, out); break;
-    case McapCompression::zstd: append_zstd(zstd_, bytes, out); break;
+    case McapCompression::zstd: append_zstd(zstd_, zstd_level_, bytes, out); break;
   }
 }
 

@@ -18,7 +18,9 @@ namespace dermis::recordings {
 /// Compresses chunks. Reuses its memory.
 class Compressor {
  public:
-  explicit Compressor(McapCompression compression);
+  static constexpr int kFast = 1;
+
+  explicit Compressor(McapCompression compression, int zstd_level = kFast);
   ~Compressor();
   Compressor(const Compressor&) = delete;
   Compressor& operator=(const Compressor&) = delete;
@@ -28,6 +30,7 @@ class Compressor {
 
  private:
   McapCompression compression_;
+  int zstd_level_;
   ZSTD_CCtx_s* zstd_ = nullptr;
 };
 
