@@ -43,6 +43,7 @@ BRINGS = {
     "libfastrtps-dev": "fastrtps",
     "libnats-dev": "libnats",
     "nats-server": "nats-server",
+    "iproute2": "ip tc",
     "python3-numpy": "numpy",
     "libgtest-dev": "GTest",
     "libbenchmark-dev": "benchmark",
