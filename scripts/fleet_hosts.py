@@ -2,8 +2,8 @@
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Hosts for a fleet on one machine: network namespaces with a bridge, or all on the loopback; for scripts that measure.
 
-As a program it is a wire between hosts: fleet_hosts.py taps DELAY_MS LOSS_PERCENT TAP TAP, where the kernel has no netem,
-or fleet_hosts.py tcp PORT TARGET_PORT."""
+As a program it is a wire between hosts: fleet_hosts.py taps DELAY_MS LOSS_PERCENT TAP TAP, where the kernel has no
+netem, or fleet_hosts.py tcp PORT TARGET_PORT."""
 
 import collections
 import contextlib

@@ -18,7 +18,7 @@ campaign = SourceFileLoader("fleet_campaign", str(CAMPAIGN)).load_module()
 
 
 class Robot:
-    """Runs of a publisher: the frames that it has recorded, and the last one that its server had where it was killed."""
+    """Runs of a publisher: the frames that it has recorded, and the last one that its server had at the kill."""
 
     name = "robot0"
 
