@@ -23,6 +23,7 @@ jetstream { store_dir: "store", domain: "hub" }
 tls { cert_file: "hub.pem", key_file: "hub.key" }
 leafnodes {
   listen: "0.0.0.0:%ROBOTS_PORT%"
+  no_advertise: true  # robots stay with the name that they have
   # The name in a robot's certificate is its user below.
   tls { cert_file: "hub.pem", key_file: "hub.key", ca_file: "ca.pem", verify_and_map: true }
 }

@@ -21,10 +21,11 @@ class FleetServers {
     const auto written = fleet::write_server_files(servers->plan_, servers->file(""));
     if (!written) return written.error();
     servers->hub_ = std::make_unique<NatsServer>(servers->file("hub"), servers->plan_.port);
-    for (const std::string& robot : servers->plan_.robots) {
-      servers->robots_[robot] = std::make_unique<NatsServer>(servers->file("robots/" + robot), free_port());
-    }
+    for (const std::string& robot : servers->plan_.robots) servers->start_robot(robot);
     return servers;
+  }
+  void start_robot(const std::string& name) {
+    robots_[name] = std::make_unique<NatsServer>(file("robots/" + name), free_port());
   }
 
   [[nodiscard]] std::string file(const std::string& name) const { return folder_.file(name); }

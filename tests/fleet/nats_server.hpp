@@ -58,6 +58,9 @@ class NatsServer {
     process_ = 0;
   }
 
+  /// Reads its files again.
+  void reload() const { ::kill(process_, SIGHUP); }
+
   /// With the streams that it had.
   void start() {
     process_ = ::fork();

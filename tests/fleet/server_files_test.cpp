@@ -130,15 +130,33 @@ class Accounts : public testing::Test {
                              "retention":"limits","allow_direct":true})"));
     for (const std::string robot : {"anna", "bob"}) {
       ASSERT_TRUE(hub->store("dermis-models." + robot + ".chest.hash", "", kBytes));
-      const auto own = connected(servers->robot_address(robot));
-      ASSERT_TRUE(own->ask("$JS.API.STREAM.CREATE.dermis_" + robot,
-                           R"({"name":"dermis_)" + robot + R"(","subjects":["dermis.)" + robot +
-                               R"(.>"],"storage":"file","retention":"limits","allow_direct":true})"));
-      ASSERT_TRUE(own->store("dermis." + robot + ".chest.frames", "", kBytes));
+      publish(robot);
+      add(robot);
     }
-    const auto keeper = Hub::connect(servers->operator_address());
-    ASSERT_TRUE(keeper && (*keeper)->add_robot("anna") && (*keeper)->add_robot("bob"));
     ASSERT_TRUE(hub_has("anna", 1) && hub_has("bob", 1));
+  }
+
+  /// A message to the robot's own server.
+  void publish(const std::string& robot) const {
+    const auto own = connected(servers->robot_address(robot));
+    ASSERT_TRUE(own->ask("$JS.API.STREAM.CREATE.dermis_" + robot,
+                         R"({"name":"dermis_)" + robot + R"(","subjects":["dermis.)" + robot +
+                             R"(.>"],"storage":"file","retention":"limits","allow_direct":true})"));
+    ASSERT_TRUE(own->store("dermis." + robot + ".chest.frames", "", kBytes));
+  }
+
+  void add(const std::string& robot) const {
+    const auto keeper = Hub::connect(servers->operator_address());
+    ASSERT_TRUE(keeper && (*keeper)->add_robot(robot));
+  }
+
+  /// Waits for a line in the hub's log.
+  [[nodiscard]] bool hub_says(const std::string& line) const {
+    for (int look = 0; look < 400; ++look) {
+      if (servers->hub().log().find(line) != std::string::npos) return true;
+      std::this_thread::sleep_for(milliseconds(50));
+    }
+    return false;
   }
 
   [[nodiscard]] static std::unique_ptr<Broker> connected(const BrokerAddress& address) {
@@ -202,6 +220,31 @@ TEST_F(Accounts, a_robot_neither_publishes_as_another_nor_takes_away) {
   EXPECT_EQ((*hub->last("dermis-models", "dermis-models.anna.chest.hash"))->sequence, 1U);
 }
 
+TEST_F(Accounts, the_operator_takes_nothing_away_from_a_robot) {
+  for (const std::string what : {"STREAM.DELETE.dermis_anna", "STREAM.PURGE.dermis_anna"}) {
+    EXPECT_FALSE(hub->ask("$JS.anna.API." + what, ""));
+  }
+  EXPECT_EQ((*anna->last("dermis_anna", "dermis.anna.chest.frames"))->sequence, 1U);
+}
+
+TEST_F(Accounts, a_robot_comes_and_another_is_taken_out_while_the_hub_works) {
+  ASSERT_TRUE(write_server_files({.robots = {"carl"}}, servers->file("")));
+  servers->hub().reload();
+  servers->start_robot("carl");
+  publish("carl");
+  add("carl");
+  EXPECT_TRUE(hub_has("carl", 1));
+  const std::string plan = servers->file("fleet.toml");
+  support::write_bytes(plan, std::regex_replace(support::read_bytes(plan), std::regex("  \"anna\",\n"), ""));
+  ASSERT_EQ(*write_server_files({}, servers->file("")), std::vector<std::string>{servers->file("hub/nats.conf")});
+  servers->hub().reload();
+  servers->robot("anna").kill();
+  servers->robot("anna").start();
+  EXPECT_TRUE(hub_says("authentication error")) << servers->hub().log();
+  publish("bob");
+  EXPECT_TRUE(hub_has("bob", 2));
+}
+
 TEST_F(Accounts, the_key_of_a_robot_does_not_open_the_hub) {
   const auto direct = connect_broker(servers->hub_address("robots/anna/anna.seed"));
   ASSERT_FALSE(direct);
@@ -261,11 +304,7 @@ TEST_F(Strangers, a_hub_with_a_wrong_certificate_is_refused) {
 TEST_F(Strangers, a_robot_with_a_wrong_certificate_is_refused) {
   fs::copy_file(servers->file("ca.pem"), others.file("robots/anna/ca.pem"), fs::copy_options::overwrite_existing);
   const support::NatsServer robot(others.file("robots/anna"), support::free_port());
-  const std::string refusal = "TLS leafnode handshake error";
-  for (int look = 0; look < 400 && servers->hub().log().find(refusal) == std::string::npos; ++look) {
-    std::this_thread::sleep_for(milliseconds(50));
-  }
-  EXPECT_NE(servers->hub().log().find(refusal), std::string::npos) << servers->hub().log();
+  EXPECT_TRUE(hub_says("TLS leafnode handshake error")) << servers->hub().log();
 }
 
 }  // namespace
