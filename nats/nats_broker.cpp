@@ -3,11 +3,14 @@
 #include <nats/nats.h>
 
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <string>
 #include <utility>
 
 #include "fleet/broker.hpp"
+#include "nkeys.hpp"
 
 /// The plugin that dermis::fleet loads.
 namespace dermis::fleet {
@@ -66,18 +69,27 @@ class NatsBroker final : public Broker {
 
  private:
   [[nodiscard]] Result<std::optional<StoredMessage>> get(const std::string& stream, jsDirectGetMsgOptions& which);
+  [[nodiscard]] Error why_not(natsStatus status) const;
 
   const std::string url_;
   const Connection connection_;
   const JetStream jet_stream_;
 };
 
+/// A server says to the connection that a request is not permitted, and does not answer it.
+Error NatsBroker::why_not(natsStatus status) const {
+  const char* text = nullptr;
+  const bool is_denied =
+      status == NATS_TIMEOUT && natsConnection_GetLastError(connection_.get(), &text) == NATS_NOT_PERMITTED;
+  return is_denied ? bad_input(url_ + ": the user of this key may not do that") : error_of(url_, status);
+}
+
 Result<std::string> NatsBroker::ask(const std::string& subject, const std::string& request) {
   natsMsg* got = nullptr;
   const natsStatus asked =
       natsConnection_RequestString(&got, connection_.get(), subject.c_str(), request.c_str(), kAnswerMs);
   const Message answer(got);
-  if (asked != NATS_OK) return error_of(url_, asked);
+  if (asked != NATS_OK) return why_not(asked);
   return std::string(natsMsg_GetData(answer.get()), static_cast<std::size_t>(natsMsg_GetDataLength(answer.get())));
 }
 
@@ -154,6 +166,32 @@ std::string host_of(const std::string& url) {
   return rest.starts_with('[') ? rest.substr(1, end - 1) : rest.substr(0, end);
 }
 
+bool is_encrypted(const BrokerAddress& address) {
+  return address.url.starts_with("tls:") || !address.ca.empty();
+}
+
+/// The seed in the file. No error shows it.
+Result<std::string> read_seed(const std::string& path) {
+  std::ifstream file(path);
+  std::string seed;
+  if (!(file >> seed)) return bad_input(path + ": cannot be read; it must hold the key of a user of NATS");
+  return seed;
+}
+
+/// `natsOptions` reads the file again with each connection, from wherever the process is then.
+Status set_key(natsOptions* options, const std::string& path) {
+  const Result<std::string> seed = read_seed(path);
+  if (!seed) return seed.error();
+  const Result<std::string> user = user_of_seed(*seed);
+  if (!user) return bad_input(path + ": " + user.error().message);
+  std::error_code failure;
+  const std::string place = std::filesystem::absolute(path, failure).string();
+  if (failure) return bad_input(path + ": " + failure.message());
+  const natsStatus status = natsOptions_SetNKeyFromSeed(options, user->c_str(), place.c_str());
+  if (status != NATS_OK) return error_of(path, status);
+  return Done{};
+}
+
 natsStatus set_options(natsOptions* options, const BrokerAddress& address) {
   const auto both = [](natsStatus first, natsStatus second) { return first != NATS_OK ? first : second; };
   natsStatus status = natsOptions_SetURL(options, address.url.c_str());
@@ -162,24 +200,47 @@ natsStatus set_options(natsOptions* options, const BrokerAddress& address) {
   status = both(status, natsOptions_SetReconnectWait(options, kReconnectMs));
   status = both(status, natsOptions_SetFailRequestsOnDisconnect(options, true));
   status = both(status, natsOptions_SetName(options, "dermis"));
-  if (address.url.starts_with("tls:")) {
-    status = both(status, natsOptions_SetSecure(options, true));
-    status = both(status, natsOptions_SetExpectedHostname(options, host_of(address.url).c_str()));
+  if (!is_encrypted(address)) return status;
+  status = both(status, natsOptions_SetSecure(options, true));
+  return both(status, natsOptions_SetExpectedHostname(options, host_of(address.url).c_str()));
+}
+
+Result<Options> make_options(const BrokerAddress& address) {
+  natsOptions* made = nullptr;
+  natsStatus status = natsOptions_Create(&made);
+  Options options(made);
+  if (status == NATS_OK) status = set_options(options.get(), address);
+  if (status != NATS_OK) return error_of(without_password(address.url), status);
+  if (!address.ca.empty() && natsOptions_LoadCATrustedCertificates(options.get(), address.ca.c_str()) != NATS_OK) {
+    return bad_input(address.ca + ": cannot be read; it must hold the certificates that sign that of the server");
   }
-  if (!address.ca.empty()) status = both(status, natsOptions_LoadCATrustedCertificates(options, address.ca.c_str()));
-  return status;
+  if (address.key.empty()) return options;
+  if (const Status set = set_key(options.get(), address.key); !set) return set.error();
+  return options;
+}
+
+/// Why there is no connection, and the mend.
+Error refusal(const BrokerAddress& address, natsStatus status) {
+  const std::string place = without_password(address.url);
+  switch (status) {
+    case NATS_CONNECTION_AUTH_FAILED:
+      return bad_input(place + ": the server does not know this user; give key=FILE of one that it knows");
+    case NATS_SSL_ERROR:
+      return bad_input(place + ": the server has no certificate of this name that is signed by " +
+                       (address.ca.empty() ? "those of the machine; give ca=FILE" : address.ca));
+    case NATS_SECURE_CONNECTION_WANTED:
+      return bad_input(place + ": the server does not encrypt; leave out ca=FILE and write nats://");
+    default: return error_of(place, status);
+  }
 }
 
 Result<std::unique_ptr<Broker>> connect(const BrokerAddress& address) {
-  natsOptions* made_options = nullptr;
-  natsStatus status = natsOptions_Create(&made_options);
-  const Options options(made_options);
-  if (status == NATS_OK) status = set_options(options.get(), address);
-  if (status != NATS_OK) return error_of(without_password(address.url), status);
+  Result<Options> options = make_options(address);
+  if (!options) return options.error();
   natsConnection* made_connection = nullptr;
-  status = natsConnection_Connect(&made_connection, options.get());
+  natsStatus status = natsConnection_Connect(&made_connection, options->get());
   Connection connection(made_connection);
-  if (status != NATS_OK) return error_of(without_password(address.url), status);
+  if (status != NATS_OK) return refusal(address, status);
   jsCtx* made_context = nullptr;
   status = natsConnection_JetStream(&made_context, connection.get(), nullptr);
   JetStream jet_stream(made_context);

@@ -4,13 +4,12 @@
 #include <fmt/core.h>
 
 #include <chrono>
-#include <filesystem>
 #include <memory>
 
 #include "commands.hpp"
-#include "dermis/files/atomic_file.hpp"
 #include "dermis/fleet/hub.hpp"
 #include "dermis/fleet/job_queue.hpp"
+#include "dermis/fleet/server_files.hpp"
 #include "status_line.hpp"
 
 namespace dermis::app {
@@ -35,20 +34,10 @@ Result<std::unique_ptr<Served>> connect(const std::string& text) {
 }
 
 Status init(const InitOptions& options) {
-  const auto files = fleet::server_files(options.plan);
-  if (!files) return files.error();
-  std::error_code failure;
-  std::filesystem::create_directories(options.out, failure);
-  if (failure) return bad_input(fmt::format("{}: {}", options.out, failure.message()));
-  for (const auto& [name, text] : *files) {
-    const std::string path = (std::filesystem::path(options.out) / name).string();
-    if (std::filesystem::exists(path)) return bad_input(path + ": is there already");
-    Result<files::AtomicFile> file = files::AtomicFile::create(path);
-    if (!file) return file.error();
-    file->write(text);
-    if (Status written = file->commit(); !written) return written;
-    print_notice("wrote " + path);
-  }
+  const Result<std::vector<std::string>> written = fleet::write_server_files(options.plan, options.out);
+  if (!written) return written.error();
+  for (const std::string& path : *written) print_notice("wrote " + path);
+  if (written->empty()) print_notice(options.out + ": has all already");
   return Done{};
 }
 
@@ -122,12 +111,13 @@ void require_hub(Command& command, std::string& hub) {
 
 void add_fleet(Command& command) {
   auto made = std::make_shared<InitOptions>();
-  Command init_command = command.subcommand("init", "Write the files of the servers of a fleet (nats-server)");
-  init_command.option("--robot", made->plan.robots, "Its name; for each robot").required();
-  init_command.option("--hub", made->plan.hub, "Name or address of the hub, as robots reach it").shows_default();
-  init_command.option("--port", made->plan.port, "Of each server, for its clients").shows_default();
-  init_command.option("--robots-port", made->plan.robots_port, "Of the hub, for the servers of robots").shows_default();
-  init_command.option("--out", made->out, "Folder for the files").required();
+  Command init_command =
+      command.subcommand("init", "Write files and keys for the servers of a fleet (nats-server), or for more robots");
+  init_command.option("--robot", made->plan.robots, "Its name; for each robot that is new");
+  init_command.option("--hub", made->plan.hub, "Name or address of the hub, as robots reach it (127.0.0.1)");
+  init_command.option("--port", made->plan.port, "Of each server, for its clients (4222)");
+  init_command.option("--robots-port", made->plan.robots_port, "Of the hub, for the servers of robots (7422)");
+  init_command.option("--out", made->out, "Folder for the files; what is there stays").required();
   init_command.action([made] { return init(*made); });
 
   auto added = std::make_shared<AddOptions>();

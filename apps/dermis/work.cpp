@@ -110,11 +110,11 @@ void finish(fleet::JobQueue& queue, const fleet::TakenJob& taken, const fleet::J
 Status work(const WorkOptions& options) {
   const Result<fleet::BrokerAddress> address = fleet::parse_broker_address(options.hub);
   if (!address) return address.error();
+  const Result<std::unique_ptr<fleet::JobQueue>> queue = fleet::JobQueue::connect(*address);
+  if (!queue) return queue.error();
   std::error_code failure;
   std::filesystem::current_path(options.folder, failure);
   if (failure) return bad_input(options.folder + ": " + failure.message());
-  const Result<std::unique_ptr<fleet::JobQueue>> queue = fleet::JobQueue::connect(*address);
-  if (!queue) return queue.error();
   const Result<std::string> program = own_program();
   if (!program) return program.error();
   const std::string worker = name_of_worker();

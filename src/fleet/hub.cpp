@@ -14,34 +14,6 @@ namespace {
 
 constexpr std::size_t kMostRobots = 1'000'000;
 
-std::string hub_file(const FleetPlan& plan) {
-  return "# The hub of a fleet of dermis: nats-server -c hub.conf\n"
-         "server_name: hub\n"
-         "listen: \"0.0.0.0:" +
-         std::to_string(plan.port) +
-         "\"\n"
-         "jetstream { store_dir: \"hub\", domain: \"hub\" }\n"
-         "leafnodes { listen: \"0.0.0.0:" +
-         std::to_string(plan.robots_port) + "\" }\n";
-}
-
-/// The robot's messages reach the hub as copies of its stream alone, so that each is there once.
-std::string robot_file(const FleetPlan& plan, const std::string& robot) {
-  return "# The server on robot " + robot + ": nats-server -c " + robot +
-         ".conf\n"
-         "server_name: \"" +
-         robot +
-         "\"\n"
-         "listen: \"127.0.0.1:" +
-         std::to_string(plan.port) +
-         "\"\n"
-         "jetstream { store_dir: \"" +
-         robot + "\", domain: \"" + robot +
-         "\" }\n"
-         "leafnodes { remotes: [ { url: \"nats://" +
-         plan.hub + ":" + std::to_string(plan.robots_port) + "\", deny_exports: [\"dermis.>\"] } ] }\n";
-}
-
 RobotState state_of(const Json& stream) {
   const Json state = object_at(stream, "state");
   RobotState robot;
@@ -54,20 +26,6 @@ RobotState state_of(const Json& stream) {
 }
 
 }  // namespace
-
-Result<std::map<std::string, std::string>> server_files(const FleetPlan& plan) {
-  if (plan.hub.empty() || plan.hub.find_first_of("\"\\{}[]/ \n") != std::string::npos) {
-    return bad_input("hub: '" + plan.hub + "' must be the name or the address of a machine");
-  }
-  std::map<std::string, std::string> files = {{"hub.conf", hub_file(plan)}};
-  for (const std::string& robot : plan.robots) {
-    if (const Status good = check_name("robot", robot); !good) return good.error();
-    if (!files.emplace(robot + ".conf", robot_file(plan, robot)).second) {
-      return bad_input("robot: '" + robot + "' is there twice, or the name of the hub");
-    }
-  }
-  return files;
-}
 
 Hub::Hub(std::unique_ptr<Broker> broker) : broker_(std::move(broker)) {}
 

@@ -60,7 +60,7 @@ std::string value_of(const ParsedText& parsed, const char* name) {
 }
 
 BrokerAddress broker_of(const ParsedText& parsed) {
-  return {parsed.url, value_of(parsed, "ca")};
+  return {parsed.url, value_of(parsed, "ca"), value_of(parsed, "key")};
 }
 
 Result<StreamPlace> place_of(const std::string& text, const std::string& name, const std::string& value,
@@ -86,13 +86,13 @@ Status check_name(const std::string& what, const std::string& name) {
 
 Result<BrokerAddress> parse_broker_address(const std::string& text) {
   if (!is_stream_address(text)) return wrong(text, "is no address of NATS; write nats://HOST or tls://HOST");
-  const Result<ParsedText> parsed = parse(text, {"ca"});
+  const Result<ParsedText> parsed = parse(text, {"ca", "key"});
   if (!parsed) return parsed.error();
   return broker_of(*parsed);
 }
 
 Result<StreamAddress> parse_stream_address(const std::string& text) {
-  const Result<ParsedText> parsed = parse(text, {"robot", "array", "from", "to", "ca"});
+  const Result<ParsedText> parsed = parse(text, {"robot", "array", "from", "to", "ca", "key"});
   if (!parsed) return parsed.error();
   StreamAddress address{.text = without_password(text), .broker = broker_of(*parsed)};
   address.robot = value_of(*parsed, "robot");

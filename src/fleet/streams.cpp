@@ -51,7 +51,8 @@ Status make_stream(Broker& broker, const std::string& robot) {
 }
 
 Status mirror_stream(Broker& broker, const std::string& robot) {
-  const Json origin = {{"name", stream_of(robot)}, {"external", {{"api", "$JS." + robot + ".API"}}}};
+  const Json external = {{"api", "$JS." + robot + ".API"}, {"deliver", "dermis-mirror." + robot}};
+  const Json origin = {{"name", stream_of(robot)}, {"external", external}};
   const std::string name = stream_of(robot);
   if (Status made = create_stream(broker, name, {{"mirror", origin}}); !made) return made;
   const Result<Json> info = stream_info(broker, name);

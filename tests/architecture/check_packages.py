@@ -42,6 +42,7 @@ BRINGS = {
     "pybind11-dev": "pybind11",
     "libfastrtps-dev": "fastrtps",
     "libnats-dev": "libnats",
+    "libssl-dev": "libcrypto",
     "nats-server": "nats-server",
     "iproute2": "ip tc",
     "python3-numpy": "numpy",

@@ -11,44 +11,27 @@
 
 #include "dermis/fleet/frame_publisher.hpp"
 #include "dermis/fleet/frame_stream.hpp"
-#include "nats_server.hpp"
+#include "fleet_servers.hpp"
 
 namespace dermis::fleet {
 namespace {
 
 using std::chrono::milliseconds;
 
-TEST(ServerFiles, are_one_for_the_hub_and_one_for_each_robot) {
-  const auto files = server_files({.hub = "hub.local", .robots = {"anna", "bob"}});
-  ASSERT_TRUE(files) << files.error().message;
-  ASSERT_EQ(files->size(), 3U);
-  EXPECT_NE(files->at("hub.conf").find("domain: \"hub\""), std::string::npos);
-  EXPECT_NE(files->at("bob.conf").find("domain: \"bob\""), std::string::npos);
-  EXPECT_NE(files->at("bob.conf").find("nats://hub.local:7422"), std::string::npos);
-}
-
-TEST(ServerFiles, refuse_names_that_cannot_be) {
-  EXPECT_FALSE(server_files({.robots = {"a b"}}));
-  EXPECT_EQ(server_files({.robots = {"a", "a"}}).error().message, "robot: 'a' is there twice, or the name of the hub");
-  EXPECT_FALSE(server_files({.robots = {"hub"}}));
-}
-
-/// A hub, and a server on a robot, as the files say, on ports of their own.
+/// A hub, and a server on a robot, as their files say.
 class Fleet : public testing::Test {
  public:
   void SetUp() override {
     if (!support::NatsServer::is_installed()) GTEST_SKIP() << "skipped: nats-server is not installed";
-    const FleetPlan plan{.port = support::free_port(), .robots_port = support::free_port(), .robots = {"anna"}};
-    hub = std::make_unique<support::NatsServer>(server_files(plan)->at("hub.conf"), plan.port);
-    FleetPlan on_robot = plan;
-    on_robot.port = support::free_port();
-    robot = std::make_unique<support::NatsServer>(server_files(on_robot)->at("anna.conf"), on_robot.port);
-    auto connected = Hub::connect({hub->url()});
-    if (!connected) GTEST_SKIP() << "skipped: " << connected.error().message;
+    auto made = support::FleetServers::start({"anna"});
+    if (!made) GTEST_SKIP() << "skipped: " << made.error().message;
+    servers = *std::move(made);
+    auto connected = Hub::connect(servers->operator_address());
+    ASSERT_TRUE(connected) << connected.error().message;
     keeper = *std::move(connected);
     ASSERT_TRUE(keeper->add_robot("anna"));
-    publisher =
-        *FramePublisher::create({{.name = "chest", .shape = {1, 2}}}, {.broker = {robot->url()}, .robot = "anna"});
+    publisher = *FramePublisher::create({{.name = "chest", .shape = {1, 2}}},
+                                        {.broker = servers->robot_address("anna"), .robot = "anna"});
   }
 
   void publish(std::size_t count) {
@@ -64,7 +47,7 @@ class Fleet : public testing::Test {
 
   /// Waits until the hub has all, and compares.
   void expect_all_on_the_hub() const {
-    const auto address = parse_stream_address(hub->url() + "?robot=anna&array=chest&from=1");
+    const auto address = parse_stream_address(servers->operator_text() + "&robot=anna&array=chest&from=1");
     Result<std::unique_ptr<FrameStream>> stream = FrameStream::open(*address);
     for (int look = 0; look < 200 && !stream; ++look) {
       std::this_thread::sleep_for(milliseconds(100));
@@ -78,8 +61,7 @@ class Fleet : public testing::Test {
     }
   }
 
-  std::unique_ptr<support::NatsServer> hub;
-  std::unique_ptr<support::NatsServer> robot;
+  std::unique_ptr<support::FleetServers> servers;
   std::unique_ptr<Hub> keeper;
   std::unique_ptr<FramePublisher> publisher;
   std::uint64_t next = 0;
@@ -87,13 +69,13 @@ class Fleet : public testing::Test {
 
 TEST_F(Fleet, the_hub_has_every_frame_once_and_in_order_whoever_is_killed) {
   publish(200);
-  hub->kill();
+  servers->hub().kill();
   publish(200);
-  hub->start();
+  servers->hub().start();
   publish(200);
-  robot->kill();
+  servers->robot("anna").kill();
   publish(200);
-  robot->start();
+  servers->robot("anna").start();
   publish(200);
   expect_all_on_the_hub();
 }

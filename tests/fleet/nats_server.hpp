@@ -16,6 +16,7 @@
 #include <cstdlib>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "support/temporary_folder.hpp"
 
@@ -36,20 +37,18 @@ inline std::uint16_t free_port() {
 /// A real nats-server with JetStream, on a port of its own.
 class NatsServer {
  public:
-  NatsServer() : port_(free_port()) {
-    configure("listen: \"127.0.0.1:" + std::to_string(port_) + "\"\njetstream { store_dir: \"store\" }\n");
+  NatsServer() : folder_(temporary_.file("")), port_(free_port()) {
+    write_bytes(folder_ + "/nats.conf", "jetstream { store_dir: \"store\" }\n");
     start();
   }
-  /// `file`: its configuration, which names the port.
-  NatsServer(const std::string& file, std::uint16_t port) : port_(port) {
-    configure(file);
-    start();
-  }
+  /// In a folder with its configuration "nats.conf".
+  NatsServer(std::string folder, std::uint16_t port) : folder_(std::move(folder)), port_(port) { start(); }
   NatsServer(const NatsServer&) = delete;
   NatsServer& operator=(const NatsServer&) = delete;
   ~NatsServer() { kill(); }
 
   [[nodiscard]] static bool is_installed() { return std::system("nats-server --version >/dev/null 2>&1") == 0; }
+  [[nodiscard]] std::string log() const { return read_bytes(folder_ + "/log"); }
   [[nodiscard]] std::string url() const { return "nats://127.0.0.1:" + std::to_string(port_); }
 
   void kill() {
@@ -59,23 +58,24 @@ class NatsServer {
     process_ = 0;
   }
 
+  /// Reads its files again.
+  void reload() const { ::kill(process_, SIGHUP); }
+
   /// With the streams that it had.
   void start() {
     process_ = ::fork();
     if (process_ == 0) {
-      const int log = ::open(folder_.file("log").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
+      const int log = ::open((folder_ + "/log").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
       ::dup2(log, 1);
       ::dup2(log, 2);
-      if (::chdir(folder_.file("").c_str()) != 0) ::_exit(126);
-      ::execlp("nats-server", "nats-server", "-c", "server.conf", nullptr);
+      if (::chdir(folder_.c_str()) != 0) ::_exit(126);
+      ::execlp("nats-server", "nats-server", "-c", "nats.conf", "-p", std::to_string(port_).c_str(), nullptr);
       ::_exit(127);
     }
     for (int look = 0; look < 200 && !answers(); ++look) std::this_thread::sleep_for(std::chrono::milliseconds(25));
   }
 
  private:
-  void configure(const std::string& text) { write_bytes(folder_.file("server.conf"), text); }
-
   [[nodiscard]] bool answers() const {
     const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
     sockaddr_in address{};
@@ -87,7 +87,8 @@ class NatsServer {
     return connected;
   }
 
-  TemporaryFolder folder_;
+  TemporaryFolder temporary_;
+  const std::string folder_;
   const std::uint16_t port_;
   pid_t process_ = 0;
 };

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -15,18 +14,6 @@
 namespace dermis::fleet {
 
 class Broker;
-
-/// The servers of a fleet: a hub, and one on each robot, which keeps its frames while the hub is away.
-struct FleetPlan {
-  std::string hub = "127.0.0.1";     ///< Name or address of the hub, as robots reach it.
-  std::uint16_t port = 4222;         ///< Clients of each server connect there.
-  std::uint16_t robots_port = 7422;  ///< The servers of robots connect there to the hub.
-  std::vector<std::string> robots{};
-};
-
-/// Files for nats-server by their names: "hub.conf", and one for each robot, as "anna.conf". Fails on a name that is no
-/// part of a subject, and on one that is there twice.
-[[nodiscard]] Result<std::map<std::string, std::string>> server_files(const FleetPlan& plan);
 
 /// The frames of a robot on the hub.
 struct RobotState {

@@ -16,7 +16,8 @@ namespace dermis::fleet {
 /// A server, and who asks it.
 struct BrokerAddress {
   std::string url{};  ///< "nats://hub:4222", "tls://hub:4222", also with "user:password@".
-  std::string ca{};   ///< Path of the certificates that sign that of the server; empty: those of the machine.
+  std::string ca{};  ///< Path of the certificates that sign that of the server; empty: those of the machine, with tls:.
+  std::string key{};  ///< Path of the seed of the user (nkey); empty: none.
 };
 
 /// A place in a stream: after all that is there, at a number of the stream, or at a time by UTC.
@@ -40,7 +41,7 @@ struct StreamAddress {
 /// Fails, with the mend, on an unknown or a missing part.
 [[nodiscard]] Result<StreamAddress> parse_stream_address(const std::string& text);
 
-/// nats://HOST[:PORT][?ca=FILE]
+/// nats://HOST[:PORT][?ca=FILE&key=FILE]
 [[nodiscard]] Result<BrokerAddress> parse_broker_address(const std::string& text);
 
 /// An address as it may be shown: without user and password.
