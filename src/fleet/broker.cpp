@@ -3,17 +3,32 @@
 #include "fleet/broker.hpp"
 
 #include "dermis/core/plugin.hpp"
+#include "dermis/fleet/model_store.hpp"
 
 namespace dermis::fleet {
+namespace {
+
+Result<void*> find_function(const char* name) {
+  return find_plugin_function(
+      {"NATS", "libdermis_nats.so", "of a build with DERMIS_BUILD_NATS, and its library (Debian: libnats3.4)"}, name);
+}
+
+}  // namespace
 
 Result<std::unique_ptr<Broker>> connect_broker(const BrokerAddress& address) {
-  const Result<void*> function = find_plugin_function(
-      {"NATS", "libdermis_nats.so", "of a build with DERMIS_BUILD_NATS, and its library (Debian: libnats3.4)"},
-      kConnectBroker);
+  const Result<void*> function = find_function(kConnectBroker);
   if (!function) return function.error();
   Result<std::unique_ptr<Broker>> connected{std::unique_ptr<Broker>()};
   reinterpret_cast<ConnectBroker>(*function)(address, connected);
   return connected;
+}
+
+Result<std::string> sha256(std::string_view bytes) {
+  const Result<void*> function = find_function(kFindSha256);
+  if (!function) return function.error();
+  std::string digits;
+  reinterpret_cast<FindSha256>(*function)(bytes, digits);
+  return digits;
 }
 
 }  // namespace dermis::fleet

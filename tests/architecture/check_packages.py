@@ -42,6 +42,7 @@ BRINGS = {
     "pybind11-dev": "pybind11",
     "libfastrtps-dev": "fastrtps",
     "libnats-dev": "libnats",
+    "libssl-dev": "libcrypto",
     "nats-server": "nats-server",
     "python3-numpy": "numpy",
     "libgtest-dev": "GTest",
