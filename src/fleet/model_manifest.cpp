@@ -24,7 +24,8 @@ bool is_sha256(const std::string& text) {
 }
 
 bool is_one_line(const std::string& text) {
-  return text.size() <= kMostOfAName && std::none_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20; });
+  return text.size() <= kMostOfAName &&
+         std::none_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20; });
 }
 
 Result<PushedModel> model_of(const Json& json) {
@@ -67,9 +68,8 @@ Result<ModelManifest> parse(std::string_view text) {
   if (text.size() > kMostCharacters) return bad_input("is too long");
   const Json json = Json::parse(text, nullptr, false);
   if (!json.is_object() || !json.contains("models") || !json["models"].is_array()) return bad_input("is none");
-  ModelManifest manifest{.robot = text_at(json, "robot"),
-                         .array = text_at(json, "array"),
-                         .current = number_at(json, "current")};
+  ModelManifest manifest{
+      .robot = text_at(json, "robot"), .array = text_at(json, "array"), .current = number_at(json, "current")};
   if (const Status good = check_name("robot", manifest.robot); !good) return good.error();
   if (const Status good = check_name("array", manifest.array); !good) return good.error();
   if (const Status read = read_models(json["models"], manifest); !read) return read.error();

@@ -125,7 +125,8 @@ Result<std::string> ModelStore::fetch(const ModelManifest& manifest) {
 
 Result<ModelManifest> ModelStore::push(const std::string& robot, const std::string& array, const std::string& name,
                                        std::string_view bytes) {
-  if (bytes.empty() || bytes.size() > ModelManifest::kMostBytes) return bad_input(name + ": a model has at most 256 MiB");
+  if (bytes.empty() || bytes.size() > ModelManifest::kMostBytes)
+    return bad_input(name + ": a model has at most 256 MiB");
   if (const Status good = check_names(robot, array); !good) return good.error();
   if (const Status prepared = prepare_hub(); !prepared) return prepared.error();
   const Result<std::optional<ModelManifest>> present = manifest(robot, array);
@@ -192,8 +193,7 @@ Result<std::vector<ModelManifest>> ModelStore::all() {
     if (!message) return message.error();
     if (!*message) break;
     const std::vector<std::uint8_t>& bytes = (*message)->bytes;
-    Result<ModelManifest> manifest =
-        manifest_from_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    Result<ModelManifest> manifest = manifest_from_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     if (!manifest) return manifest.error();
     manifests.push_back(*std::move(manifest));
     next = (*message)->sequence + 1;

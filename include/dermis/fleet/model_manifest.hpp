@@ -33,7 +33,7 @@ struct ModelManifest {
 
   std::string robot;
   std::string array;
-  std::uint64_t current = 0;         ///< Number of the model in use, which is one of `models`.
+  std::uint64_t current = 0;          ///< Number of the model in use, which is one of `models`.
   std::vector<PushedModel> models{};  ///< By their numbers. At least one, once there was a push.
 
   bool operator==(const ModelManifest&) const = default;
