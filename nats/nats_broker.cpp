@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <nats/nats.h>
+#include <openssl/sha.h>
 
+#include <array>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "fleet/broker.hpp"
@@ -59,6 +63,7 @@ class NatsBroker final : public Broker {
 
   [[nodiscard]] Result<std::string> ask(const std::string& subject, const std::string& request) override;
   [[nodiscard]] Result<std::optional<Delivery>> take(const std::string& subject, const std::string& request) override;
+  void stop() override { natsConnection_Close(connection_.get()); }
   [[nodiscard]] Status send(const std::string& subject, const std::string& text) override;
   [[nodiscard]] Result<std::uint64_t> store(const std::string& subject, const std::string& id,
                                             std::span<const std::uint8_t> bytes) override;
@@ -255,4 +260,15 @@ Result<std::unique_ptr<Broker>> connect(const BrokerAddress& address) {
 extern "C" __attribute__((visibility("default"))) void dermis_connect_broker(
     const dermis::fleet::BrokerAddress& address, dermis::Result<std::unique_ptr<dermis::fleet::Broker>>& connected) {
   connected = dermis::fleet::connect(address);
+}
+
+extern "C" __attribute__((visibility("default"))) void dermis_sha256(std::string_view bytes, std::string& digits) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::array<std::uint8_t, SHA256_DIGEST_LENGTH> hash{};
+  SHA256(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), hash.data());
+  digits.clear();
+  for (const std::uint8_t byte : hash) {
+    digits += kDigits[byte / 16U];
+    digits += kDigits[byte % 16U];
+  }
 }

@@ -3,21 +3,21 @@
 #include "fleet/broker.hpp"
 
 #include "dermis/core/plugin.hpp"
+#include "dermis/fleet/model_store.hpp"
 #include "fleet/fleet_keys.hpp"
 
 namespace dermis::fleet {
 namespace {
 
-Result<void*> find(const char* function) {
+Result<void*> find_function(const char* name) {
   return find_plugin_function(
-      {"NATS", "libdermis_nats.so", "of a build with DERMIS_BUILD_NATS, and its library (Debian: libnats3.4)"},
-      function);
+      {"NATS", "libdermis_nats.so", "of a build with DERMIS_BUILD_NATS, and its library (Debian: libnats3.4)"}, name);
 }
 
 }  // namespace
 
 Result<std::unique_ptr<Broker>> connect_broker(const BrokerAddress& address) {
-  const Result<void*> function = find(kConnectBroker);
+  const Result<void*> function = find_function(kConnectBroker);
   if (!function) return function.error();
   Result<std::unique_ptr<Broker>> connected{std::unique_ptr<Broker>()};
   reinterpret_cast<ConnectBroker>(*function)(address, connected);
@@ -25,11 +25,19 @@ Result<std::unique_ptr<Broker>> connect_broker(const BrokerAddress& address) {
 }
 
 Result<std::unique_ptr<FleetKeys>> load_fleet_keys() {
-  const Result<void*> function = find(kMakeFleetKeys);
+  const Result<void*> function = find_function(kMakeFleetKeys);
   if (!function) return function.error();
   std::unique_ptr<FleetKeys> made;
   reinterpret_cast<MakeFleetKeys>(*function)(made);
   return made;
+}
+
+Result<std::string> sha256(std::string_view bytes) {
+  const Result<void*> function = find_function(kFindSha256);
+  if (!function) return function.error();
+  std::string digits;
+  reinterpret_cast<FindSha256>(*function)(bytes, digits);
+  return digits;
 }
 
 }  // namespace dermis::fleet

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "dermis/core/frames.hpp"
@@ -44,6 +45,8 @@ class Broker {
   /// The message that a request to a consumer brings; empty where the server has none.
   [[nodiscard]] virtual Result<std::optional<Delivery>> take(const std::string& subject,
                                                              const std::string& request) = 0;
+  /// All that waits for an answer, or asks from now on, fails at once.
+  virtual void stop() = 0;
   /// Does not wait for an answer.
   [[nodiscard]] virtual Status send(const std::string& subject, const std::string& text) = 0;
   /// Waits until the server has stored the message; returns its sequence. A message of an id that came within the last
@@ -61,6 +64,10 @@ class Broker {
 /// The function of the plugin, and its name.
 using ConnectBroker = void (*)(const BrokerAddress& address, Result<std::unique_ptr<Broker>>& connected);
 inline constexpr const char* kConnectBroker = "dermis_connect_broker";
+
+/// The same of SHA-256: as 64 small hexadecimal digits.
+using FindSha256 = void (*)(std::string_view bytes, std::string& digits);
+inline constexpr const char* kFindSha256 = "dermis_sha256";
 
 /// Loads the plugin and connects. Fails where the plugin or its library is not there, and where no server answers.
 [[nodiscard]] Result<std::unique_ptr<Broker>> connect_broker(const BrokerAddress& address);

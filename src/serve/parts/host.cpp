@@ -3,6 +3,7 @@
 #include "serve/parts/host.hpp"
 
 #include <chrono>
+#include <mutex>
 #include <utility>
 
 #include "serve/suit/suit_json.hpp"
@@ -16,6 +17,7 @@ constexpr int kErrorLevel = 2;
 }  // namespace
 
 Status Host::use_model(std::size_t array, const std::shared_ptr<const pipeline::Model>& model) {
+  const std::lock_guard lock(*changing);
   if (Status used = live.set_model(array, model); !used) return used;
   models.replace(array, model);
   parts.model_changed(array);
@@ -25,6 +27,7 @@ Status Host::use_model(std::size_t array, const std::shared_ptr<const pipeline::
 }
 
 Status Host::use_classes(std::size_t array, recognition::Classes classes) {
+  const std::lock_guard lock(*changing);
   if (Status used = parts.use_classes(array, classes); !used) return used;
   suit.arrays[array].classes = std::move(classes);
   show_suit();
