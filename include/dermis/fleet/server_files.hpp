@@ -18,11 +18,11 @@ struct FleetPlan {
   std::vector<std::string> robots{};  ///< Those that come to the robots that were there.
 };
 
-/// Writes the files of a fleet's servers (nats-server), its keys and its certificates (docs/fleet.md). Returns the paths
-/// of files that are new or others now. "fleet.toml" in the folder keeps the plan, so that a fleet may grow: keys and the
-/// files of robots that are there stay. All are readable by their owner alone, for which the mask of modes of the process
-/// changes meanwhile. Fails where the plugin is not there, on a plan that contradicts fleet.toml, and on a name that is no
-/// part of a subject.
+/// Writes the files of a fleet's servers (nats-server), its keys and its certificates (docs/fleet.md). Returns the
+/// paths of files that are new or others now. "fleet.toml" in the folder keeps the plan, so that a fleet may grow: keys
+/// and the files of robots that are there stay. All are readable by their owner alone, for which the mask of modes of
+/// the process changes meanwhile. Fails where the plugin is not there, on a plan that contradicts fleet.toml, and on a
+/// name that is no part of a subject.
 [[nodiscard]] Result<std::vector<std::string>> write_server_files(const FleetPlan& plan, const std::string& folder);
 
 }  // namespace dermis::fleet
