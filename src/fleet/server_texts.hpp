@@ -7,8 +7,7 @@
 #include "dermis/fleet/server_files.hpp"
 
 /// Files of nats-server. On the hub each robot has an account of its own, where nobody but its server is. The account
-/// FLEET has the copies of their streams, the jobs and the models; it and a robot reach of each other what these files
-/// name.
+/// FLEET has the copies of their streams, the jobs and the models. It and a robot reach of each other what is named.
 namespace dermis::fleet {
 
 /// Users of the account FLEET of the hub, by their public nkeys.

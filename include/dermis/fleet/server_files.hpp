@@ -18,8 +18,8 @@ struct FleetPlan {
   std::vector<std::string> robots{};  ///< Those that come to the robots that were there.
 };
 
-/// Writes the files of the servers (nats-server) of a fleet, its keys and its certificates (docs/fleet.md); returns the
-/// paths of those that are new or others now. "fleet.toml" in the folder keeps the plan, so that a fleet may grow: keys
+/// Writes the files of a fleet's servers (nats-server), its keys and its certificates (docs/fleet.md). Returns the
+/// paths of files that are new or others now. "fleet.toml" in the folder keeps the plan, so that a fleet may grow: keys
 /// and the files of robots that are there stay. All are readable by their owner alone, for which the mask of modes of
 /// the process changes meanwhile. Fails where the plugin is not there, on a plan that contradicts fleet.toml, and on a
 /// name that is no part of a subject.
