@@ -15,9 +15,9 @@ namespace dermis::fleet {
 
 /// A model file that was pushed to an array of a robot.
 struct PushedModel {
-  std::uint64_t number = 0;  ///< Of the pushes to the array, from 1 on.
+  std::uint64_t number = 0;  ///< Pushes to the array are numbered from 1 on.
   std::string name;          ///< Of the file.
-  std::string sha256;        ///< Of its bytes, as 64 small hexadecimal digits.
+  std::string sha256;        ///< The SHA-256 of its bytes: 64 small hexadecimal digits.
   std::uint64_t bytes = 0;
   std::uint64_t pieces = 0;  ///< Messages that hold the bytes.
   Nanos time{};              ///< It was pushed then, by UTC.

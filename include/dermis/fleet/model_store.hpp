@@ -32,7 +32,7 @@ class ModelStore {
   ~ModelStore();
 
   /// Stores a model file for an array, which is to use it; on a hub. Models that are no longer in the manifest are
-  /// removed. Of two pushes to an array at the same time, one may be lost.
+  /// removed. One of two pushes to an array at the same time may be lost.
   [[nodiscard]] Result<ModelManifest> push(const std::string& robot, const std::string& array, const std::string& name,
                                            std::string_view bytes);
   /// The array is to use the model before its current one; on a hub.

@@ -33,7 +33,8 @@ struct Host {
   Topics& topics;
   SuitRecorder& recorder;
   PartList& parts;
-  std::unique_ptr<std::mutex> changing = std::make_unique<std::mutex>();  ///< Of models and classes: one at a time.
+  std::unique_ptr<std::mutex> changing =
+      std::make_unique<std::mutex>();  ///< One change of models and classes at a time.
 
   /// Takes a model into use for an array, and notifies all parts and clients.
   [[nodiscard]] Status use_model(std::size_t array, const std::shared_ptr<const pipeline::Model>& model);

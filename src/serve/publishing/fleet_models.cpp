@@ -52,7 +52,7 @@ class FleetModels final : public Part {
     fleet::PushedModel refused{};      ///< Not asked for again.
     std::optional<Fetched> waiting{};  ///< For a tick. This and all below are guarded by `mutex_`.
     std::uint64_t in_use = 0;          ///< Number of a model of the fleet; 0: none is.
-    std::string refusal{};             ///< Of the newest one; empty: it is in use, or will be.
+    std::string refusal{};             ///< Why the newest one is not in use; empty: it is, or will be.
   };
 
   void work(const std::stop_token& stop);
