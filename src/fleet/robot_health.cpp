@@ -20,6 +20,20 @@ constexpr std::size_t kMostArrays = 1000;
 constexpr std::size_t kMostTextBytes = 200;
 constexpr std::array<const char*, 4> kLevels = {"good", "warning", "error", "ended"};
 
+/// The characters U+202A to U+202E and U+2066 to U+2069 turn the direction of all text behind them.
+bool turns_text(std::string_view bytes) {
+  const auto last = static_cast<unsigned char>(bytes[2]);
+  const bool is_embedding = bytes.starts_with("\xE2\x80") && last >= 0xAAU && last <= 0xAEU;
+  return is_embedding || (bytes.starts_with("\xE2\x81") && last >= 0xA6U && last <= 0xA9U);
+}
+
+std::string without_turns(std::string text) {
+  for (std::size_t k = 0; k + 3 <= text.size(); ++k) {
+    if (turns_text(std::string_view(text).substr(k, 3))) text.replace(k, 3, "?");
+  }
+  return text;
+}
+
 /// Cut where a character begins.
 std::string shown_text_at(const Json& json, const char* key) {
   std::string text = text_at(json, key);
@@ -27,7 +41,7 @@ std::string shown_text_at(const Json& json, const char* key) {
   const auto is_inside_character = [&] { return (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U; };
   while (end > 0 && end < text.size() && is_inside_character()) --end;
   text.resize(end);
-  return one_line(std::move(text));
+  return one_line(without_turns(std::move(text)));
 }
 
 /// Of HTTP, with neither user nor query.

@@ -53,11 +53,12 @@ TEST(RobotHealth, values_of_another_type_are_as_absent) {
   EXPECT_EQ(read->arrays.front(), ArrayHealth({.name = "", .level = ArrayHealth::Level::error}));
 }
 
-TEST(RobotHealth, texts_are_short_and_control_no_terminal) {
-  const std::string fields = R"("name": "a\u001b[2Jb\n", "message": ")" + std::string(199, 'm') + "\u00e9\"";
+TEST(RobotHealth, texts_are_short_and_control_neither_a_terminal_nor_the_direction_of_others) {
+  const std::string fields =
+      R"("name": "a\u001b[2Jb\n\u202ec\u2066", "message": ")" + std::string(199, 'm') + "\u00e9\"";
   const auto read = health_from_json(with_array(fields));
   ASSERT_TRUE(read) << read.error().message;
-  EXPECT_EQ(read->arrays.front().name, "a?[2Jb?");
+  EXPECT_EQ(read->arrays.front().name, "a?[2Jb??c?");
   EXPECT_EQ(read->arrays.front().message, std::string(199, 'm'));
 }
 
