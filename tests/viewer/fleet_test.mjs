@@ -129,8 +129,8 @@ describe("the page of a fleet", { skip }, () => {
       const popup = page.waitForEvent("popup");
       await rowOf(page, "anna").locator("a").click();
       const own = await popup;
-      assert.equal(new URL(own.url()).origin, new URL(robots.anna.url).origin);
       await becomes(own, "live");
+      assert.equal(new URL(own.url()).origin, new URL(robots.anna.url).origin);
       await own.close();
     });
   });
@@ -159,7 +159,7 @@ describe("the page of a fleet", { skip }, () => {
     const array = { name: "<img src=x onerror=alert(1)>\u202e", level: "error", message: "\u001b[2J\u0007" };
     await publish("dermis.anna.health", JSON.stringify({ live: "javascript:alert(1)", arrays: [array] }));
     const listed = execFileSync(process.argv[2], ["fleet", "list", hub], { encoding: "utf8" });
-    assert.doesNotMatch(listed, /[\u0007\u001b\u202e]/);
+    for (const control of ["\u0007", "\u001b", "\u202e"]) assert.ok(!listed.includes(control));
     await robots.anna.stop();
     robots.anna = undefined;
     await publish("dermis.anna.health", JSON.stringify({ live: "javascript:alert(1)", arrays: [array] }));

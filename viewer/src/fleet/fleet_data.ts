@@ -162,7 +162,8 @@ export function sorted(robots: readonly Robot[], { key, descends }: Order): Robo
     const name = byName(a.state.name, b.state.name);
     if (key === "robot") return sign * name;
     const [left, right] = [value(a), value(b)];
-    if (Number.isNaN(left) || Number.isNaN(right)) return Number(Number.isNaN(left)) - Number(Number.isNaN(right)) || name;
+    if (Number.isNaN(left) || Number.isNaN(right))
+      return Number(Number.isNaN(left)) - Number(Number.isNaN(right)) || name;
     return sign * (left - right) || name;
   });
 }

@@ -8,8 +8,8 @@ import {
   type FleetDocument,
   isOfKind,
   isWanted,
-  type Kind,
   KINDS,
+  type Kind,
   type Order,
   type Robot,
   robotOf,
@@ -62,12 +62,19 @@ export class FleetPage {
       element(
         "th",
         { role: "columnheader", scope: "col", title, "data-head": name },
-        key === undefined ? name : element("button", { type: "button", class: "sort", onclick: () => this.#sort(key) }, name),
+        key === undefined
+          ? name
+          : element("button", { type: "button", class: "sort", onclick: () => this.#sort(key) }, name),
       ),
     );
     const head = element("thead", { role: "rowgroup" }, element("tr", { role: "row" }, ...this.#heads));
     this.#table = element("table", { role: "table", class: "table fleet-table", "aria-label": "Robots" }, head);
-    this.#room = element("div", { class: "table-room", tabindex: "0", role: "region", "aria-label": "Table of robots" });
+    this.#room = element("div", {
+      class: "table-room",
+      tabindex: "0",
+      role: "region",
+      "aria-label": "Table of robots",
+    });
     this.#room.append(this.#table, this.#none);
     this.#rows = new KeyedRows(
       this.#table,
@@ -93,7 +100,11 @@ export class FleetPage {
       this.#hub,
       element("span", { class: "stretch" }),
       this.#pill,
-      button("\u25d0", () => this.#theme.toggle(), { class: "icon", "aria-label": "Light or dark", title: "Light or dark (D)" }),
+      button("\u25d0", () => this.#theme.toggle(), {
+        class: "icon",
+        "aria-label": "Light or dark",
+        title: "Light or dark (D)",
+      }),
     );
   }
 
@@ -132,7 +143,8 @@ export class FleetPage {
         cache: "no-store",
         signal: AbortSignal.timeout(MOST_WAIT_MS),
       });
-      if (answer.status === 401) return this.#say("bad", "Wrong token", "Open the address that dermis fleet page printed.");
+      if (answer.status === 401)
+        return this.#say("bad", "Wrong token", "Open the address that dermis fleet page printed.");
       if (!answer.ok) return this.#say("bad", "No answer", `The server answers with ${answer.status}.`);
       this.#take((await answer.json()) as FleetDocument);
     } catch {

@@ -3,7 +3,16 @@
 import { element, setData, setHidden, setText } from "../dom";
 import { count, fixed } from "../format";
 import { KeyedRows, type Row } from "../keyed_rows";
-import { type ArrayState, LEVELS, type Robot, type SortKey, type StateName, span, stateOfArray, wayTo } from "./fleet_data";
+import {
+  type ArrayState,
+  LEVELS,
+  type Robot,
+  type SortKey,
+  type StateName,
+  span,
+  stateOfArray,
+  wayTo,
+} from "./fleet_data";
 
 export const COLUMNS: readonly { readonly key?: SortKey; readonly name: string; readonly title: string }[] = [
   { key: "state", name: "State", title: "The worst of its arrays, or silence" },
@@ -72,6 +81,7 @@ class ArrayRow implements Row<ArrayOfRobot> {
   readonly #cells = figureCells();
 
   constructor() {
+    setData(this.#cells[0]!, "head", "Size");
     this.element = element(
       "tr",
       { role: "row", class: "array-row" },
@@ -91,7 +101,7 @@ class ArrayRow implements Row<ArrayOfRobot> {
       "",
       count(array.masked_taxels),
       known(100 * (array.gain_change ?? NaN), 0, "%"),
-      array.wants_calibration ? "calibrate" : array.model,
+      array.wants_calibration ? "calibrate" : array.model.replace(/\.safetensors$/, ""),
       array.message,
     ];
     const marks = [false, false, array.lost + array.left_out > 0, false, array.masked_taxels > 0, false];
