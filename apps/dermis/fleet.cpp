@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <ctime>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
@@ -17,6 +18,7 @@
 #include "dermis/fleet/model_store.hpp"
 #include "dermis/fleet/server_files.hpp"
 #include "dermis/pipeline/model.hpp"
+#include "fleet_robots.hpp"
 #include "status_line.hpp"
 
 namespace dermis::app {
@@ -56,26 +58,6 @@ Status add(const AddOptions& options) {
   for (const std::string& robot : options.robots) {
     if (Status added = (*hub)->add_robot(robot); !added) return added;
     print_notice(fmt::format("{}: the hub keeps its frames", robot));
-  }
-  return Done{};
-}
-
-std::string age_of(Nanos last) {
-  if (last == Nanos{}) return "-";
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch() - last).count();
-  return fmt::format("{:.3f} s", seconds);
-}
-
-Status list(const std::string& text) {
-  const Result<std::unique_ptr<fleet::Hub>> hub = connect<fleet::Hub>(text);
-  if (!hub) return hub.error();
-  const Result<std::vector<fleet::RobotState>> robots = (*hub)->robots();
-  if (!robots) return robots.error();
-  fmt::print("{:<24} {:>12} {:>10} {:>12} {:>8}\n", "robot", "messages", "MB", "last before", "lag");
-  for (const fleet::RobotState& robot : *robots) {
-    fmt::print("{:<24} {:>12} {:>10.1f} {:>12} {:>8}\n", robot.name, robot.messages,
-               static_cast<double>(robot.bytes) / 1e6, age_of(robot.last), robot.lag);
   }
   return Done{};
 }
@@ -221,10 +203,8 @@ void add_fleet(Command& command) {
   add_command.option("--robot", added->robots, "Its name; for each robot").required();
   add_command.action([added] { return add(*added); });
 
-  auto hub = std::make_shared<std::string>();
-  Command list_command = command.subcommand("list", "The robots of a hub, and how their frames come");
-  require_hub(list_command, *hub);
-  list_command.action([hub] { return list(*hub); });
+  add_fleet_list(command);
+  add_fleet_page(command);
 
   auto submitted = std::make_shared<SubmitOptions>();
   Command submit_command = command.subcommand("submit", "Give jobs to the workers of a hub ('dermis work')");

@@ -24,6 +24,7 @@
 #include "dermis/serve/array_setup.hpp"
 #include "dermis/serve/session.hpp"
 #include "dermis/sources/source_name.hpp"
+#include "server_address.hpp"
 #include "status_line.hpp"
 #include "stop_flag.hpp"
 #include "viewer/viewer_assets.hpp"
@@ -88,13 +89,6 @@ Result<fleet::PublisherOptions> publisher_options(const ServeOptions& options) {
   return fleet::PublisherOptions{.broker = *broker, .robot = options.robot};
 }
 
-std::string address(const stream::ServerOptions& server, std::uint16_t port) {
-  const bool is_ipv6 = server.host.find(':') != std::string::npos;
-  std::string url = fmt::format("http://{}:{}/", is_ipv6 ? "[" + server.host + "]" : server.host, port);
-  if (!server.token.empty()) url += "?token=" + server.token;
-  return url;
-}
-
 /// A suit.toml tells of several arrays, the page of one.
 Status check_one_array(const std::string& from) {
   const recordings::RecordingPlace place = recordings::recording_place(from);
@@ -124,7 +118,7 @@ Status set_up_array(ServeOptions& options) {
   if (!setup) return setup.error();
   options.session.server.port = (*setup)->port();
   print_notice(fmt::format("describe the array at {} (Ctrl-C ends it)",
-                           address(options.session.server, options.session.server.port)));
+                           server_address(options.session.server, options.session.server.port)));
   serve::DescribedArray array = (*setup)->run(stop_flag());
   options.place.from = std::move(array.from);
   options.place.model = std::move(array.model);
@@ -159,8 +153,8 @@ Status serve_suit(ServeOptions& options) {
   const std::string what = arrays == 1 ? suit->arrays.front().name : fmt::format("{} arrays", arrays);
   const Result<std::unique_ptr<serve::Session>> session = serve::Session::create(*std::move(suit), options.session);
   if (!session) return session.error();
-  print_notice(
-      fmt::format("serving {} at {} (Ctrl-C ends it)", what, address(options.session.server, (*session)->port())));
+  print_notice(fmt::format("serving {} at {} (Ctrl-C ends it)", what,
+                           server_address(options.session.server, (*session)->port())));
   if (options.session.dds) {
     print_notice(fmt::format("topics for ROS 2 are in domain {}, for {}", options.session.dds->domain,
                              options.session.dds->loopback_only ? "this machine" : "all of the network"));

@@ -5,10 +5,10 @@
 #include <cstddef>
 #include <utility>
 
-namespace dermis {
-namespace {
+#include "dermis/core/one_line.hpp"
 
-/// The control characters of ASCII, and those beyond it that some terminals obey: U+0080 to U+009F, two bytes of UTF-8.
+namespace dermis {
+
 std::string one_line(std::string text) {
   unsigned char before = 0;
   for (std::size_t k = 0; k < text.size(); ++k) {
@@ -20,8 +20,6 @@ std::string one_line(std::string text) {
   }
   return text;
 }
-
-}  // namespace
 
 Error bad_input(std::string message) {
   return {ErrorKind::bad_input, one_line(std::move(message))};

@@ -47,6 +47,9 @@ struct PublishedArray {
   std::uint64_t next_id = 0;
   Clock::time_point described{};  ///< When the server has stored the description; 0: never.
   Clock::time_point begun = Clock::now();
+  std::atomic<std::uint64_t> refused = 0;  ///< Frames that the server will never take.
+
+  [[nodiscard]] std::uint64_t left_out() const noexcept { return refused + writer.left_out(); }
 };
 
 /// Runs of a robot differ by the millisecond in which they begin.
@@ -64,7 +67,9 @@ class FramePublisher::Implementation {
 
   [[nodiscard]] Status begin(std::vector<recordings::RecordedArray> arrays);
   void publish(std::size_t array, const RawFrame& frame) { arrays_[array]->writer.add(frame); }
+  void publish(const RobotHealth& health);
   [[nodiscard]] PublisherCounts counts() const noexcept;
+  [[nodiscard]] std::uint64_t left_out(std::size_t array) const noexcept { return arrays_[array]->left_out(); }
 
  private:
   /// Of a message: late where there was no time left.
@@ -73,6 +78,7 @@ class FramePublisher::Implementation {
   void work(std::size_t first, std::size_t stride, const std::stop_token& stop);
   [[nodiscard]] bool send_waiting(PublishedArray& array, bool unfinished);
   [[nodiscard]] bool describe(PublishedArray& array);
+  void send_health();
   [[nodiscard]] Fate store(const std::string& subject, const std::string& id, std::span<const std::uint8_t> bytes);
   [[nodiscard]] std::optional<Fate> try_to_store(const std::string& subject, const std::string& id,
                                                  std::span<const std::uint8_t> bytes);
@@ -91,7 +97,9 @@ class FramePublisher::Implementation {
   std::atomic<std::uint64_t> batches_ = 0;
   std::atomic<std::uint64_t> frames_ = 0;
   std::atomic<std::uint64_t> bytes_ = 0;
-  std::atomic<std::uint64_t> refused_ = 0;  ///< Frames that the server will never take.
+  std::mutex health_mutex_;
+  std::string health_;  ///< That is not sent yet; empty: none.
+
   std::atomic<Clock::time_point> end_ = Clock::time_point::max();
   std::vector<std::jthread> threads_;
 };
@@ -131,6 +139,7 @@ void FramePublisher::Implementation::work(std::size_t first, std::size_t stride,
     for (std::size_t i = first; i < arrays_.size(); i += stride) {
       if (!send_waiting(*arrays_[i], is_last_round)) return;
     }
+    if (first == 0) send_health();
     stopped.wait_for(lock, stop, kLookEvery, [] { return false; });
   }
 }
@@ -145,7 +154,7 @@ bool FramePublisher::Implementation::send_waiting(PublishedArray& array, bool un
     const Fate fate = store(array.frames, array.first_id + std::to_string(array.next_id++), batch->bytes);
     if (fate == Fate::late) return false;
     if (fate == Fate::refused) {
-      refused_ += batch->frames;
+      array.refused += batch->frames;
       continue;
     }
     ++batches_;
@@ -163,6 +172,18 @@ bool FramePublisher::Implementation::describe(PublishedArray& array) {
   if (store(array.description, id, array.writer.description()) == Fate::late) return false;
   array.described = Clock::now();
   return true;
+}
+
+/// Tries once: the next one is newer.
+void FramePublisher::Implementation::send_health() {
+  std::string health;
+  {
+    const std::scoped_lock lock(health_mutex_);
+    health.swap(health_);
+  }
+  if (health.empty()) return;
+  static_cast<void>(try_to_store(health_subject_of(options_.robot), "",
+                                 {reinterpret_cast<const std::uint8_t*>(health.data()), health.size()}));
 }
 
 /// Tries until the server has stored or refused it, or there is no time left.
@@ -218,9 +239,15 @@ void FramePublisher::Implementation::tell(const Status& outcome) {
                             (outcome.error().kind == ErrorKind::failed ? "; frames wait, and it is asked again" : ""));
 }
 
+void FramePublisher::Implementation::publish(const RobotHealth& health) {
+  std::string text = health_to_json(health);
+  const std::scoped_lock lock(health_mutex_);
+  health_ = std::move(text);
+}
+
 PublisherCounts FramePublisher::Implementation::counts() const noexcept {
-  PublisherCounts counts{batches_, frames_, bytes_, refused_};
-  for (const auto& array : arrays_) counts.left_out += array->writer.left_out();
+  PublisherCounts counts{batches_, frames_, bytes_};
+  for (const auto& array : arrays_) counts.left_out += array->left_out();
   return counts;
 }
 
@@ -244,8 +271,16 @@ void FramePublisher::publish(std::size_t array, const RawFrame& frame) {
   implementation_->publish(array, frame);
 }
 
+void FramePublisher::publish(const RobotHealth& health) {
+  implementation_->publish(health);
+}
+
 PublisherCounts FramePublisher::counts() const noexcept {
   return implementation_->counts();
+}
+
+std::uint64_t FramePublisher::left_out(std::size_t array) const noexcept {
+  return implementation_->left_out(array);
 }
 
 }  // namespace dermis::fleet

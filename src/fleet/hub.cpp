@@ -2,9 +2,12 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/fleet/hub.hpp"
 
+#include <chrono>
+#include <string_view>
 #include <utility>
 
 #include "fleet/broker.hpp"
+#include "fleet/health_json.hpp"
 #include "fleet/json_values.hpp"
 #include "fleet/parse_utc.hpp"
 #include "fleet/streams.hpp"
@@ -25,7 +28,31 @@ RobotState state_of(const Json& stream) {
   return robot;
 }
 
+/// null: `then` is not known.
+Json seconds_since(Nanos then, Nanos now) {
+  if (then == Nanos{}) return nullptr;
+  return std::chrono::duration<double>(now - then).count();
+}
+
 }  // namespace
+
+std::string fleet_to_json(const FleetState& fleet, Nanos now) {
+  Json list = Json::array();
+  for (const RobotState& robot : fleet.robots) {
+    Json& json = list.emplace_back();
+    json = {{"name", robot.name},
+            {"messages", robot.messages},
+            {"bytes", robot.bytes},
+            {"age_s", seconds_since(robot.last, now)},
+            {"lag", robot.lag},
+            {"health_age_s", seconds_since(robot.health_time, now)},
+            {"health_error", robot.health_error},
+            {"silent", robot.is_silent(now)}};
+    json["live"] = robot.health ? robot.health->live : "";
+    json["arrays"] = robot.health ? arrays_to_json(robot.health->arrays) : Json::array();
+  }
+  return json_text({{"hub", fleet.hub}, {"error", fleet.error}, {"robots", std::move(list)}});
+}
 
 Hub::Hub(std::unique_ptr<Broker> broker) : broker_(std::move(broker)) {}
 
@@ -57,7 +84,23 @@ Result<std::vector<RobotState>> Hub::robots() {
     offset += list["streams"].size();
     total = number_at(list, "total");
   }
+  for (RobotState& robot : robots) add_health(robot);
   return robots;
+}
+
+/// A robot that tells nonsense, or whose stream does not answer, costs no other.
+void Hub::add_health(RobotState& robot) {
+  if (robot.messages == 0 || !check_name("robot", robot.name)) return;
+  const Result<std::optional<StoredMessage>> last = broker_->last(stream_of(robot.name), health_subject_of(robot.name));
+  if (!last) robot.health_error = last.error().message;
+  if (!last || !*last) return;
+  const std::vector<std::uint8_t>& bytes = (*last)->bytes;
+  Result<RobotHealth> health = health_from_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  robot.health_time = (*last)->time;
+  if (health)
+    robot.health = *std::move(health);
+  else
+    robot.health_error = health.error().message;
 }
 
 }  // namespace dermis::fleet

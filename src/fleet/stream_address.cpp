@@ -126,4 +126,8 @@ std::string subject_of(const std::string& robot, const std::string& array, const
   return "dermis." + robot + "." + array + "." + what;
 }
 
+std::string health_subject_of(const std::string& robot) {
+  return "dermis." + robot + ".health";
+}
+
 }  // namespace dermis::fleet

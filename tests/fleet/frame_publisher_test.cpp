@@ -130,6 +130,20 @@ TEST_F(Publishing, begins_without_a_server_and_does_not_wait_for_it) {
   expect_same(stored(), frames);
 }
 
+TEST_F(Publishing, health_does_not_wait_for_a_server_and_frames_do_not_wait_for_it) {
+  const std::vector<RawFrame> frames = random_frames(100, 7);
+  const auto sender = publisher();
+  server->kill();
+  for (const RawFrame& frame : frames) {
+    sender->publish(0, frame);
+    sender->publish(RobotHealth{.live = "http://anna/"});
+  }
+  server->start();
+  while (sender->counts().frames < frames.size()) std::this_thread::sleep_for(milliseconds(50));
+  expect_same(stored(), frames);
+  EXPECT_EQ(sender->left_out(0), 0U);
+}
+
 TEST_F(Publishing, another_run_of_the_robot_goes_on_in_its_stream) {
   const std::vector<RawFrame> frames = random_frames(300, 4);
   for (std::size_t run = 0; run < 3; ++run) {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "dermis/fleet/frame_publisher.hpp"
 #include "dermis/fleet/frame_stream.hpp"
@@ -91,6 +92,35 @@ TEST_F(Fleet, the_hub_knows_its_robots) {
   EXPECT_GT(robots->front().bytes, 100U);
   const Nanos now = std::chrono::system_clock::now().time_since_epoch();
   EXPECT_LT(now - robots->front().last, Nanos(std::chrono::minutes(1)));
+}
+
+TEST_F(Fleet, the_hub_knows_how_its_robots_are) {
+  const RobotHealth health{.time = Nanos(1), .arrays = {{.name = "chest", .message = "healthy", .rate_hz = 200.0}}};
+  publisher->publish(health);
+  Result<std::vector<RobotState>> robots = keeper->robots();
+  for (int look = 0; look < 200 && !robots->front().health; ++look) {
+    std::this_thread::sleep_for(milliseconds(100));
+    robots = keeper->robots();
+    ASSERT_TRUE(robots) << robots.error().message;
+  }
+  ASSERT_TRUE(robots->front().health) << robots->front().health_error;
+  EXPECT_EQ(*robots->front().health, health);
+  const Nanos told = robots->front().health_time;
+  EXPECT_FALSE(robots->front().is_silent(told + std::chrono::seconds(1)));
+  EXPECT_TRUE(robots->front().is_silent(told + kSilentAfter + Nanos(1)));
+  EXPECT_TRUE(robots->front().is_silent(told - kSilentAfter - Nanos(1)));
+}
+
+TEST(FleetJson, tells_ages_and_arrays) {
+  RobotState anna{.name = "anna", .last = std::chrono::seconds(99), .health = RobotHealth{.live = "http://anna/"}};
+  anna.health->arrays = {{.name = "chest", .gain_change = 0.25}};
+  const std::string json =
+      fleet_to_json({"nats://hub", "no answer", {anna, {.name = "bob"}}}, std::chrono::seconds(100));
+  for (const char* part :
+       {R"("hub":"nats://hub")", R"("error":"no answer")", R"("age_s":1.0)", R"("health_age_s":null)",
+        R"("live":"http://anna/")", R"("silent":true)", R"("gain_change":0.25)", R"("name":"bob")"}) {
+    EXPECT_NE(json.find(part), std::string::npos) << part << " in " << json;
+  }
 }
 
 TEST_F(Fleet, a_robot_may_be_added_again) {

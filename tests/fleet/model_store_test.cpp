@@ -11,7 +11,7 @@
 
 #include "dermis/fleet/hub.hpp"
 #include "fleet/broker.hpp"
-#include "nats_server.hpp"
+#include "fleet_servers.hpp"
 
 namespace dermis::fleet {
 namespace {
@@ -145,15 +145,14 @@ TEST_F(Models, bounds_and_names_are_checked) {
 }
 
 TEST_F(Models, reach_a_robot_through_its_own_server_while_the_hub_is_there) {
-  const FleetPlan plan{.port = support::free_port(), .robots_port = support::free_port(), .robots = {"anna"}};
-  support::NatsServer other_hub(server_files(plan)->at("hub.conf"), plan.port);
-  FleetPlan on_robot = plan;
-  on_robot.port = support::free_port();
-  const support::NatsServer robot(server_files(on_robot)->at("anna.conf"), on_robot.port);
-  const auto of_hub = ModelStore::connect({other_hub.url()});
+  const auto servers = support::FleetServers::start({"anna", "bob"});
+  ASSERT_TRUE(servers) << servers.error().message;
+  const auto of_hub = ModelStore::connect((*servers)->operator_address());
   ASSERT_TRUE(of_hub) << of_hub.error().message;
-  const auto of_robot = ModelStore::connect({robot.url()});
+  const auto of_robot = ModelStore::connect((*servers)->robot_address("anna"));
   ASSERT_TRUE(of_robot) << of_robot.error().message;
+  const auto of_other = ModelStore::connect((*servers)->robot_address("bob"));
+  ASSERT_TRUE(of_other) << of_other.error().message;
   const std::string model = bytes_of(1'000'000, 1);
   ASSERT_TRUE((*of_hub)->push("anna", "chest", "m", model));
   auto manifest = (*of_robot)->manifest("anna", "chest");
@@ -165,7 +164,8 @@ TEST_F(Models, reach_a_robot_through_its_own_server_while_the_hub_is_there) {
   EXPECT_EQ(*(*of_robot)->fetch(**manifest), model);
   EXPECT_EQ((*of_robot)->push("anna", "chest", "m", model).error().message,
             "this is the server of robot 'anna'; models are pushed to the hub");
-  other_hub.kill();
+  EXPECT_FALSE((*of_other)->manifest("anna", "chest"));
+  (*servers)->hub().kill();
   const auto away = (*of_robot)->manifest("anna", "chest");
   ASSERT_FALSE(away);
   EXPECT_EQ(away.error().kind, ErrorKind::failed);

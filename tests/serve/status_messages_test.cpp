@@ -56,6 +56,27 @@ TEST(StatusMessages, what_is_not_known_is_not_a_number) {
   EXPECT_TRUE(std::isnan(message.supply_v));
 }
 
+TEST(StatusMessages, a_fleet_hears_of_faults_and_of_gains) {
+  const pipeline::Model model = support::hand_made_model(3, 4);
+  live::ArrayStatistics statistics;
+  statistics.source.rate_hz = 99.5;
+  statistics.source.lost_frames = 2;
+  statistics.faults = {{.kind = compensation::LineFaultKind::silent_row, .place = 1},
+                       {.kind = compensation::LineFaultKind::silent_column, .place = 1}};
+  fleet::ArrayHealth array{.name = "chest"};
+  fill_in(array, model, statistics,
+          {.comparisons = 500, .blocks = 60, .gain_spread = 0.2, .spread_sigma = 0.01, .calibrated_spread = 0.02});
+  const fleet::ArrayHealth expected{.name = "chest",
+                                    .level = fleet::ArrayHealth::Level::warning,
+                                    .message = "2 faults",
+                                    .rate_hz = 99.5,
+                                    .lost = 2,
+                                    .masked_taxels = 7,
+                                    .gain_change = 0.2,
+                                    .wants_calibration = true};
+  EXPECT_EQ(array, expected);
+}
+
 TEST(StatusMessages, an_array_without_a_model_is_to_be_calibrated) {
   const pipeline::Model model = calibration::uncalibrated_model(support::hand_made_model(3, 4).array);
   const messages::Diagnosis diagnosis = diagnosis_message("chest", model, {});

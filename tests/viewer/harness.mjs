@@ -53,9 +53,9 @@ export function freePort() {
   });
 }
 
-/** `dermis serve` in a folder and with these arguments, once it says where it serves. */
-async function serve(binary, folder, ...command) {
-  const server = spawn(binary, ["serve", ...command], { stdio: ["ignore", "pipe", "pipe"], cwd: folder });
+/** A command that serves a page, in a folder, once it says where it serves. */
+async function start(binary, folder, ...command) {
+  const server = spawn(binary, command, { stdio: ["ignore", "pipe", "pipe"], cwd: folder });
   const ended = new Promise((resolve) => server.on("exit", resolve));
   let said = "";
   const url = await new Promise((found, reject) => {
@@ -66,7 +66,7 @@ async function serve(binary, folder, ...command) {
     };
     server.stdout.on("data", hear);
     server.stderr.on("data", hear);
-    ended.then((status) => reject(new Error(`serve ended with ${status}: ${said}`)));
+    ended.then((status) => reject(new Error(`${command[0]} ended with ${status}: ${said}`)));
   });
   const stop = () => {
     server.kill("SIGINT");
@@ -133,8 +133,12 @@ export class Bench {
     execFileSync(this.binary, command, { stdio: ["ignore", "ignore", "pipe"], timeout: 120000 });
   }
 
+  start(...command) {
+    return start(this.binary, this.folder, ...command);
+  }
+
   serve(...command) {
-    return serve(this.binary, this.folder, ...command);
+    return this.start("serve", ...command);
   }
 
   close() {
@@ -210,7 +214,7 @@ export function useEmptyFolder() {
 }
 
 /** `dermis serve` in that folder, on any port. */
-export const serveEmpty = (...command) => serve(resolve(process.argv[2]), folder, "--port", "0", ...command);
+export const serveEmpty = (...command) => start(resolve(process.argv[2]), folder, "serve", "--port", "0", ...command);
 
 /** Becomes true in the page. */
 export async function eventually(page, check, argument, limitMs = WAIT_MS) {

@@ -12,10 +12,13 @@ export class KeyedRows<Item> {
   readonly #list: HTMLElement;
   readonly #keyOf: (item: Item) => string;
   readonly #make: (item: Item) => Row<Item>;
+  readonly #before: readonly Element[];
   #rows = new Map<string, Row<Item>>();
 
+  /** What the list has before stays before the rows. */
   constructor(list: HTMLElement, keyOf: (item: Item) => string, make: (item: Item) => Row<Item>) {
     this.#list = list;
+    this.#before = [...list.children];
     this.#keyOf = keyOf;
     this.#make = make;
   }
@@ -24,8 +27,10 @@ export class KeyedRows<Item> {
     const before = this.#rows;
     this.#rows = new Map(items.map((item) => [this.#keyOf(item), before.get(this.#keyOf(item)) ?? this.#make(item)]));
     const rows = [...this.#rows.values()];
-    const isSame = rows.length === before.size && rows.every(({ element }, at) => this.#list.children[at] === element);
-    if (!isSame) this.#list.replaceChildren(...rows.map(({ element }) => element));
+    const first = this.#before.length;
+    const isSame =
+      rows.length === before.size && rows.every(({ element }, at) => this.#list.children[first + at] === element);
+    if (!isSame) this.#list.replaceChildren(...this.#before, ...rows.map(({ element }) => element));
     for (const item of items) this.#rows.get(this.#keyOf(item))!.show?.(item);
   }
 }

@@ -11,6 +11,7 @@
 
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
+#include "dermis/fleet/robot_health.hpp"
 #include "dermis/fleet/stream_address.hpp"
 #include "dermis/recordings/suit_recording.hpp"
 
@@ -47,7 +48,12 @@ class FramePublisher {
   /// Never waits for the server. One thread for each array.
   void publish(std::size_t array, const RawFrame& frame);
 
+  /// Never waits. One that a newer one follows before it is sent is not sent, nor is one that the server did not take.
+  void publish(const RobotHealth& health);
+
   [[nodiscard]] PublisherCounts counts() const noexcept;
+  /// Of an array, as PublisherCounts has it of all.
+  [[nodiscard]] std::uint64_t left_out(std::size_t array) const noexcept;
 
  private:
   class Implementation;

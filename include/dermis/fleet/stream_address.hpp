@@ -61,5 +61,7 @@ struct StreamAddress {
 [[nodiscard]] std::string stream_of(const std::string& robot);
 /// "dermis.ROBOT.ARRAY.frames"
 [[nodiscard]] std::string subject_of(const std::string& robot, const std::string& array, const char* what);
+/// "dermis.ROBOT.health"
+[[nodiscard]] std::string health_subject_of(const std::string& robot);
 
 }  // namespace dermis::fleet

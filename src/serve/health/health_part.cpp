@@ -43,6 +43,12 @@ class HealthPart final : public Part {
     }
   }
 
+  void report(fleet::RobotHealth& health) const override {
+    for (std::size_t k = 0; k < host_.suit.arrays.size(); ++k) {
+      fill_in(health.arrays[k], *host_.models.of(k), host_.live.statistics(k), ageing_.evidence(k));
+    }
+  }
+
  private:
   void publish_statistics() {
     if (!statistics_.is_wanted()) return;

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "serve/health/status_messages.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <utility>
@@ -16,6 +17,14 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 double seconds(Nanos span) {
   return std::chrono::duration<double>(span).count();
+}
+
+/// Lines that cross share taxels, so these are at most so many.
+std::uint64_t masked_taxels(const pipeline::Model& model, const std::vector<compensation::LineFault>& faults) {
+  const std::vector<std::uint8_t>& dead = model.networks.dead;
+  auto masked = static_cast<std::uint64_t>(std::count_if(dead.begin(), dead.end(), [](auto one) { return one != 0; }));
+  for (const compensation::LineFault& fault : faults) masked += masked_taxel_count(fault, model.array);
+  return std::min<std::uint64_t>(masked, model.array.rows * model.array.cols);
 }
 
 }  // namespace
@@ -66,6 +75,20 @@ messages::Diagnosis diagnosis_message(const std::string& name, const pipeline::M
     }
   }
   return diagnosis;
+}
+
+void fill_in(fleet::ArrayHealth& array, const pipeline::Model& model, const live::ArrayStatistics& statistics,
+             const health::AgeingEvidence& ageing) {
+  const messages::Diagnosis diagnosis = diagnosis_message(array.name, model, statistics, ageing);
+  const bool is_uncalibrated = calibration::is_uncalibrated(model);
+  array.level = static_cast<fleet::ArrayHealth::Level>(diagnosis.level);
+  array.message = diagnosis.message;
+  array.rate_hz = statistics.source.rate_hz;
+  array.lost = statistics.source.lost_frames;
+  array.wants_calibration = is_uncalibrated || ageing.has_aged();
+  if (is_uncalibrated) return;
+  array.masked_taxels = masked_taxels(model, statistics.faults);
+  array.gain_change = ageing.gain_spread;
 }
 
 }  // namespace dermis::serve

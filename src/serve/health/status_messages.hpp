@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "dermis/fleet/robot_health.hpp"
 #include "dermis/health/ageing_monitor.hpp"
 #include "dermis/live/live_suit.hpp"
 #include "dermis/messages/live_messages.hpp"
@@ -19,5 +20,9 @@ namespace dermis::serve {
 [[nodiscard]] messages::Diagnosis diagnosis_message(const std::string& array, const pipeline::Model& model,
                                                     const live::ArrayStatistics& statistics,
                                                     const health::AgeingEvidence& ageing = {});
+
+/// The same for a fleet: all that these tell of an array.
+void fill_in(fleet::ArrayHealth& array, const pipeline::Model& model, const live::ArrayStatistics& statistics,
+             const health::AgeingEvidence& ageing);
 
 }  // namespace dermis::serve

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dermis/core/result.hpp"
+#include "dermis/fleet/robot_health.hpp"
 #include "dermis/live/live_suit.hpp"
 #include "dermis/messages/live_messages.hpp"
 #include "dermis/recognition/classes.hpp"
@@ -55,6 +56,8 @@ class Part {
   }
   /// Adds the problems of the arrays.
   virtual void diagnose(std::vector<messages::Diagnosis>& /*diagnoses*/) const {}
+  /// Fills in what the part knows of the arrays, which are all there.
+  virtual void report(fleet::RobotHealth& /*health*/) const {}
   /// After the last frame.
   virtual void finish() {}
 };

@@ -49,6 +49,10 @@ std::vector<messages::Diagnosis> PartList::diagnoses() const {
   return diagnoses;
 }
 
+void PartList::report(fleet::RobotHealth& health) const {
+  for (const auto& part : parts_) part->report(health);
+}
+
 void PartList::finish() const {
   for (const auto& part : parts_) part->finish();
 }

@@ -23,6 +23,7 @@ class PartList {
   [[nodiscard]] Status use_classes(std::size_t array, const recognition::Classes& classes) const;
   /// From the last part to the first, so that arrays come before threats (docs/stream.md).
   [[nodiscard]] std::vector<messages::Diagnosis> diagnoses() const;
+  void report(fleet::RobotHealth& health) const;
   void finish() const;
 
   [[nodiscard]] std::vector<stream::Service> services() const;

@@ -1,9 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "dermis/calibration/uncalibrated_model.hpp"
 #include "dermis/fleet/frame_publisher.hpp"
 #include "serve/parts/part_makers.hpp"
 #include "serve/recording/recorded_arrays.hpp"
@@ -11,17 +20,57 @@
 namespace dermis::serve {
 namespace {
 
-/// Publishes the frames of the arrays for a fleet.
+/// The address of the page, as others reach it; a server of this machine alone has that of the machine for itself.
+std::string live_address(const Host& host) {
+  std::string name = host.options.server.host;
+  if (name == "0.0.0.0" || name == "::") {
+    std::array<char, 256> own{};
+    if (gethostname(own.data(), own.size() - 1) == 0) name = own.data();
+  }
+  if (name.find(':') != std::string::npos) name = "[" + name + "]";
+  return "http://" + name + ":" + std::to_string(host.server.port()) + "/";
+}
+
+/// "chest.safetensors"; a new one has no file that the suit knows of.
+std::string model_name(const Host& host, std::size_t array) {
+  if (calibration::is_uncalibrated(*host.models.of(array))) return "";
+  if (host.models.is_new(array)) return "new";
+  return std::filesystem::path(host.suit.arrays[array].model_path).filename().string();
+}
+
+/// Publishes the frames of the arrays for a fleet, and how the arrays are.
 class Publishing final : public Part {
  public:
-  explicit Publishing(std::unique_ptr<fleet::FramePublisher> publisher) : publisher_(std::move(publisher)) {}
+  Publishing(Host& host, std::unique_ptr<fleet::FramePublisher> publisher)
+      : host_(host), live_(live_address(host)), publisher_(std::move(publisher)) {}
 
   void keep(std::size_t array, const RawFrame& frame) override { publisher_->publish(array, frame); }
+  void tick(std::int64_t tick) override;
   void diagnose(std::vector<messages::Diagnosis>& diagnoses) const override;
+  void report(fleet::RobotHealth& health) const override;
 
  private:
+  Host& host_;
+  const std::string live_;
   const std::unique_ptr<fleet::FramePublisher> publisher_;
 };
+
+void Publishing::tick(std::int64_t tick) {
+  if (tick % kTicksPerSecond != 7) return;
+  fleet::RobotHealth health{.time = std::chrono::system_clock::now().time_since_epoch(), .live = live_};
+  for (std::size_t k = 0; k < host_.suit.arrays.size(); ++k) {
+    const ArrayDescription& description = host_.models.of(k)->array;
+    health.arrays.push_back({.name = host_.suit.arrays[k].name,
+                             .shape = {description.rows, description.cols},
+                             .model = model_name(host_, k)});
+  }
+  host_.parts.report(health);
+  publisher_->publish(health);
+}
+
+void Publishing::report(fleet::RobotHealth& health) const {
+  for (std::size_t k = 0; k < health.arrays.size(); ++k) health.arrays[k].left_out = publisher_->left_out(k);
+}
 
 void Publishing::diagnose(std::vector<messages::Diagnosis>& diagnoses) const {
   using Level = messages::Diagnosis::Level;
@@ -46,7 +95,7 @@ Result<std::unique_ptr<Part>> make_publishing(Host& host) {
   Result<std::unique_ptr<fleet::FramePublisher>> publisher =
       fleet::FramePublisher::create(recorded_arrays(host.suit, host.models), std::move(options));
   if (!publisher) return publisher.error();
-  return std::unique_ptr<Part>(std::make_unique<Publishing>(*std::move(publisher)));
+  return std::unique_ptr<Part>(std::make_unique<Publishing>(host, *std::move(publisher)));
 }
 
 }  // namespace dermis::serve
