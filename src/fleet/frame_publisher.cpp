@@ -36,17 +36,20 @@ constexpr std::chrono::seconds kLastWords{2};
 struct PublishedArray {
   PublishedArray(const std::string& robot, const std::string& run, recordings::RecordedArray array)
       : frames(subject_of(robot, array.name, "frames")),
+        contacts(subject_of(robot, array.name, "contacts")),
         description(subject_of(robot, array.name, "description")),
         first_id(run + array.name + "-"),
         writer(std::move(array)) {}
 
   std::string frames;
+  std::string contacts;
   std::string description;
   std::string first_id;
   recordings::FrameBatchWriter writer;
   std::uint64_t next_id = 0;
   Clock::time_point described{};  ///< When the server has stored the description; 0: never.
   Clock::time_point begun = Clock::now();
+  Clock::time_point contacts_begun = Clock::now();
   std::atomic<std::uint64_t> refused = 0;  ///< Frames that the server will never take.
 
   [[nodiscard]] std::uint64_t left_out() const noexcept { return refused + writer.left_out(); }
@@ -69,6 +72,9 @@ class FramePublisher::Implementation {
   void publish(std::size_t array, const RawFrame& frame) { arrays_[array]->writer.add(frame); }
   void publish(const RobotHealth& health);
   [[nodiscard]] PublisherCounts counts() const noexcept;
+  void publish_contacts(std::size_t array, Nanos time, std::span<const std::uint8_t> message) {
+    arrays_[array]->writer.add_contacts(time, message);
+  }
   [[nodiscard]] std::uint64_t left_out(std::size_t array) const noexcept { return arrays_[array]->left_out(); }
 
  private:
@@ -77,6 +83,7 @@ class FramePublisher::Implementation {
 
   void work(std::size_t first, std::size_t stride, const std::stop_token& stop);
   [[nodiscard]] bool send_waiting(PublishedArray& array, bool unfinished);
+  [[nodiscard]] bool send_contacts(PublishedArray& array, bool unfinished);
   [[nodiscard]] bool describe(PublishedArray& array);
   void send_health();
   [[nodiscard]] Fate store(const std::string& subject, const std::string& id, std::span<const std::uint8_t> bytes);
@@ -137,7 +144,7 @@ void FramePublisher::Implementation::work(std::size_t first, std::size_t stride,
   while (!is_last_round) {
     is_last_round = stop.stop_requested();
     for (std::size_t i = first; i < arrays_.size(); i += stride) {
-      if (!send_waiting(*arrays_[i], is_last_round)) return;
+      if (!send_waiting(*arrays_[i], is_last_round) || !send_contacts(*arrays_[i], is_last_round)) return;
     }
     if (first == 0) send_health();
     stopped.wait_for(lock, stop, kLookEvery, [] { return false; });
@@ -159,6 +166,20 @@ bool FramePublisher::Implementation::send_waiting(PublishedArray& array, bool un
     }
     ++batches_;
     frames_ += batch->frames;
+    bytes_ += batch->bytes.size();
+  }
+  return true;
+}
+
+/// The same for contacts.
+bool FramePublisher::Implementation::send_contacts(PublishedArray& array, bool unfinished) {
+  bool is_due = Clock::now() - array.contacts_begun > recordings::FrameBatchWriter::kLongest;
+  while (const std::optional<recordings::FrameBatch> batch = array.writer.take_contacts(unfinished || is_due)) {
+    is_due = false;
+    array.contacts_begun = Clock::now();
+    if (is_over() || !describe(array)) return false;
+    const std::string id = array.first_id + std::to_string(array.next_id++);
+    if (store(array.contacts, id, batch->bytes) == Fate::late) return false;
     bytes_ += batch->bytes.size();
   }
   return true;
@@ -269,6 +290,10 @@ Result<std::unique_ptr<FramePublisher>> FramePublisher::create(std::vector<recor
 
 void FramePublisher::publish(std::size_t array, const RawFrame& frame) {
   implementation_->publish(array, frame);
+}
+
+void FramePublisher::publish_contacts(std::size_t array, Nanos time, std::span<const std::uint8_t> message) {
+  implementation_->publish_contacts(array, time, message);
 }
 
 void FramePublisher::publish(const RobotHealth& health) {

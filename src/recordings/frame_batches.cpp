@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "dermis/messages/live_messages.hpp"
 #include "recordings/compression.hpp"
 #include "recordings/mcap_batch.hpp"
 #include "recordings/recording_format.hpp"
@@ -29,6 +30,71 @@ struct WaitingBatch {
   std::size_t frames = 0;
 };
 
+/// Batches that wait to be taken, and the open one. One thread adds, another takes.
+class BatchQueue {
+ public:
+  /// Before the first is added.
+  [[nodiscard]] BatchBuilder& builder() noexcept { return open_; }
+
+  [[nodiscard]] bool is_full() {
+    const std::scoped_lock lock(mutex_);
+    return waiting_bytes_ >= FrameBatchWriter::kMostWaitingBytes;
+  }
+  /// `write` adds the messages of one frame.
+  template <typename Write>
+  void add(std::uint64_t log_time, const Write& write);
+  [[nodiscard]] std::optional<FrameBatch> take(bool unfinished);
+
+ private:
+  void seal();
+  [[nodiscard]] std::optional<WaitingBatch> next(bool unfinished);
+
+  std::mutex mutex_;  ///< Guards all but the compressor.
+  BatchBuilder open_;
+  std::size_t open_frames_ = 0;
+  std::deque<WaitingBatch> waiting_;
+  std::size_t waiting_bytes_ = 0;
+  Compressor compressor_{McapCompression::zstd, kZstdLevel};  ///< The thread that takes uses it.
+};
+
+template <typename Write>
+void BatchQueue::add(std::uint64_t log_time, const Write& write) {
+  const std::scoped_lock lock(mutex_);
+  constexpr auto kLongest = static_cast<std::uint64_t>(FrameBatchWriter::kLongest.count());
+  if (open_frames_ > 0 && log_time > open_.batch().first_time + kLongest) seal();
+  write(open_);
+  ++open_frames_;
+  if (open_.batch().chunk.size() >= kBatchBytes) seal();
+}
+
+/// The open batch waits to be taken.
+void BatchQueue::seal() {
+  waiting_bytes_ += open_.batch().chunk.size();
+  waiting_.push_back({std::move(open_.batch()), std::exchange(open_frames_, 0)});
+  open_.batch() = waiting_.back().batch.empty_like();
+}
+
+std::optional<WaitingBatch> BatchQueue::next(bool unfinished) {
+  const std::scoped_lock lock(mutex_);
+  if (waiting_.empty() && unfinished && open_frames_ > 0) seal();
+  if (waiting_.empty()) return std::nullopt;
+  WaitingBatch taken = std::move(waiting_.front());
+  waiting_.pop_front();
+  waiting_bytes_ -= taken.batch.chunk.size();
+  return taken;
+}
+
+std::optional<FrameBatch> BatchQueue::take(bool unfinished) {
+  const std::optional<WaitingBatch> taken = next(unfinished);
+  if (!taken) return std::nullopt;
+  FrameBatch batch{Nanos(static_cast<std::int64_t>(taken->batch.first_time)),
+                   Nanos(static_cast<std::int64_t>(taken->batch.last_time)),
+                   taken->frames,
+                   {}};
+  append_chunk(batch.bytes, taken->batch, McapCompression::zstd, compressor_);
+  return batch;
+}
+
 }  // namespace
 
 class FrameBatchWriter::Implementation {
@@ -38,38 +104,40 @@ class FrameBatchWriter::Implementation {
   [[nodiscard]] std::span<const std::uint8_t> description() const noexcept { return description_; }
   [[nodiscard]] std::uint64_t left_out() const noexcept { return left_out_; }
   void add(const RawFrame& frame);
-  [[nodiscard]] std::optional<FrameBatch> take(bool unfinished);
+  void add_contacts(Nanos time, std::span<const std::uint8_t> message);
+  [[nodiscard]] std::optional<FrameBatch> take(bool unfinished) { return frames_.take(unfinished); }
+  [[nodiscard]] std::optional<FrameBatch> take_contacts(bool unfinished) { return contacts_.take(unfinished); }
 
  private:
-  void seal();
-  [[nodiscard]] std::optional<WaitingBatch> next(bool unfinished);
-
-  std::mutex mutex_;  ///< Guards the next four.
-  BatchBuilder open_;
-  std::size_t open_frames_ = 0;
-  std::deque<WaitingBatch> waiting_;
-  std::size_t waiting_bytes_ = 0;
+  BatchQueue frames_;
+  BatchQueue contacts_;
+  std::uint16_t contacts_channel_ = 0;
+  std::uint32_t contacts_sequence_ = 0;
 
   WrittenArray array_;             ///< The thread that adds uses it.
   std::uint32_t lost_before_ = 0;  ///< Frames that were left out since the last one.
   std::atomic<std::uint64_t> left_out_ = 0;
-  Compressor compressor_{McapCompression::zstd, kZstdLevel};  ///< The thread that takes uses it.
   Bytes description_;
 };
 
 FrameBatchWriter::Implementation::Implementation(RecordedArray array) : array_(std::move(array)) {
   const RecordedArray& described = array_.description();
-  open_.begin_file();
-  open_.add_metadata(metadata_of(described));
-  if (!described.array_toml.empty()) open_.add_attachment({kArrayAttachment, "application/toml", described.array_toml});
-  array_.declare(open_);
-  description_ = open_.batch().records;
-  open_.batch().clear();
+  BatchBuilder& builder = frames_.builder();
+  builder.begin_file();
+  builder.add_metadata(metadata_of(described));
+  if (!described.array_toml.empty()) {
+    builder.add_attachment({kArrayAttachment, "application/toml", described.array_toml});
+  }
+  array_.declare(builder);
+  const messages::MessageType& type = messages::contacts_type();
+  contacts_channel_ = builder.add_channel({"/contacts", "cdr", type.name, "ros2msg", type.definition});
+  description_ = builder.batch().records;
+  builder.batch().clear();
+  contacts_.builder() = builder;
 }
 
 void FrameBatchWriter::Implementation::add(const RawFrame& frame) {
-  const std::scoped_lock lock(mutex_);
-  if (waiting_bytes_ >= kMostWaitingBytes) {
+  if (frames_.is_full()) {
     ++left_out_;
     lost_before_ += frame.acquisition.lost_before + 1;
     return;
@@ -81,39 +149,15 @@ void FrameBatchWriter::Implementation::add(const RawFrame& frame) {
   } else {
     array_.encode(frame, nullptr);
   }
-  const std::uint64_t begun = open_.batch().first_time;
-  if (open_frames_ > 0 && log_time_of(frame.time) > begun + static_cast<std::uint64_t>(kLongest.count())) seal();
-  array_.add_to(open_);
-  ++open_frames_;
-  if (open_.batch().chunk.size() >= kBatchBytes) seal();
+  frames_.add(log_time_of(frame.time), [this](BatchBuilder& batch) { array_.add_to(batch); });
 }
 
-/// The open batch waits to be taken.
-void FrameBatchWriter::Implementation::seal() {
-  waiting_bytes_ += open_.batch().chunk.size();
-  waiting_.push_back({std::move(open_.batch()), std::exchange(open_frames_, 0)});
-  open_.batch() = waiting_.back().batch.empty_like();
-}
-
-std::optional<WaitingBatch> FrameBatchWriter::Implementation::next(bool unfinished) {
-  const std::scoped_lock lock(mutex_);
-  if (waiting_.empty() && unfinished && open_frames_ > 0) seal();
-  if (waiting_.empty()) return std::nullopt;
-  WaitingBatch taken = std::move(waiting_.front());
-  waiting_.pop_front();
-  waiting_bytes_ -= taken.batch.chunk.size();
-  return taken;
-}
-
-std::optional<FrameBatch> FrameBatchWriter::Implementation::take(bool unfinished) {
-  const std::optional<WaitingBatch> taken = next(unfinished);
-  if (!taken) return std::nullopt;
-  FrameBatch batch{Nanos(static_cast<std::int64_t>(taken->batch.first_time)),
-                   Nanos(static_cast<std::int64_t>(taken->batch.last_time)),
-                   taken->frames,
-                   {}};
-  append_chunk(batch.bytes, taken->batch, McapCompression::zstd, compressor_);
-  return batch;
+void FrameBatchWriter::Implementation::add_contacts(Nanos time, std::span<const std::uint8_t> message) {
+  if (contacts_.is_full()) return;
+  const std::uint64_t log_time = log_time_of(time);
+  contacts_.add(log_time, [&](BatchBuilder& batch) {
+    batch.add_message({contacts_channel_, contacts_sequence_++, log_time, log_time, message});
+  });
 }
 
 FrameBatchWriter::FrameBatchWriter(RecordedArray array)
@@ -129,12 +173,20 @@ void FrameBatchWriter::add(const RawFrame& frame) {
   implementation_->add(frame);
 }
 
+void FrameBatchWriter::add_contacts(Nanos time, std::span<const std::uint8_t> message) {
+  implementation_->add_contacts(time, message);
+}
+
 std::uint64_t FrameBatchWriter::left_out() const noexcept {
   return implementation_->left_out();
 }
 
 std::optional<FrameBatch> FrameBatchWriter::take(bool unfinished) {
   return implementation_->take(unfinished);
+}
+
+std::optional<FrameBatch> FrameBatchWriter::take_contacts(bool unfinished) {
+  return implementation_->take_contacts(unfinished);
 }
 
 Result<ReadBatch> read_frame_batch(std::span<const std::uint8_t> description, std::span<const std::uint8_t> batch) {

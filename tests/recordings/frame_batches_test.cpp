@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "dermis/recordings/recording.hpp"
 #include "support/mutations.hpp"
@@ -50,6 +53,27 @@ TEST(FrameBatches, every_frame_reads_back_with_the_same_bits) {
     for (const RawFrame& frame : read->frames) support::expect_same_frame(frame, frames[next++]);
   }
   EXPECT_EQ(next, frames.size());
+}
+
+TEST(FrameBatches, contacts_have_batches_of_their_own) {
+  FrameBatchWriter writer(kArray);
+  for (const RawFrame& frame : frames_every(std::chrono::milliseconds(7), 10, 9)) {
+    writer.add(frame);
+    writer.add_contacts(frame.time, std::vector<std::uint8_t>(100, 7));
+  }
+  const std::optional<FrameBatch> contacts = writer.take_contacts(true);
+  ASSERT_TRUE(contacts);
+  EXPECT_EQ(contacts->frames, 10U);
+  EXPECT_EQ(contacts->first, kStart);
+  EXPECT_LT(contacts->bytes.size(), 1000U);
+  EXPECT_FALSE(writer.take_contacts(true));
+  const std::optional<FrameBatch> frames = writer.take(true);
+  ASSERT_TRUE(frames);
+  std::vector<std::uint8_t> both = contacts->bytes;
+  both.insert(both.end(), frames->bytes.begin(), frames->bytes.end());
+  const Result<ReadBatch> read = read_frame_batch(writer.description(), both);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->frames.size(), 10U);
 }
 
 TEST(FrameBatches, a_batch_spans_a_tenth_of_a_second_at_most) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -48,11 +49,14 @@ class FramePublisher {
   /// Never waits for the server. One thread for each array.
   void publish(std::size_t array, const RawFrame& frame);
 
+  /// Contacts of the array, as messages::encode_contacts() has them. Never waits. One thread for each array.
+  void publish_contacts(std::size_t array, Nanos time, std::span<const std::uint8_t> message);
+
   /// Never waits. One that a newer one follows before it is sent is not sent, nor is one that the server did not take.
   void publish(const RobotHealth& health);
 
   [[nodiscard]] PublisherCounts counts() const noexcept;
-  /// Of an array, as PublisherCounts has it of all.
+  /// Frames of one array that were left out, as PublisherCounts counts those of all.
   [[nodiscard]] std::uint64_t left_out(std::size_t array) const noexcept;
 
  private:

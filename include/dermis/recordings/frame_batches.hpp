@@ -17,7 +17,7 @@
 /// followed by batches, is an MCAP file that was cut off before its index (docs/recordings.md).
 namespace dermis::recordings {
 
-/// Frames for the network.
+/// Frames, or contacts of frames, for the network.
 struct FrameBatch {
   Nanos first{};  ///< Time of its first frame.
   Nanos last{};
@@ -41,9 +41,13 @@ class FrameBatchWriter {
   /// Never waits. A frame for which there is no room is left out, and the next one says how many before it are lost.
   void add(const RawFrame& frame);
   [[nodiscard]] std::uint64_t left_out() const noexcept;
+  /// A message dermis_msgs/msg/Contacts of the array, for batches of their own. Never waits. One for which there is no
+  /// room is left out. Another thread than that of add() may call it.
+  void add_contacts(Nanos time, std::span<const std::uint8_t> message);
 
   /// The oldest batch that is whole; with `unfinished`, the begun one, too. Empty where there is none.
   [[nodiscard]] std::optional<FrameBatch> take(bool unfinished);
+  [[nodiscard]] std::optional<FrameBatch> take_contacts(bool unfinished);
 
  private:
   class Implementation;

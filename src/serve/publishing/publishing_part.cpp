@@ -2,10 +2,12 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -16,6 +18,7 @@
 #include "dermis/fleet/frame_publisher.hpp"
 #include "serve/parts/part_makers.hpp"
 #include "serve/recording/recorded_arrays.hpp"
+#include "serve/topics/contacts_in_suit.hpp"
 
 namespace dermis::serve {
 namespace {
@@ -38,13 +41,28 @@ std::string model_name(const Host& host, std::size_t array) {
   return std::filesystem::path(host.suit.arrays[array].model_path).filename().string();
 }
 
+/// Contacts that last are published so often; every frame is there, too.
+constexpr Nanos kContactsEvery = std::chrono::milliseconds(40);
+
+/// The contacts of an array, on its thread.
+struct TouchedArray {
+  TouchedArray(const ServedSuit& suit, std::size_t array) : contacts(suit, array) {}
+
+  ContactsInSuit contacts;
+  Nanos published{};
+  std::vector<std::uint8_t> message{};
+};
+
 /// Publishes the frames of the arrays for a fleet, and how the arrays are.
 class Publishing final : public Part {
  public:
   Publishing(Host& host, std::unique_ptr<fleet::FramePublisher> publisher)
-      : host_(host), live_(live_address(host)), publisher_(std::move(publisher)) {}
+      : host_(host), live_(live_address(host)), publisher_(std::move(publisher)) {
+    for (std::size_t k = 0; k < host.suit.arrays.size(); ++k) contacts_.emplace_back(host.suit, k);
+  }
 
   void keep(std::size_t array, const RawFrame& frame) override { publisher_->publish(array, frame); }
+  void hear(const live::ArrayResult& result) override;
   void tick(std::int64_t tick) override;
   void diagnose(std::vector<messages::Diagnosis>& diagnoses) const override;
   void report(fleet::RobotHealth& health) const override;
@@ -52,8 +70,23 @@ class Publishing final : public Part {
  private:
   Host& host_;
   const std::string live_;
+  std::deque<TouchedArray> contacts_;
   const std::unique_ptr<fleet::FramePublisher> publisher_;
 };
+
+void Publishing::hear(const live::ArrayResult& result) {
+  const std::vector<Contact>& contacts = result.report.contacts;
+  if (contacts.empty()) return;
+  TouchedArray& array = contacts_[result.array];
+  const bool is_news = std::any_of(contacts.begin(), contacts.end(),
+                                   [](const Contact& contact) { return contact.phase != ContactPhase::held; });
+  const Nanos since = result.report.time - array.published;
+  if (!is_news && since >= Nanos{} && since < kContactsEvery) return;
+  array.published = result.report.time;
+  array.contacts.take(result);
+  array.contacts.encode(result, array.message);
+  publisher_->publish_contacts(result.array, result.report.time, array.message);
+}
 
 void Publishing::tick(std::int64_t tick) {
   if (tick % kTicksPerSecond != 7) return;
