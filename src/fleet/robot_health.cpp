@@ -44,7 +44,7 @@ std::string shown_text_at(const Json& json, const char* key) {
   return one_line(without_turns(std::move(text)));
 }
 
-/// Of HTTP, with neither user nor query.
+/// An address of HTTP that has neither user nor query; otherwise empty.
 std::string web_address_at(const Json& json, const char* key) {
   std::string text = text_at(json, key);
   const bool is_web = text.starts_with("http://") || text.starts_with("https://");

@@ -108,7 +108,7 @@ function remarksOn(robot: RobotState): string {
   return [...(robot.health_error === "" ? [] : [robot.health_error]), ...robot.arrays.flatMap(of)].join("; ");
 }
 
-/** What a user looks for: words in names and remarks, and one kind of robots. */
+/** The robots that a user looks for: words in names and remarks, and one kind of robots. */
 export interface Wanted {
   readonly words: string;
   readonly kind: Kind;
@@ -140,7 +140,7 @@ export interface Order {
   readonly descends: boolean;
 }
 
-/** What is known comes before what is not, whichever way the order is. */
+/** Known values come before unknown ones, whichever way the order is. */
 const VALUES: Readonly<Record<SortKey, (robot: Robot) => number>> = {
   state: ({ severity }) => severity,
   robot: () => 0,
