@@ -18,6 +18,7 @@
 #include "dermis/fleet/model_store.hpp"
 #include "dermis/fleet/server_files.hpp"
 #include "dermis/pipeline/model.hpp"
+#include "fleet_connection.hpp"
 #include "fleet_robots.hpp"
 #include "status_line.hpp"
 
@@ -36,14 +37,6 @@ struct AddOptions {
   std::vector<std::string> robots;
 };
 
-/// A Hub, a JobQueue or a ModelStore.
-template <typename Served>
-Result<std::unique_ptr<Served>> connect(const std::string& text) {
-  const Result<fleet::BrokerAddress> address = fleet::parse_broker_address(text);
-  if (!address) return address.error();
-  return Served::connect(*address);
-}
-
 Status init(const InitOptions& options) {
   const Result<std::vector<std::string>> written = fleet::write_server_files(options.plan, options.out);
   if (!written) return written.error();
@@ -53,7 +46,7 @@ Status init(const InitOptions& options) {
 }
 
 Status add(const AddOptions& options) {
-  const Result<std::unique_ptr<fleet::Hub>> hub = connect<fleet::Hub>(options.hub);
+  const Result<std::unique_ptr<fleet::Hub>> hub = connect_fleet<fleet::Hub>(options.hub);
   if (!hub) return hub.error();
   for (const std::string& robot : options.robots) {
     if (Status added = (*hub)->add_robot(robot); !added) return added;
@@ -70,7 +63,7 @@ struct SubmitOptions {
 Status submit(const SubmitOptions& options) {
   const Result<std::vector<fleet::Job>> jobs = fleet::read_jobs(options.jobs);
   if (!jobs) return jobs.error();
-  const Result<std::unique_ptr<fleet::JobQueue>> queue = connect<fleet::JobQueue>(options.hub);
+  const Result<std::unique_ptr<fleet::JobQueue>> queue = connect_fleet<fleet::JobQueue>(options.hub);
   if (!queue) return queue.error();
   for (std::size_t i = 0; i < jobs->size(); ++i) {
     const Status submitted = (*queue)->submit((*jobs)[i]);
@@ -82,7 +75,7 @@ Status submit(const SubmitOptions& options) {
 }
 
 Status show_jobs(const std::string& text) {
-  const Result<std::unique_ptr<fleet::JobQueue>> queue = connect<fleet::JobQueue>(text);
+  const Result<std::unique_ptr<fleet::JobQueue>> queue = connect_fleet<fleet::JobQueue>(text);
   if (!queue) return queue.error();
   const Result<fleet::JobCounts> counts = (*queue)->counts();
   if (!counts) return counts.error();
@@ -112,7 +105,7 @@ Status for_arrays(const ModelOptions& options, const Use& use) {
       if (Status good = fleet::check_name("--for", name); !good) return good;
     }
   }
-  const Result<std::unique_ptr<fleet::ModelStore>> store = connect<fleet::ModelStore>(options.hub);
+  const Result<std::unique_ptr<fleet::ModelStore>> store = connect_fleet<fleet::ModelStore>(options.hub);
   if (!store) return store.error();
   for (const auto& [robot, array] : places) {
     const Result<fleet::ModelManifest> manifest = use(**store, robot, array);
@@ -142,7 +135,7 @@ Status roll_back(const ModelOptions& options) {
 }
 
 Status show_models(const std::string& text) {
-  const Result<std::unique_ptr<fleet::ModelStore>> store = connect<fleet::ModelStore>(text);
+  const Result<std::unique_ptr<fleet::ModelStore>> store = connect_fleet<fleet::ModelStore>(text);
   if (!store) return store.error();
   const Result<std::vector<fleet::ModelManifest>> manifests = (*store)->all();
   if (!manifests) return manifests.error();

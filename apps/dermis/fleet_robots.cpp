@@ -16,6 +16,7 @@
 
 #include "dermis/fleet/hub.hpp"
 #include "dermis/stream/server.hpp"
+#include "fleet_connection.hpp"
 #include "server_address.hpp"
 #include "status_line.hpp"
 #include "stop_flag.hpp"
@@ -31,12 +32,6 @@ struct PageOptions {
   std::string hub;
   stream::ServerOptions server{};
 };
-
-Result<std::unique_ptr<fleet::Hub>> connect(const std::string& text) {
-  const Result<fleet::BrokerAddress> address = fleet::parse_broker_address(text);
-  if (!address) return address.error();
-  return fleet::Hub::connect(*address);
-}
 
 Nanos now() {
   return std::chrono::system_clock::now().time_since_epoch();
@@ -96,7 +91,7 @@ std::string remarks_on(const fleet::RobotState& robot) {
 }
 
 Status list(const std::string& text) {
-  const Result<std::unique_ptr<fleet::Hub>> hub = connect(text);
+  const Result<std::unique_ptr<fleet::Hub>> hub = connect_fleet<fleet::Hub>(text);
   if (!hub) return hub.error();
   const Result<std::vector<fleet::RobotState>> robots = (*hub)->robots();
   if (!robots) return robots.error();
@@ -123,7 +118,7 @@ std::vector<stream::Asset> page_assets() {
 
 Status serve_page(PageOptions& options) {
   const std::atomic<bool>& stop = stop_flag();
-  const Result<std::unique_ptr<fleet::Hub>> hub = connect(options.hub);
+  const Result<std::unique_ptr<fleet::Hub>> hub = connect_fleet<fleet::Hub>(options.hub);
   if (!hub) return hub.error();
   options.server.notice = print_notice;
   const Result<std::unique_ptr<stream::Server>> server = stream::Server::create(options.server, page_assets());

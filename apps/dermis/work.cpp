@@ -14,6 +14,7 @@
 #include "child_process.hpp"
 #include "commands.hpp"
 #include "dermis/fleet/job_queue.hpp"
+#include "fleet_connection.hpp"
 #include "status_line.hpp"
 #include "stop_flag.hpp"
 
@@ -108,9 +109,7 @@ void finish(fleet::JobQueue& queue, const fleet::TakenJob& taken, const fleet::J
 }
 
 Status work(const WorkOptions& options) {
-  const Result<fleet::BrokerAddress> address = fleet::parse_broker_address(options.hub);
-  if (!address) return address.error();
-  const Result<std::unique_ptr<fleet::JobQueue>> queue = fleet::JobQueue::connect(*address);
+  const Result<std::unique_ptr<fleet::JobQueue>> queue = connect_fleet<fleet::JobQueue>(options.hub);
   if (!queue) return queue.error();
   std::error_code failure;
   std::filesystem::current_path(options.folder, failure);
