@@ -15,7 +15,7 @@ export class KeyedRows<Item> {
   readonly #before: readonly Element[];
   #rows = new Map<string, Row<Item>>();
 
-  /** What the list has before stays before the rows. */
+  /** Other children of the list stay before the rows. */
   constructor(list: HTMLElement, keyOf: (item: Item) => string, make: (item: Item) => Row<Item>) {
     this.#list = list;
     this.#before = [...list.children];
