@@ -95,13 +95,13 @@ std::vector<TouchArray> inspire_regions() {
   std::vector<TouchArray> regions;
   for (const char* const finger : {"little", "ring", "middle", "index"}) {
     regions.push_back({std::string(finger) + "_tip", {3, 3}});
-    regions.push_back({std::string(finger) + "_nail", {12, 8}});
-    regions.push_back({std::string(finger) + "_pad", {10, 8}});
+    regions.push_back({std::string(finger) + "_top", {12, 8}});
+    regions.push_back({std::string(finger) + "_palm", {10, 8}});
   }
   regions.push_back({"thumb_tip", {3, 3}});
-  regions.push_back({"thumb_nail", {12, 8}});
+  regions.push_back({"thumb_top", {12, 8}});
   regions.push_back({"thumb_middle", {3, 3}});
-  regions.push_back({"thumb_pad", {12, 8}});
+  regions.push_back({"thumb_palm", {12, 8}});
   regions.push_back({"palm", {14, 8}});
   return regions;
 }

@@ -41,6 +41,7 @@ BRINGS = {
     "libhdf5-dev": "hdf5-serial",
     "pybind11-dev": "pybind11",
     "libfastrtps-dev": "fastrtps",
+    "libmodbus-dev": "libmodbus",
     "libnats-dev": "libnats",
     "nats-server": "nats-server",
     "python3-numpy": "numpy",
