@@ -2,9 +2,9 @@
 /* SPDX-FileCopyrightText: 2026 The dermis authors */
 /* Hands that publish their touch, by another vendor's DDS, with types of its own IDL compiler.
 
-     cyclone_hand DOMAIN RATE SECONDS reliable|best_effort TOPIC=hand_state|inspire_touch|float_array...
+     cyclone_hand DOMAIN READERS RATE SECONDS reliable|best_effort TOPIC=hand_state|inspire_touch|float_array...
 
-   waits for a reader of every topic and prints "ready". Then it publishes RATE messages of each a second, and "sent N" at
+   waits for so many readers of every topic and prints "ready". Then it publishes RATE messages of each a second, and "sent N" at
    the end. Its participant is set by CYCLONEDDS_URI. Message n of topic k (both from 0 on) holds
 
      hand_state     module m, taxel t: pressure 100000 + 1000 k + 100 m + t + 16 (n mod 5000), but 30000 in taxel 11 of module 8;
@@ -116,7 +116,7 @@ static void fill(size_t k, uint32_t n) {
 
 static void open_topic(dds_entity_t participant, const dds_qos_t* qos, char* argument, size_t k) {
   char* const separator = strchr(argument, '=');
-  if (separator == NULL || k >= most_topics) fail("usage: cyclone_hand DOMAIN RATE SECONDS RELIABILITY TOPIC=TYPE...");
+  if (separator == NULL || k >= most_topics) fail("usage: cyclone_hand DOMAIN READERS RATE SECONDS RELIABILITY TOPIC=TYPE...");
   *separator = '\0';
   topics[k].type = separator + 1;
   const dds_topic_descriptor_t* descriptor = &std_msgs_msg_dds__Float32MultiArray__desc;
@@ -134,10 +134,10 @@ static void open_topic(dds_entity_t participant, const dds_qos_t* qos, char* arg
   if (topic < 0 || topics[k].writer < 0) fail("cannot publish");
 }
 
-static void wait_for_readers(size_t count) {
+static void wait_for_readers(size_t count, uint32_t readers) {
   for (size_t k = 0; k < count; ++k) {
     dds_publication_matched_status_t matched = {0};
-    while (matched.current_count == 0) {
+    while (matched.current_count < readers) {
       usleep(10000);
       dds_get_publication_matched_status(topics[k].writer, &matched);
     }
@@ -146,17 +146,17 @@ static void wait_for_readers(size_t count) {
 }
 
 int main(int argc, char** argv) {
-  if (argc < 6) fail("usage: cyclone_hand DOMAIN RATE SECONDS RELIABILITY TOPIC=TYPE...");
+  if (argc < 7) fail("usage: cyclone_hand DOMAIN READERS RATE SECONDS RELIABILITY TOPIC=TYPE...");
   const dds_entity_t participant = dds_create_participant((dds_domainid_t)atoi(argv[1]), NULL, NULL);
   if (participant < 0) fail("cannot take part in the domain");
-  const double rate = atof(argv[2]);
-  const uint32_t messages = (uint32_t)(rate * atof(argv[3]));
-  const bool is_reliable = strcmp(argv[4], "reliable") == 0;
-  const size_t count = (size_t)argc - 5;
+  const double rate = atof(argv[3]);
+  const uint32_t messages = (uint32_t)(rate * atof(argv[4]));
+  const bool is_reliable = strcmp(argv[5], "reliable") == 0;
+  const size_t count = (size_t)argc - 6;
   dds_qos_t* const qos = dds_create_qos();
   dds_qset_reliability(qos, is_reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, DDS_SECS(10));
-  for (size_t k = 0; k < count; ++k) open_topic(participant, qos, argv[5 + k], k);
-  wait_for_readers(count);
+  for (size_t k = 0; k < count; ++k) open_topic(participant, qos, argv[6 + k], k);
+  wait_for_readers(count, (uint32_t)atoi(argv[2]));
   puts("ready");
   fflush(stdout);
   struct timespec due;

@@ -29,10 +29,6 @@ MODULE = "unitree_hg/msg/HandState"
 INSPIRE = "inspire/inspire_hand_touch"
 
 
-def start(*command):
-    return subprocess.Popen(list(map(str, command)), env=ENVIRONMENT, stdout=subprocess.PIPE, text=True)
-
-
 def recorded(path):
     """Readings and temperatures of a recording, or of one of its arrays, a line a frame."""
     with tempfile.TemporaryDirectory() as folder:
@@ -49,16 +45,23 @@ class Hands(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.work = Path(folder.name)
 
+    def start(self, *command):
+        started = subprocess.Popen(list(map(str, command)), env=ENVIRONMENT, stdout=subprocess.PIPE, text=True)
+        self.addCleanup(started.stdout.close)
+        self.addCleanup(started.wait)
+        self.addCleanup(started.kill)
+        return started
+
     def record(self, name, address, *options):
         out = self.work / f"{name}.mcap"
-        return out, start(support.BINARY, "record", "--from", address, "--out", out, *options)
+        return out, self.start(support.BINARY, "record", "--from", address, "--out", out, *options)
 
     def listen(self, sources, topics, rate, seconds, reliability="reliable"):
         """Records the sources while a hand publishes; returns their recordings and the number of messages."""
         messages = int(rate * seconds)
         recorders = [self.record(name, address, "--frames", messages) for name, address in sources.items()]
-        hand = start(CYCLONE_HAND, DOMAIN, rate, seconds, reliability, *topics)
-        lines, _ = hand.communicate(timeout=120)
+        hand = self.start(CYCLONE_HAND, DOMAIN, len(sources), rate, seconds, reliability, *topics)
+        lines, _ = hand.communicate(timeout=60)
         self.assertEqual(lines, f"ready\nsent {messages}\n")
         for _, recorder in recorders:
             self.assertEqual(recorder.wait(60), 0)
@@ -91,29 +94,27 @@ class Hands(unittest.TestCase):
         topic = "rt/mat"
         messages = 200
         out, recorder = self.record("mat", self.address(topic, "std_msgs/Float32MultiArray"), "--seconds", 3)
-        hand = start(CYCLONE_HAND, DOMAIN, 100, 6, "best_effort", f"{topic}=float_array")
+        hand = self.start(CYCLONE_HAND, DOMAIN, 1, 100, 6, "best_effort", f"{topic}=float_array")
         self.assertEqual(recorder.wait(60), 0)
-        hand.kill()
-        hand.wait()
-        hand.stdout.close()
         readings, _ = recorded(out)
         self.assertGreater(len(readings), messages)
         np.testing.assert_array_equal(readings, readings[:, :1] + np.arange(20) / 4)
         np.testing.assert_array_equal(np.diff(readings[:, 0]), 1)
 
     def check_regions(self, seed, hand, out, region, taxels):
-        """Every answer of the hand is a frame, in its order; the last may have come too late."""
+        """Every answer of the hand is a frame, in its order, until the recording ends."""
         lines, _ = hand.communicate(timeout=60)
         answered = {int(a): int(n) for a, n in (line.split() for line in lines.splitlines() if line[0].isdigit())}
         readings, _ = recorded(out)
         first = FIRST[region]
         starts = [(a - 3000) // 2 for a in answered]
         asked = answered[3000 + 2 * max(s for s in starts if s <= first)]
-        self.assertLessEqual(asked - len(readings), 1)
+        self.assertGreaterEqual(asked, len(readings))
+        self.assertGreater(len(readings), 20)
         np.testing.assert_array_equal(readings, touch_sent(seed, first, taxels, np.arange(len(readings))))
 
     def test_regions_of_a_hand_by_modbus_tcp(self):
-        hand = start(MODBUS_HAND, "tcp", 3, 2)
+        hand = self.start(MODBUS_HAND, "tcp", 3, 2)
         port = hand.stdout.readline().split()[1]
         address = f"modbus-tcp://127.0.0.1:{port}?map=inspire-rh56&array=palm"
         out, recorder = self.record("palm", address, "--seconds", 2)
@@ -130,19 +131,16 @@ class Hands(unittest.TestCase):
         )
         self.addCleanup(forward.wait)
         self.addCleanup(forward.kill)
-        hand = start(MODBUS_HAND, os.ttyname(line), 5, 0)
+        hand = self.start(MODBUS_HAND, os.ttyname(line), 5, 0)
         self.assertEqual(hand.stdout.readline(), "open\n")
         address = f"modbus-rtu://{os.ttyname(other)}?map=inspire-rh56&array=thumb_middle"
         out, recorder = self.record("thumb", address, "--frames", 50)
         self.assertEqual(recorder.wait(60), 0)
         readings, _ = recorded(out)
         np.testing.assert_array_equal(readings, touch_sent(5, FIRST["thumb_middle"], 9, np.arange(50)))
-        hand.kill()
-        hand.wait()
-        hand.stdout.close()
 
     def test_both_hands_are_served_and_recorded(self):
-        hands = [start(MODBUS_HAND, "tcp", side, 1) for side in (1, 2)]
+        hands = [self.start(MODBUS_HAND, "tcp", side, 1) for side in (1, 2)]
         ports = [hand.stdout.readline().split()[1] for hand in hands]
         suit = ['[suit]\nname = "hands"\n']
         for name, rows, cols in REGIONS:
@@ -155,7 +153,7 @@ class Hands(unittest.TestCase):
                 suit.append(f'from = "modbus-tcp://127.0.0.1:{port}?map=inspire-rh56&array={name}"\n')
         (self.work / "suit.toml").write_text("\n".join(suit))
         out = self.work / "hands.mcap"
-        server = start(support.BINARY, "serve", "--suit", self.work / "suit.toml", "--port", 0, "--record", out)
+        server = self.start(support.BINARY, "serve", "--suit", self.work / "suit.toml", "--port", 0, "--record", out)
         try:
             server.communicate(timeout=5)
         except subprocess.TimeoutExpired:
