@@ -27,7 +27,7 @@ class ArrayFeed {
   ArrayFeed& operator=(const ArrayFeed&) = delete;
   ~ArrayFeed();
 
-  // Of the bus.
+  // The bus calls these.
   void push(const FrameShape& shape, const RawFrame& frame);
   void count_damaged();
   void count_reconnection();
@@ -35,7 +35,7 @@ class ArrayFeed {
   /// No more frames come; the first outcome is kept.
   void end(const Status& outcome);
 
-  // Of the reader.
+  // The reader calls these.
   /// The oldest frame, by a swap. The end or its error come after all frames.
   [[nodiscard]] Result<Polled> take(RawFrame& frame);
   /// Until there is something to take.

@@ -13,7 +13,7 @@
 /// The work of the plugin of Modbus. It is loaded when asked for, as that of DDS is.
 namespace dermis::buses {
 
-/// What came of a question.
+/// The outcome of a question.
 enum class Answer {
   read,
   refused,  ///< The device answers, but not with the registers.

@@ -19,8 +19,8 @@ namespace dermis::buses {
 struct ModbusPlace {
   std::string host{};                          ///< Empty: it is a serial line.
   std::uint16_t port = 0;                      ///< 0: that of the map.
-  std::string path{};                          ///< Of the serial line.
-  unsigned baud = 115'200;                     ///< Of the serial line; 8 data bits, no parity, 1 stop bit.
+  std::string path{};                          ///< The serial line.
+  unsigned baud = 115'200;                     ///< The serial line has 8 data bits, no parity and 1 stop bit.
   int unit = 0;                                ///< 1 ... 247; 0: that of the map.
   std::string map{};                           ///< Name or path of a register map (register_map.hpp).
   std::optional<double> rate_hz{};             ///< Frames of each array a second; empty: as many as the device answers.

@@ -21,12 +21,11 @@ struct BusOptions {
 };
 
 /// The frames of one array of a device or a topic. All arrays of one connection in this process share it. A frame of
-/// registers has the time when its last word had come. A frame of a topic has the time when the message came; its
-/// device time is that of the message, and its sequence counts the messages of the topic, those that were lost
-/// included.
+/// registers has the time when its last word had come. A frame of a topic has the time when the message came. Its
+/// device time is that of the message. Its sequence counts the messages of the topic, lost ones included.
 ///
-/// Fails where the plugin of the bus is not there, on a device that cannot be reached, and where the address names no
-/// array of several. A topic is waited for. A device that goes is waited for, too (reconnect_s).
+/// Fails where the plugin of the bus is not there, and on a device that cannot be reached. Also fails where the address
+/// names no array of several. A topic is waited for. A device that goes is waited for, too (reconnect_s).
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_bus(const BusAddress& address, const BusOptions& options);
 
 }  // namespace dermis::buses

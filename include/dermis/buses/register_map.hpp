@@ -15,7 +15,7 @@
 
 namespace dermis::buses {
 
-/// What a reading is in the registers.
+/// How a reading stands in the registers.
 enum class RegisterValue { u16, i16, u32, i32, f32 };
 
 /// An array whose readings stand in registers, one behind the other.
@@ -39,7 +39,7 @@ struct RegisterArray {
 struct RegisterMap {
   bool input = false;         ///< Input registers (function 4) instead of holding registers (function 3).
   unsigned address_step = 1;  ///< Addresses from one word to the next; 2 where they count bytes.
-  std::uint16_t port = 502;   ///< Of Modbus TCP, where an address names none.
+  std::uint16_t port = 502;   ///< Modbus TCP uses it where an address names none.
   int unit = 1;
   std::vector<RegisterArray> arrays;
 };

@@ -20,7 +20,7 @@ struct Sample {
   using Writer = std::array<std::uint8_t, 16>;
 
   std::span<const std::uint8_t> message;  ///< In CDR.
-  std::uint64_t sequence = 0;             ///< Of its writer, which counts by one.
+  std::uint64_t sequence = 0;             ///< Its writer counts by one.
   Nanos source_time{};                    ///< When it was written, by the writer's clock.
   Writer writer{};                        ///< Its GUID.
 };
