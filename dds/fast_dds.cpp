@@ -29,6 +29,7 @@
 #include <vector>
 
 #include "dds/participant.hpp"
+#include "dermis/core/thread_priority.hpp"
 
 /// The plugin that dermis::dds loads.
 namespace dermis::dds {
@@ -45,6 +46,7 @@ constexpr std::size_t kMostMessages = 1000;
 // Lost data are sent again after this.
 constexpr std::uint32_t kHeartbeatNanos = 10'000'000;
 constexpr std::uint32_t kProgramsOnThisMachine = 32;
+constexpr std::uint32_t kReceiveBuffer = 4U << 20U;  // bytes; the system may grant less
 
 /// "sensor_msgs/msg/Image" -> "sensor_msgs::msg::dds_::Image_".
 std::string dds_type_name(const std::string& ros_name) {
@@ -176,6 +178,12 @@ Sample sample_of(const ReceivedType::Received& bytes, const fast::SampleInfo& in
   return sample;
 }
 
+/// A thread of Fast DDS that is late leaves messages in its socket until there is no more room.
+void raise_own_priority() {
+  thread_local const bool is_raised = (raise_thread_priority(ThreadPriority::frames), true);
+  static_cast<void>(is_raised);
+}
+
 /// Asks for all messages. A second reader takes what it gets of writers that send nothing again; it hears the others,
 /// too, so both leave out what has been there.
 class FastReader final : public Reader, private fast::DataReaderListener {
@@ -221,6 +229,7 @@ class FastReader final : public Reader, private fast::DataReaderListener {
   }
 
   void on_data_available(fast::DataReader* reader) override {
+    raise_own_priority();
     const std::lock_guard lock(mutex_);
     fast::SampleInfo info;
     while (reader->take_next_sample(&received_, &info) == eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK) {
@@ -250,6 +259,7 @@ fast::DomainParticipantQos participant_qos(bool loopback_only) {
   qos.name("dermis");
   qos.transport().use_builtin_transports = false;
   const auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+  udp->receiveBufferSize = kReceiveBuffer;
   if (loopback_only) {
     udp->interfaceWhiteList.emplace_back("127.0.0.1");
     udp->maxInitialPeersRange = kProgramsOnThisMachine;

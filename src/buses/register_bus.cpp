@@ -7,6 +7,8 @@
 #include <span>
 #include <utility>
 
+#include "dermis/core/thread_priority.hpp"
+
 namespace dermis::buses {
 namespace {
 
@@ -67,6 +69,7 @@ RegisterBus::~RegisterBus() {
 
 /// All arrays that somebody reads, once a round.
 void RegisterBus::run() {
+  raise_thread_priority(ThreadPriority::frames);
   std::vector<std::size_t> planned;
   std::vector<RegisterRead> reads;
   Nanos due = steady_now();
