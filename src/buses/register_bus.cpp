@@ -79,7 +79,10 @@ void RegisterBus::run() {
       reads = plan_reads(map_, asked);
       planned = std::move(asked);
     }
-    if (planned.empty()) sleep_until(steady_now() + kTick);
+    if (planned.empty()) {
+      sleep_until(steady_now() + kTick);
+      continue;
+    }
     for (const RegisterRead& read : reads) {
       if (!stop_) ask(read);
     }
