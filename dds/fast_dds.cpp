@@ -19,6 +19,7 @@
 #include <fastdds/dds/topic/Topic.hpp>
 #include <fastdds/dds/topic/TopicDataType.hpp>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -173,15 +174,16 @@ fast::DataReaderQos reader_qos(fast::ReliabilityQosPolicyKind reliability) {
 Sample sample_of(const ReceivedType::Received& bytes, const fast::SampleInfo& info) {
   Sample sample{bytes, info.sample_identity.sequence_number().to64long(), Nanos(info.source_timestamp.to_ns()), {}};
   const rtps::GUID_t& guid = info.sample_identity.writer_guid();
-  std::copy_n(guid.guidPrefix.value, guid.guidPrefix.size, sample.writer.begin());
-  std::copy_n(guid.entityId.value, guid.entityId.size, sample.writer.begin() + guid.guidPrefix.size);
+  auto* const entity =
+      std::copy(std::begin(guid.guidPrefix.value), std::end(guid.guidPrefix.value), sample.writer.begin());
+  std::copy(std::begin(guid.entityId.value), std::end(guid.entityId.value), entity);
   return sample;
 }
 
 /// A thread of Fast DDS that is late leaves messages in its socket until there is no more room.
 void raise_own_priority() {
-  thread_local const bool is_raised = (raise_thread_priority(ThreadPriority::frames), true);
-  static_cast<void>(is_raised);
+  thread_local bool is_raised = false;
+  if (!std::exchange(is_raised, true)) raise_thread_priority(ThreadPriority::frames);
 }
 
 /// Asks for all messages. A second reader takes what it gets of writers that send nothing again; it hears the others,

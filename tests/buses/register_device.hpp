@@ -23,7 +23,7 @@ class RegisterDevice {
     place.sin_family = AF_INET;
     place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     auto* const address = reinterpret_cast<sockaddr*>(&place);
-    ::bind(listener_, address, sizeof(place));
+    static_cast<void>(::bind(listener_, address, sizeof(place)));
     ::listen(listener_, 1);
     socklen_t size = sizeof(place);
     ::getsockname(listener_, address, &size);
