@@ -4,13 +4,12 @@
 
      cyclone_hand DOMAIN READERS RATE SECONDS reliable|best_effort TOPIC=hand_state|inspire_touch|float_array...
 
-   waits for so many readers of every topic and prints "ready". Then it publishes RATE messages of each a second, and "sent N" at
-   the end. Its participant is set by CYCLONEDDS_URI. Message n of topic k (both from 0 on) holds
+   waits for so many readers of every topic and prints "ready". Then it publishes RATE messages of each a second, and
+   "sent N" at the end. Its participant is set by CYCLONEDDS_URI. Message n of topic k (both from 0 on) holds
 
-     hand_state     module m, taxel t: pressure 100000 + 1000 k + 100 m + t + 16 (n mod 5000), but 30000 in taxel 11 of module 8;
-                    temperature 20 + k + m/2 + t/16 + (n mod 64)/8
-     inspire_touch  taxel t of all 1062: (1000 k + 7 t + 13 n) mod 4096
-     float_array    of 4x5, taxel t: n + t/4 */
+     hand_state     module m, taxel t: pressure 100000 + 1000 k + 100 m + t + 16 (n mod 5000), but 30000 in taxel 11 of
+   module 8; temperature 20 + k + m/2 + t/16 + (n mod 64)/8 inspire_touch  taxel t of all 1062: (1000 k + 7 t + 13 n)
+   mod 4096 float_array    of 4x5, taxel t: n + t/4 */
 #include <dds/dds.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -52,7 +51,7 @@ static void* make_hand_state(void) {
   return hand;
 }
 
-static void fill_hand_state(HandState* hand, size_t k, uint32_t n) {
+static void fill_hand_state(HandState* hand, uint32_t k, uint32_t n) {
   for (uint32_t j = 0; j < motors; ++j) {
     hand->motor_state._buffer[j].mode = (uint8_t)j;
     hand->motor_state._buffer[j].q = (float)n;
@@ -70,21 +69,21 @@ static void fill_hand_state(HandState* hand, size_t k, uint32_t n) {
 
 /* The sequences of the message are alike, one behind the other. */
 static void* make_inspire_touch(void) {
-  static const uint32_t sizes[regions] = {9, 96, 80, 9, 96, 80, 9, 96, 80, 9, 96, 80, 9, 96, 9, 96, 112};
+  static const uint32_t kSizes[regions] = {9, 96, 80, 9, 96, 80, 9, 96, 80, 9, 96, 80, 9, 96, 9, 96, 112};
   InspireTouch* const touch = make(1, sizeof *touch);
   int16_t* readings = make(inspire_taxels, sizeof *readings);
   for (size_t region = 0; region < regions; ++region) {
     dds_sequence_t* const sequence = (dds_sequence_t*)touch + region;
-    sequence->_length = sequence->_maximum = sizes[region];
+    sequence->_length = sequence->_maximum = kSizes[region];
     sequence->_buffer = (uint8_t*)readings;
-    readings += sizes[region];
+    readings += kSizes[region];
   }
   return touch;
 }
 
-static void fill_inspire_touch(InspireTouch* touch, size_t k, uint32_t n) {
+static void fill_inspire_touch(InspireTouch* touch, uint32_t k, uint32_t n) {
   for (uint32_t t = 0; t < inspire_taxels; ++t) {
-    touch->fingerone_tip_touch._buffer[t] = (int16_t)((1000 * k + 7 * t + 13 * (size_t)n) % 4096);
+    touch->fingerone_tip_touch._buffer[t] = (int16_t)((1000 * k + 7 * t + 13 * n) % 4096);
   }
 }
 
@@ -99,15 +98,15 @@ static void* make_float_array(void) {
   array->layout.dim._buffer[1].size = cols;
   array->layout.dim._buffer[1].stride = cols;
   array->data._length = array->data._maximum = rows * cols;
-  array->data._buffer = make(rows * cols, sizeof(float));
+  array->data._buffer = make((size_t)rows * cols, sizeof(float));
   return array;
 }
 
 static void fill(size_t k, uint32_t n) {
   if (strcmp(topics[k].type, "hand_state") == 0) {
-    fill_hand_state(topics[k].message, k, n);
+    fill_hand_state(topics[k].message, (uint32_t)k, n);
   } else if (strcmp(topics[k].type, "inspire_touch") == 0) {
-    fill_inspire_touch(topics[k].message, k, n);
+    fill_inspire_touch(topics[k].message, (uint32_t)k, n);
   } else {
     FloatArray* const array = topics[k].message;
     for (uint32_t t = 0; t < rows * cols; ++t) array->data._buffer[t] = (float)n + (float)t / 4.0F;
@@ -116,7 +115,8 @@ static void fill(size_t k, uint32_t n) {
 
 static void open_topic(dds_entity_t participant, const dds_qos_t* qos, char* argument, size_t k) {
   char* const separator = strchr(argument, '=');
-  if (separator == NULL || k >= most_topics) fail("usage: cyclone_hand DOMAIN READERS RATE SECONDS RELIABILITY TOPIC=TYPE...");
+  if (separator == NULL || k >= most_topics)
+    fail("usage: cyclone_hand DOMAIN READERS RATE SECONDS RELIABILITY TOPIC=TYPE...");
   *separator = '\0';
   topics[k].type = separator + 1;
   const dds_topic_descriptor_t* descriptor = &std_msgs_msg_dds__Float32MultiArray__desc;

@@ -4,8 +4,8 @@
 
      modbus_hand tcp|PATH SEED MILLISECONDS
 
-   listens on loopback and prints "port N", or answers on a serial line. It serves one client. Addresses count bytes from
-   3000 on. Taxel t of all 1062 is, when it is asked for the time number n (from 0 on),
+   listens on loopback and prints "port N", or answers on a serial line. It serves one client. Addresses count bytes
+   from 3000 on. Taxel t of all 1062 is, when it is asked for the time number n (from 0 on),
 
      (1000 SEED + 7 t + 13 n) mod 4096
 
@@ -52,7 +52,8 @@ static void answer(modbus_t* context, modbus_mapping_t* registers, const uint8_t
   }
   const unsigned first = (address - first_address) / 2;
   for (unsigned k = 0; k < words; ++k) {
-    registers->tab_registers[address + k] = (uint16_t)((1000 * seed + 7 * (first + k) + 13 * answers[first + k]) % 4096);
+    registers->tab_registers[address + k] =
+        (uint16_t)((1000 * seed + 7 * (first + k) + 13 * answers[first + k]) % 4096);
   }
   if (modbus_reply(context, query, length, registers) <= 0) return;
   for (unsigned k = 0; k < words; ++k) ++answers[first + k];
