@@ -12,15 +12,25 @@
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/publisher/DataWriterListener.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/DataReaderListener.hpp>
+#include <fastdds/dds/subscriber/SampleInfo.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
 #include <fastdds/dds/topic/TopicDataType.hpp>
 #include <functional>
+#include <iterator>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
+#include <thread>
 #include <utility>
+#include <vector>
 
 #include "dds/participant.hpp"
+#include "dermis/core/thread_priority.hpp"
 
 /// The plugin that dermis::dds loads.
 namespace dermis::dds {
@@ -37,6 +47,7 @@ constexpr std::size_t kMostMessages = 1000;
 // Lost data are sent again after this.
 constexpr std::uint32_t kHeartbeatNanos = 10'000'000;
 constexpr std::uint32_t kProgramsOnThisMachine = 32;
+constexpr std::uint32_t kReceiveBuffer = 4U << 20U;  // bytes; the system may grant less
 
 /// "sensor_msgs/msg/Image" -> "sensor_msgs::msg::dds_::Image_".
 std::string dds_type_name(const std::string& ros_name) {
@@ -120,12 +131,137 @@ class FastWriter final : public Writer, private fast::DataWriterListener {
   std::atomic<std::int32_t> readers_{0};
 };
 
+/// Messages stay in CDR.
+class ReceivedType final : public fast::TopicDataType {
+ public:
+  explicit ReceivedType(const std::string& name) {
+    setName(name.c_str());
+    m_typeSize = 4096;  // To begin with.
+    m_isGetKeyDefined = false;
+    auto_fill_type_information(false);
+    auto_fill_type_object(false);
+  }
+
+  bool serialize(void* /*data*/, rtps::SerializedPayload_t* /*payload*/) override { return false; }
+  std::function<std::uint32_t()> getSerializedSizeProvider(void* /*data*/) override {
+    return [] { return 0U; };
+  }
+  bool deserialize(rtps::SerializedPayload_t* payload, void* data) override {
+    static_cast<Received*>(data)->assign(payload->data, payload->data + payload->length);
+    return true;
+  }
+  void* createData() override { return new Received; }
+  void deleteData(void* data) override { delete static_cast<Received*>(data); }
+  bool getKey(void* /*data*/, rtps::InstanceHandle_t* /*key*/, bool /*force_md5*/) override { return false; }
+
+  using Received = std::vector<std::uint8_t>;
+};
+
+fast::DataReaderQos reader_qos(fast::ReliabilityQosPolicyKind reliability) {
+  fast::DataReaderQos qos;
+  qos.reliability().kind = reliability;
+  qos.durability().kind = fast::VOLATILE_DURABILITY_QOS;
+  qos.history().kind = fast::KEEP_LAST_HISTORY_QOS;
+  qos.history().depth = kMostMessages;
+  qos.resource_limits().max_samples = kMostMessages;
+  qos.resource_limits().max_samples_per_instance = kMostMessages;
+  qos.resource_limits().max_instances = 1;
+  qos.resource_limits().allocated_samples = 10;
+  qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  return qos;
+}
+
+Sample sample_of(const ReceivedType::Received& bytes, const fast::SampleInfo& info) {
+  Sample sample{bytes, info.sample_identity.sequence_number().to64long(), Nanos(info.source_timestamp.to_ns()), {}};
+  const rtps::GUID_t& guid = info.sample_identity.writer_guid();
+  auto* const entity =
+      std::copy(std::begin(guid.guidPrefix.value), std::end(guid.guidPrefix.value), sample.writer.begin());
+  std::copy(std::begin(guid.entityId.value), std::end(guid.entityId.value), entity);
+  return sample;
+}
+
+/// A thread of Fast DDS that is late leaves messages in its socket until there is no more room.
+void raise_own_priority() {
+  thread_local bool is_raised = false;
+  if (!std::exchange(is_raised, true)) raise_thread_priority(ThreadPriority::frames);
+}
+
+/// Asks for all messages. A second reader takes what it gets of writers that send nothing again; it hears the others,
+/// too, so both leave out what has been there.
+class FastReader final : public Reader, private fast::DataReaderListener {
+ public:
+  FastReader(fast::Subscriber& subscriber, Subscription subscription)
+      : subscriber_(subscriber), subscription_(std::move(subscription)) {}
+
+  [[nodiscard]] bool open(fast::DomainParticipant& participant) {
+    const std::string& type = subscription_.type;
+    if (participant.find_type(type).empty()) fast::TypeSupport(new ReceivedType(type)).register_type(&participant);
+    auto* const known = participant.lookup_topicdescription(subscription_.topic);
+    topic_ = known != nullptr ? dynamic_cast<fast::Topic*>(known)
+                              : participant.create_topic(subscription_.topic, type, fast::TOPIC_QOS_DEFAULT);
+    if (topic_ == nullptr || topic_->get_type_name() != type) return false;
+    reliable_ = add(fast::RELIABLE_RELIABILITY_QOS);
+    return reliable_ != nullptr;
+  }
+
+  ~FastReader() override {
+    for (fast::DataReader* const reader : {reliable_, best_effort_.load()}) {
+      if (reader != nullptr) reader->set_listener(nullptr);
+    }
+    if (adding_.joinable()) adding_.join();
+    for (fast::DataReader* const reader : {reliable_, best_effort_.load()}) {
+      if (reader == nullptr) continue;
+      reader->set_listener(nullptr);
+      subscriber_.delete_datareader(reader);
+    }
+  }
+
+ private:
+  fast::DataReader* add(fast::ReliabilityQosPolicyKind reliability) {
+    fast::StatusMask mask = fast::StatusMask::data_available();
+    mask << fast::StatusMask::requested_incompatible_qos();
+    return subscriber_.create_datareader(topic_, reader_qos(reliability), this, mask);
+  }
+
+  /// A listener must not make a reader.
+  void on_requested_incompatible_qos(fast::DataReader* /*reader*/,
+                                     const fast::RequestedIncompatibleQosStatus& status) override {
+    if (status.last_policy_id != fast::RELIABILITY_QOS_POLICY_ID || adding_.joinable()) return;
+    adding_ = std::thread([this] { best_effort_ = add(fast::BEST_EFFORT_RELIABILITY_QOS); });
+  }
+
+  void on_data_available(fast::DataReader* reader) override {
+    raise_own_priority();
+    const std::lock_guard lock(mutex_);
+    fast::SampleInfo info;
+    while (reader->take_next_sample(&received_, &info) == eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK) {
+      if (!info.valid_data) continue;
+      const Sample sample = sample_of(received_, info);
+      std::uint64_t& last = last_[sample.writer];
+      if (sample.sequence <= last) continue;
+      last = sample.sequence;
+      subscription_.heard(sample);
+    }
+  }
+
+  fast::Subscriber& subscriber_;
+  const Subscription subscription_;
+  fast::Topic* topic_ = nullptr;
+  fast::DataReader* reliable_ = nullptr;
+  std::atomic<fast::DataReader*> best_effort_{nullptr};
+  std::thread adding_;
+  std::mutex mutex_;  // Of what follows.
+  ReceivedType::Received received_;
+  std::map<Sample::Writer, std::uint64_t> last_;
+};
+
 /// UDP is the only transport: other versions of Fast DDS would not understand our shared memory.
 fast::DomainParticipantQos participant_qos(bool loopback_only) {
   fast::DomainParticipantQos qos;
   qos.name("dermis");
   qos.transport().use_builtin_transports = false;
   const auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+  udp->receiveBufferSize = kReceiveBuffer;
   if (loopback_only) {
     udp->interfaceWhiteList.emplace_back("127.0.0.1");
     udp->maxInitialPeersRange = kProgramsOnThisMachine;
@@ -150,7 +286,8 @@ class FastParticipant final : public Participant {
     participant_ = fast::DomainParticipantFactory::get_instance()->create_participant(
         options.domain, participant_qos(options.loopback_only));
     if (participant_ != nullptr) publisher_ = participant_->create_publisher(fast::PUBLISHER_QOS_DEFAULT);
-    if (publisher_ != nullptr) return Done{};
+    if (participant_ != nullptr) subscriber_ = participant_->create_subscriber(fast::SUBSCRIBER_QOS_DEFAULT);
+    if (publisher_ != nullptr && subscriber_ != nullptr) return Done{};
     return failed("DDS: there is no place in domain " + std::to_string(options.domain) +
                   ": no network with IPv4, or too many programs; try another domain");
   }
@@ -161,9 +298,16 @@ class FastParticipant final : public Participant {
     return std::unique_ptr<Writer>(std::move(writer));
   }
 
+  [[nodiscard]] Result<std::unique_ptr<Reader>> add_reader(const Subscription& subscription) override {
+    auto reader = std::make_unique<FastReader>(*subscriber_, subscription);
+    if (!reader->open(*participant_)) return failed("DDS: cannot subscribe to '" + subscription.topic + "'");
+    return std::unique_ptr<Reader>(std::move(reader));
+  }
+
  private:
   fast::DomainParticipant* participant_ = nullptr;
   fast::Publisher* publisher_ = nullptr;
+  fast::Subscriber* subscriber_ = nullptr;
 };
 
 }  // namespace

@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <cstdlib>
 #include <span>
+#include <vector>
 
 #include "dermis/messages/ros_messages.hpp"
+#include "dermis/messages/touch_messages.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   namespace messages = dermis::messages;
@@ -15,5 +17,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   static_cast<void>(messages::decode_acquisition(message, frame));
   static_cast<void>(messages::decode_temperature(message));
+  for (const messages::TouchType& type : messages::touch_types()) {
+    std::vector<messages::TouchReading> readings(type.arrays.size());
+    if (!type.decode(message, readings)) continue;
+    for (const messages::TouchReading& reading : readings) {
+      if (reading.frame.counts.size() != reading.shape.taxel_count()) std::abort();
+    }
+  }
   return 0;
 }

@@ -83,6 +83,7 @@ Result<SourceBytes> read_source_bytes(const std::string& source) {
   const Result<sources::SourceName> name = sources::SourceName::parse(source);
   if (!name) return name.error();
   if (name->kind == sources::SourceKind::simulation) return bad_input("'" + source + "': a simulation needs no layout");
+  if (name->stream || name->bus) return bad_input("'" + source + "': has frames, not bytes, and needs no layout");
   Result<SourceBytes> found = name->uri ? bytes_of_device(*name->uri) : bytes_of_file(source);
   if (found && found->bytes.empty()) return bad_input("'" + source + "': not a single byte came");
   return found;

@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "acquisition/arrival_meter.hpp"
 #include "acquisition/chunk_stamps.hpp"
 #include "acquisition/clock_mapping.hpp"
+#include "dermis/core/arrival_meter.hpp"
 #include "dermis/core/frame_source.hpp"
 #include "dermis/core/frames.hpp"
 

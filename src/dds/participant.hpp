@@ -8,6 +8,7 @@
 
 #include "dermis/core/result.hpp"
 #include "dermis/dds/publisher.hpp"
+#include "dermis/dds/subscriber.hpp"
 
 /// The work of the plugin of Fast DDS. It is loaded when asked for: linked, it would cost every command its start and 9
 /// MB.
@@ -27,7 +28,16 @@ class Writer {
   virtual void write(std::span<const std::uint8_t> message) = 0;
 };
 
-/// A program in a domain. It must outlive its writers.
+/// Reads one topic until it is destroyed.
+class Reader {
+ public:
+  Reader() = default;
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
+  virtual ~Reader() = default;
+};
+
+/// A program in a domain. It must outlive its writers and readers.
 class Participant {
  public:
   Participant() = default;
@@ -36,6 +46,7 @@ class Participant {
   virtual ~Participant() = default;
 
   [[nodiscard]] virtual Result<std::unique_ptr<Writer>> add_writer(const Topic& topic) = 0;
+  [[nodiscard]] virtual Result<std::unique_ptr<Reader>> add_reader(const Subscription& subscription) = 0;
 };
 
 /// The function of the plugin, and its name.

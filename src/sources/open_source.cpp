@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "dermis/acquisition/device_source.hpp"
+#include "dermis/buses/open_bus.hpp"
 #include "dermis/core/turned_source.hpp"
 #include "dermis/files/taxel_text.hpp"
 #include "dermis/fleet/frame_stream.hpp"
@@ -87,6 +88,16 @@ Result<std::unique_ptr<FrameSource>> open_device(const acquisition::SourceUri& u
   return turned_source(*std::move(device), order, uri.text);
 }
 
+/// Its frames are turned as the array's description says.
+Result<std::unique_ptr<FrameSource>> open_bus(const buses::BusAddress& address, const SourceOptions& options) {
+  buses::BusOptions bus_options{{}, options.stop, options.notice};
+  if (options.array == nullptr) return buses::open_bus(address, bus_options);
+  bus_options.shape = options.array->order.sent(*shape_of(options.array));
+  Result<std::unique_ptr<FrameSource>> bus = buses::open_bus(address, bus_options);
+  if (!bus) return bus.error();
+  return turned_source(*std::move(bus), options.array->order, address.text);
+}
+
 /// Its frames were turned before they were published.
 Result<std::unique_ptr<FrameSource>> open_stream(const fleet::StreamAddress& address, const SourceOptions& options) {
   Result<std::unique_ptr<fleet::FrameStream>> stream =
@@ -105,6 +116,7 @@ Result<std::unique_ptr<FrameSource>> open_stream(const fleet::StreamAddress& add
 
 Result<std::unique_ptr<FrameSource>> open_source(const SourceName& from, const SourceOptions& options) {
   if (from.stream) return open_stream(*from.stream, options);
+  if (from.bus) return open_bus(*from.bus, options);
   if (!from.uri) {
     if (Status order = check_order(from.text, options.array); !order) return order.error();
     return recordings::open_frames(from.text,

@@ -45,6 +45,13 @@ Result<SourceName> SourceName::parse(const std::string& text) {
     name.stream = *std::move(address);
     return name;
   }
+  if (buses::is_bus_address(text)) {
+    Result<buses::BusAddress> address = buses::parse_bus_address(text);
+    if (!address) return address.error();
+    name.kind = SourceKind::bus;
+    name.bus = *std::move(address);
+    return name;
+  }
   if (acquisition::is_source_uri(text)) {
     Result<acquisition::SourceUri> uri = acquisition::parse_source_uri(text);
     if (!uri) return uri.error();

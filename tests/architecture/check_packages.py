@@ -41,6 +41,7 @@ BRINGS = {
     "libhdf5-dev": "hdf5-serial",
     "pybind11-dev": "pybind11",
     "libfastrtps-dev": "fastrtps",
+    "libmodbus-dev": "libmodbus",
     "libnats-dev": "libnats",
     "libssl-dev": "libcrypto",
     "nats-server": "nats-server",

@@ -418,6 +418,8 @@ class Refused(Devices):
 
     def test_a_parameter_with_a_slip(self):
         self.refuse(self.record("serial:///dev/ttyACM0?boud=9600"), ["boud", "did you mean 'baud'"])
+        self.refuse(self.record("modbus-tcp://hand?mpa=inspire-rh56"), ["lacks map=NAME"])
+        self.refuse(self.record("dds://0/rt/chest/raw?type=sensor_msgs/msg/Imag"), ["'sensor_msgs/msg/Image'"])
 
     def test_an_array_of_another_shape(self):
         self.refuse(self.record("sim:idle?rows=3&cols=3&array=" + str(self.array)), ["4x5"])

@@ -26,6 +26,9 @@ TEST(SourceName, says_what_kind_of_source_it_is) {
   EXPECT_EQ(name_of("sim:idle").kind, SourceKind::simulation);
   EXPECT_EQ(name_of("serial:///dev/ttyACM0").kind, SourceKind::device);
   EXPECT_EQ(name_of("file:bytes.bin").kind, SourceKind::device);
+  EXPECT_EQ(name_of("nats://hub?robot=r&array=a").kind, SourceKind::stream);
+  EXPECT_EQ(name_of("modbus-tcp://hand?map=inspire-rh56&array=palm").kind, SourceKind::bus);
+  EXPECT_EQ(name_of("dds://0/rt/chest/raw?type=sensor_msgs/Image").kind, SourceKind::bus);
   EXPECT_EQ(name_of("file:bytes.bin?rate=50&protocol=packed10&rows=4&cols=4").kind, SourceKind::device);
 }
 

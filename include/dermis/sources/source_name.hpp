@@ -6,6 +6,7 @@
 #include <string>
 
 #include "dermis/acquisition/source_uri.hpp"
+#include "dermis/buses/bus_address.hpp"
 #include "dermis/core/result.hpp"
 #include "dermis/fleet/stream_address.hpp"
 
@@ -17,6 +18,7 @@ enum class SourceKind {
   recording,   ///< MCAP, of one or several arrays.
   file,        ///< Any other file of frames, by its path or by file:PATH?rate=...
   stream,      ///< nats://HUB?robot=...&array=...
+  bus,         ///< modbus-tcp://HOST?map=..., modbus-rtu:///dev/...?map=..., dds://DOMAIN/TOPIC?type=...
 };
 
 /// The name of a source, parsed (docs/devices.md). Opens nothing.
@@ -27,9 +29,10 @@ struct SourceName {
   std::string array{};                           ///< "chest" of "rec.mcap#chest"; empty: none is named.
   std::optional<acquisition::SourceUri> uri{};   ///< Empty: the name is the path of a file.
   std::optional<fleet::StreamAddress> stream{};  ///< A stream of NATS; empty: it is none.
+  std::optional<buses::BusAddress> bus{};        ///< Registers or a topic; empty: it is none.
 
-  /// Fails on a URI that acquisition::parse_source_uri() or fleet::parse_stream_address() refuses. Everything else is
-  /// the path of a file.
+  /// Fails on what acquisition::parse_source_uri(), fleet::parse_stream_address() or buses::parse_bus_address() refuses.
+  /// Everything else is the path of a file.
   [[nodiscard]] static Result<SourceName> parse(const std::string& text);
 
   /// "rec.mcap#chest": the file without its folder, as tables name it.

@@ -11,7 +11,7 @@
 
 #include "dermis/core/frames.hpp"
 
-namespace dermis::acquisition {
+namespace dermis {
 
 /// Rate and jitter of the arrivals of the last 3 to 4 seconds.
 class ArrivalMeter {
@@ -72,4 +72,4 @@ class ArrivalMeter {
   std::optional<Nanos> last_;
 };
 
-}  // namespace dermis::acquisition
+}  // namespace dermis

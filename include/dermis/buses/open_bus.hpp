@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "dermis/buses/bus_address.hpp"
+#include "dermis/core/frame_source.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::buses {
+
+struct BusOptions {
+  std::optional<FrameShape> shape{};                 ///< Required shape of the frames.
+  const std::atomic<bool>* stop = nullptr;           ///< Set: next() returns false within 100 ms.
+  std::function<void(const std::string&)> notice{};  ///< Receives messages for the user, one line each.
+};
+
+/// The frames of one array of a device or a topic. All arrays of one connection in this process share it. A frame of
+/// registers has the time when its last word had come. A frame of a topic has the time when the message came. Its
+/// device time is that of the message. Its sequence counts the messages of the topic, lost ones included.
+///
+/// Fails where the plugin of the bus is not there, and on a device that cannot be reached. Also fails where the address
+/// names no array of several. A topic is waited for. A device that goes is waited for, too (reconnect_s).
+[[nodiscard]] Result<std::unique_ptr<FrameSource>> open_bus(const BusAddress& address, const BusOptions& options);
+
+}  // namespace dermis::buses

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "buses/array_feed.hpp"
+
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace dermis::buses {
+namespace {
+
+constexpr std::size_t kMostWaiting = 4096;
+
+}  // namespace
+
+ArrayFeed::ArrayFeed(std::function<void(const std::string&)> notice)
+    : notice_(std::move(notice)), event_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {}
+
+ArrayFeed::~ArrayFeed() {
+  if (event_ >= 0) ::close(event_);
+}
+
+void ArrayFeed::push(const FrameShape& shape, const RawFrame& frame) {
+  const std::lock_guard lock(mutex_);
+  if (outcome_) return;
+  shape_ = shape;
+  statistics_.lost_frames += frame.acquisition.lost_before;
+  if (count_ == kMostWaiting) {
+    left_out_ += 1 + ring_[first_].acquisition.lost_before;
+    ++statistics_.lost_frames;
+    first_ = (first_ + 1) % ring_.size();
+    --count_;
+  }
+  if (count_ == ring_.size()) {
+    std::rotate(ring_.begin(), ring_.begin() + static_cast<std::ptrdiff_t>(first_), ring_.end());
+    first_ = 0;
+    ring_.resize(std::min(kMostWaiting, std::max<std::size_t>(8, 2 * ring_.size())));
+  }
+  ring_[(first_ + count_) % ring_.size()] = frame;
+  arrivals_.add(frame.acquisition.arrival_steady);
+  if (count_++ == 0) signal();
+}
+
+void ArrayFeed::count_damaged() {
+  const std::lock_guard lock(mutex_);
+  ++statistics_.damaged_frames;
+}
+
+void ArrayFeed::count_reconnection() {
+  const std::lock_guard lock(mutex_);
+  ++statistics_.reconnections;
+}
+
+void ArrayFeed::tell(const std::string& text) const {
+  if (notice_) notice_(text);
+}
+
+void ArrayFeed::end(const Status& outcome) {
+  const std::lock_guard lock(mutex_);
+  if (outcome_) return;
+  outcome_ = outcome;
+  signal();
+}
+
+Result<Polled> ArrayFeed::take(RawFrame& frame) {
+  const std::lock_guard lock(mutex_);
+  if (count_ == 0) {
+    if (!outcome_) return Polled::nothing;
+    return *outcome_ ? Result<Polled>(Polled::end) : outcome_->error();
+  }
+  std::swap(frame, ring_[first_]);
+  first_ = (first_ + 1) % ring_.size();
+  frame.acquisition.lost_before += std::exchange(left_out_, 0);
+  ++statistics_.frames;
+  if (--count_ == 0 && !outcome_) {
+    eventfd_t ignored = 0;
+    static_cast<void>(::eventfd_read(event_, &ignored));
+  }
+  return Polled::frame;
+}
+
+void ArrayFeed::wait(Nanos most) {
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, most, [&] { return count_ > 0 || outcome_; });
+}
+
+std::optional<FrameShape> ArrayFeed::shape() const {
+  const std::lock_guard lock(mutex_);
+  return shape_;
+}
+
+SourceStatistics ArrayFeed::statistics() const {
+  const std::lock_guard lock(mutex_);
+  SourceStatistics statistics = statistics_;
+  statistics.rate_hz = arrivals_.rate_hz();
+  statistics.jitter = arrivals_.jitter();
+  return statistics;
+}
+
+void ArrayFeed::signal() {
+  static_cast<void>(::eventfd_write(event_, 1));
+  changed_.notify_all();
+}
+
+}  // namespace dermis::buses

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "buses/topic_bus.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace dermis::buses {
+namespace {
+
+constexpr std::size_t kMostWriters = 64;
+
+std::vector<BusArray> arrays_of(const messages::TouchType& type) {
+  std::vector<BusArray> arrays;
+  for (const messages::TouchArray& array : type.arrays) arrays.push_back({array.name, array.shape});
+  return arrays;
+}
+
+}  // namespace
+
+Result<std::shared_ptr<Bus>> TopicBus::open(const BusAddress& address) {
+  const auto& place = std::get<TopicPlace>(address.place);
+  const Result<const messages::TouchType*> type = messages::find_touch_type(place.type);
+  if (!type) return bad_input("'" + address.text + "': " + type.error().message);
+  std::shared_ptr<TopicBus> bus(new TopicBus(**type, place.topic));
+  const auto hear = [bus = bus.get()](const dds::Sample& sample) { bus->hear(sample); };
+  Result<std::unique_ptr<dds::Subscriber>> subscriber = dds::Subscriber::create(
+      {.domain = place.domain, .loopback_only = place.loopback_only}, {place.topic, (*type)->dds_name, hear});
+  if (!subscriber) return subscriber.error();
+  bus->subscriber_ = *std::move(subscriber);
+  return std::shared_ptr<Bus>(std::move(bus));
+}
+
+TopicBus::TopicBus(const messages::TouchType& type, std::string topic)
+    : Bus(arrays_of(type)), type_(type), topic_(std::move(topic)), readings_(type.arrays.size()) {}
+
+void TopicBus::hear(const dds::Sample& sample) {
+  const Arrival arrival;
+  const std::uint32_t lost = lost_before(sample);
+  sequence_ = has_come_ ? sequence_ + 1 + lost : sample.sequence;
+  for (messages::TouchReading& reading : readings_) reading.frame.acquisition = {};
+  const Status decoded = type_.decode(sample.message, readings_);
+  if (!decoded) return count_damaged(decoded.error());
+  has_come_ = true;
+  for (std::size_t k = 0; k < readings_.size(); ++k) {
+    messages::TouchReading& reading = readings_[k];
+    if (reading.shape == FrameShape{}) continue;
+    Acquisition& acquisition = reading.frame.acquisition;
+    acquisition.sequence = sequence_;
+    acquisition.lost_before = lost;
+    if (!acquisition.device_time) acquisition.device_time = sample.source_time;
+    deliver(k, reading.shape, arrival, reading.frame);
+  }
+}
+
+/// Gaps in the numbers of its writer.
+std::uint32_t TopicBus::lost_before(const dds::Sample& sample) {
+  if (last_.size() > kMostWriters) last_.clear();
+  const auto [known, is_new] = last_.emplace(sample.writer, sample.sequence);
+  if (is_new) return 0;
+  const std::uint64_t lost = sample.sequence - std::exchange(known->second, sample.sequence) - 1;
+  return static_cast<std::uint32_t>(std::min<std::uint64_t>(lost, std::numeric_limits<std::uint32_t>::max()));
+}
+
+/// A topic that has never had a message of its type is not that topic.
+void TopicBus::count_damaged(const Error& why) {
+  for (const std::shared_ptr<ArrayFeed>& reader : all_readers()) {
+    has_come_ ? reader->count_damaged() : reader->end(bad_input(name() + ": " + why.message));
+  }
+}
+
+}  // namespace dermis::buses

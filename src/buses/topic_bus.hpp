@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "buses/bus.hpp"
+#include "dermis/buses/bus_address.hpp"
+#include "dermis/dds/subscriber.hpp"
+#include "dermis/messages/touch_messages.hpp"
+
+namespace dermis::buses {
+
+/// A topic of DDS, each message of which holds all arrays.
+class TopicBus final : public Bus {
+ public:
+  /// Fails on an unknown type, and where DDS is not there.
+  [[nodiscard]] static Result<std::shared_ptr<Bus>> open(const BusAddress& address);
+
+  [[nodiscard]] std::string name() const override { return "'" + topic_ + "' of type " + type_.dds_name; }
+
+ private:
+  TopicBus(const messages::TouchType& type, std::string topic);
+  void hear(const dds::Sample& sample);
+  [[nodiscard]] std::uint32_t lost_before(const dds::Sample& sample);
+  void count_damaged(const Error& why);
+
+  const messages::TouchType& type_;
+  const std::string topic_;
+  std::vector<messages::TouchReading> readings_;
+  std::map<dds::Sample::Writer, std::uint64_t> last_;  // sequence
+  std::uint64_t sequence_ = 0;
+  bool has_come_ = false;                        // a message that could be read
+  std::unique_ptr<dds::Subscriber> subscriber_;  // the first to go
+};
+
+}  // namespace dermis::buses
