@@ -91,7 +91,7 @@ def write_reader(packages, folder):
     shutil.copytree(READER, folder, dirs_exist_ok=True)
     write(folder / "package.xml", package_xml("dermis_reader", packages))
     messages = [message for message in names_in(packages) if has_fields(message)]
-    rows = "".join(f'HANDLE({message.replace("/", ", ")})\n' for message in messages)
+    rows = "".join(f"HANDLE({message.replace('/', ', ')})\n" for message in messages)
     write(folder / "handles.inc", rows)
     write(folder / "packages.cmake", f"set(packages {' '.join(packages)})\n")
 

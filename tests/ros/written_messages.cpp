@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-// written_messages: prints a message of each type as "TYPE CDR JSON", the CDR in hex, the JSON by its definition.
+// written_messages: prints messages of each type, a line each, as JSON: its type and definition, its bytes in hex, and
+// its fields by the definition.
+#include <fmt/core.h>
+
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "dermis/messages/live_messages.hpp"
@@ -20,9 +25,13 @@ constexpr Nanos kTime = std::chrono::seconds(1'790'000'000) + std::chrono::nanos
 constexpr FrameShape kShape{2, 3};
 
 void print(const MessageType& type, const Bytes& message) {
-  std::printf("%s ", type.name);
-  for (const std::uint8_t byte : message) std::printf("%02x", byte);
-  std::printf(" %s\n", read_by_definition(type, message).dump().c_str());
+  std::string hex;
+  for (const std::uint8_t byte : message) hex += fmt::format("{:02x}", byte);
+  const nlohmann::json line = {{"type", type.name},
+                               {"definition", type.definition},
+                               {"cdr", hex},
+                               {"fields", read_by_definition(type, message)}};
+  std::printf("%s\n", line.dump().c_str());
 }
 
 RawFrame raw_frame() {
