@@ -104,12 +104,20 @@ BARE = set(
 exec exit export fi find flock for git grep id if install ldd local ls make mkdir mktemp mount nproc printf return rm
 sed set sh sudo tail tar then touch trap umount while xargs""".split()
 )
-# Our own package, what ROS 2 brings to a launch file, and what tests/requirements.txt names.
-MODULES_OF_OTHERS = {"dermis", "launch", "rosbags", "safetensors"}
+# Our own package and what makes its wheel, what ROS 2 brings to a launch file, and what tests/requirements.txt names.
+MODULES_OF_OTHERS = {"build_backend", "dermis", "launch", "mcap", "mcap_ros2", "rosbags", "safetensors"}
 
 FOLDERS = ("scripts", ".ci", "tests", "packaging", "examples", "viewer")
 # Projects of others, what is built, and this table.
-LEFT_OUT = ("tests/install", "tests/npm", "tests/ros/reader", "ros", "build", "viewer/node_modules", "tests/architecture/check_packages")
+LEFT_OUT = (
+    "tests/install",
+    "tests/npm",
+    "tests/ros/reader",
+    "ros",
+    "build",
+    "viewer/node_modules",
+    "tests/architecture/check_packages",
+)
 COMMENT = re.compile(r"(?:^\s*|\s{2})(?:#|//) .*$", re.MULTILINE)
 LONG_TEXT = re.compile(r'(^\s*)?""".*?"""', re.MULTILINE | re.DOTALL)  # a docstring begins its line
 IMPORT = re.compile(r'^\s*(?:import|from) (\w+)\b(?! from ")', re.MULTILINE)
