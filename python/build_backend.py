@@ -19,7 +19,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build/wheel"
-# What cmake remembers of the Python of an earlier wheel.
+# Names by which cmake remembers the Python of an earlier wheel.
 OF_PYTHON = ("Python*", "PYTHON*", "_Python*", "pybind11*", "PYBIND11*")
 
 

@@ -89,7 +89,7 @@ def _forces_png(self):
 
 _PIXELS = 240  # of the longer side of a map
 _MOST_TAXELS = 4096  # more would be a page of a megabyte
-# Of the colours between which a taxel stands: nothing, half, the most.
+# Red, green and blue of nothing, half and the most, between which a taxel stands.
 _COLOURS = numpy.array([[13, 17, 48], [188, 55, 84], [252, 230, 150]])
 
 

@@ -37,7 +37,7 @@ TOPICS = {
 
 
 def plain(value):
-    """Of either package: numbers, texts, lists, and the fields of a message by their names."""
+    """A value of either package as numbers, texts, lists, and the fields of a message by their names."""
     if isinstance(value, numpy.ndarray):
         return value.tolist()
     if isinstance(value, bytes):
@@ -141,7 +141,7 @@ class Bags(SmallArray):
         numpy.testing.assert_array_equal(frames[:, -6:], [[k, k + 0.5, 2, 3, 4, 5] for k in range(5)])
 
     def write_touches(self, bag, store):
-        """Of a hand with two tips, beside a camera."""
+        """A hand with two tips, beside a camera."""
         types = store.types
         stamp = types["builtin_interfaces/msg/Time"](sec=7, nanosec=9)
         header = types["std_msgs/msg/Header"](stamp=stamp, frame_id="", **({"seq": 0} if bag is self.ros_1 else {}))

@@ -14,6 +14,7 @@ sys.path.append(str(Path(__file__).resolve().parents[1] / "command_line"))
 sys.path.append(str(Path(__file__).resolve().parents[2] / "python"))
 sys.path.append(str(Path(__file__).resolve().parents[2] / "scripts"))
 import build_backend
+import numpy
 import support
 import wheels
 from support import SmallArray, dermis
@@ -21,7 +22,7 @@ from support import SmallArray, dermis
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE, VENV = (Path(sys.argv.pop(2)) for _ in range(2))
 NUMPY = "1.26.4"  # the last before numpy 2, with which the other tests run
-# Of glibc and the compiler, which every machine has.
+# Libraries of glibc and the compiler, which every machine has.
 EVERYWHERE = ("ld-linux", "libc.", "libm.", "libgcc_s.", "libstdc++.", "libpthread.", "libdl.", "librt.", "libresolv.")
 PROGRAM = """
 import bz2, lzma  # with libraries of their own
@@ -70,9 +71,11 @@ class Wheel(SmallArray):
         others = [path for path in loaded if not path.startswith(str(VENV))]
         self.assertGreater(len(loaded) - len(others), 10)
         self.assertEqual([path for path in others if not Path(path).name.startswith(EVERYWHERE)], [])
-        expected = self.work / "expected.npy"
+        expected = self.work / "expected.csv"
         self.assertEqual(dermis("run", "--model", self.model, "--in", frames, "--out", expected).returncode, 0)
-        self.assertEqual(out.read_bytes(), expected.read_bytes())
+        table = numpy.genfromtxt(expected, delimiter=",", skip_header=1)[:, 2:].astype("f4")  # behind time and status
+        newtons = numpy.load(out)
+        self.assertEqual(newtons.reshape(table.shape).tobytes(), table.tobytes())
 
     def test_it_has_the_licenses_of_its_libraries(self):
         names = zipfile.ZipFile(self.wheel).namelist()

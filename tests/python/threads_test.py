@@ -15,7 +15,7 @@ THREADS = 8
 
 
 def at_once(work, threads=THREADS):
-    """What each of them returns, begun at the same moment."""
+    """Results of all threads, which begin at the same moment."""
     gate = threading.Barrier(threads)
 
     def begin(k):

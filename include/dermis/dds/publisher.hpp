@@ -23,8 +23,8 @@ struct PublisherOptions {
   [[nodiscard]] Status validate() const;
 };
 
-/// As the nodes of ROS 2 have them that are started from the same shell: the domain of ROS_DOMAIN_ID where none is
-/// `wanted`, and loopback alone by ROS_LOCALHOST_ONLY or ROS_AUTOMATIC_DISCOVERY_RANGE.
+/// As the nodes of ROS 2 have them that are started from the same shell. The domain is that of ROS_DOMAIN_ID where none
+/// is `wanted`. ROS_LOCALHOST_ONLY and ROS_AUTOMATIC_DISCOVERY_RANGE tell whether loopback is all.
 [[nodiscard]] Result<PublisherOptions> options_of_environment(std::optional<std::uint64_t> wanted = std::nullopt);
 
 /// The messages to be published. Subscribers may be reliable or, as for the data of sensors, not.
