@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "dermis/core/frame_source.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
 #include "dermis/recordings/mcap.hpp"
