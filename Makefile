@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # CI runs these targets (.ci/run). Each installs what it needs.
 
-.PHONY: build setup demo live python test lint numerics sanitize fuzz check-all bench profile docs bare package package-test site clean
+.PHONY: build setup demo live python wheels test lint numerics sanitize fuzz check-all bench profile docs bare package package-test site clean
 
 build: setup
 	cmake --preset release
@@ -21,6 +21,11 @@ python: setup
 	scripts/setup python
 	cmake --preset release
 	cmake --build --preset release --target dermis_python
+
+# A wheel for each Python that is here, with its libraries inside, and the sources, in build/wheels.
+wheels: setup
+	scripts/setup python
+	scripts/wheels.py
 
 test: setup
 	scripts/setup test

@@ -33,3 +33,8 @@ configure_package_config_file(cmake/dermis-config.cmake.in ${PROJECT_BINARY_DIR}
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/dermis-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/dermis-config.cmake ${PROJECT_BINARY_DIR}/dermis-config-version.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/dermis)
+
+# The messages as a package of ROS 2, in sources: each workspace builds it for its own ROS.
+set(package ${CMAKE_INSTALL_DATADIR}/dermis/ros/dermis_msgs)
+install(FILES ros/dermis_msgs/CMakeLists.txt ros/dermis_msgs/package.xml DESTINATION ${package} COMPONENT ros EXCLUDE_FROM_ALL)
+install(DIRECTORY src/messages/msg/dermis_msgs/ DESTINATION ${package}/msg COMPONENT ros EXCLUDE_FROM_ALL)

@@ -12,6 +12,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   namespace messages = dermis::messages;
   const std::span<const std::uint8_t> message(data, size);
   dermis::RawFrame frame;
+  if (const auto shape = messages::decode_tactile_state(message, frame)) {
+    if (shape->taxel_count() != frame.counts.size()) std::abort();
+  }
   if (const auto shape = messages::decode_image(message, frame)) {
     if (frame.counts.size() != shape->taxel_count()) std::abort();
   }

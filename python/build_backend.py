@@ -1,19 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
-"""Makes the wheel (PEP 517): CMake builds the module for the Python that runs this, and the package is zipped."""
+"""Makes the wheel and the archive of the sources (PEP 517). CMake builds the module for the Python that runs this, and
+the package is zipped. CMAKE_ARGS has further options of cmake."""
 
 import base64
+import gzip
 import hashlib
+import io
 import os
 import re
+import shlex
 import subprocess
 import sys
 import sysconfig
+import tarfile
 import zipfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-BUILD = ROOT / "build" / f"wheel-{sysconfig.get_config_var('SOABI')}"
+BUILD = ROOT / "build/wheel"
+# Names by which cmake remembers the Python of an earlier wheel.
+OF_PYTHON = ("Python*", "PYTHON*", "_Python*", "pybind11*", "PYBIND11*")
 
 
 def version():
@@ -33,6 +40,8 @@ def metadata():
 
 
 def configure(*options):
+    forget = [word for names in OF_PYTHON for word in ("-U", names)]
+    options = [*forget, *options, *shlex.split(os.environ.get("CMAKE_ARGS", ""))]
     try:
         subprocess.run(["cmake", "-S", ROOT, "-B", BUILD, "-G", "Ninja", *options], check=True)
     except (FileNotFoundError, subprocess.CalledProcessError):
@@ -47,8 +56,11 @@ def build_package():
         "-DDERMIS_BUILD_TESTS=OFF",
         f"-DPython3_EXECUTABLE={sys.executable}",
     )
+    package = BUILD / "python" / "dermis"
+    for earlier in package.glob("_dermis*.so"):
+        earlier.unlink()
     subprocess.run(["cmake", "--build", BUILD, "--target", "dermis_python"], check=True)
-    return BUILD / "python" / "dermis"
+    return package
 
 
 def record_line(name, content):
@@ -65,12 +77,18 @@ def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
-    package = build_package()
+    return pack_wheel(build_package(), wheel_directory)
+
+
+def pack_wheel(package, wheel_directory, licenses=None):
+    """`licenses`: name -> text, of the libraries that will be inside."""
     tag = f"cp{sys.version_info.major}{sys.version_info.minor}"
     tag = f"{tag}-{tag}-{sysconfig.get_platform().replace('-', '_').replace('.', '_')}"
     files = {f"dermis/{file.name}": file.read_bytes() for file in sorted(package.iterdir()) if file.is_file()}
     files[f"{info()}/METADATA"] = metadata().encode()
     files[f"{info()}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: dermis\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()
+    for library, text in (licenses or {}).items():
+        files[f"{info()}/licenses/{library}"] = text
     record = "".join(record_line(name, content) for name, content in files.items()) + f"{info()}/RECORD,,\n"
     files[f"{info()}/RECORD"] = record.encode()
     name = f"dermis-{version()}-{tag}.whl"
@@ -80,5 +98,35 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     return name
 
 
+def source_files():
+    """All that is in git; all files in an archive of the sources, which has no git."""
+    if (ROOT / "PKG-INFO").exists():
+        return sorted(
+            path.relative_to(ROOT) for path in ROOT.rglob("*") if path.is_file() and BUILD not in path.parents
+        )
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    return sorted(Path(name) for name in listed.split("\0") if name and (ROOT / name).exists())
+
+
 def build_sdist(sdist_directory, config_settings=None):
-    raise NotImplementedError("the sources of dermis are its repository; install from a clone of it")
+    """The same sources give the same bytes."""
+    folder = f"dermis-{version()}"
+    name = f"{folder}.tar.gz"
+    with (
+        open(os.path.join(sdist_directory, name), "wb") as file,
+        gzip.GzipFile(filename="", mode="wb", fileobj=file, mtime=0) as packed,
+        tarfile.open(fileobj=packed, mode="w", format=tarfile.PAX_FORMAT) as archive,
+    ):
+        for path in source_files():
+            entry = archive.gettarinfo(ROOT / path, f"{folder}/{path}")
+            entry.uid, entry.gid, entry.uname, entry.gname, entry.mtime = 0, 0, "", "", 0
+            if entry.isreg():
+                with open(ROOT / path, "rb") as content:
+                    archive.addfile(entry, content)
+            else:
+                archive.addfile(entry)
+        if not (ROOT / "PKG-INFO").exists():
+            entry = tarfile.TarInfo(f"{folder}/PKG-INFO")
+            entry.size = len(metadata().encode())
+            archive.addfile(entry, io.BytesIO(metadata().encode()))
+    return name

@@ -2,17 +2,12 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <atomic>
-#include <charconv>
 #include <cstdint>
-#include <cstdlib>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include "commands.hpp"
@@ -53,33 +48,6 @@ Status check(const ServeOptions& options) {
   const bool is_recording = format && *format == recordings::FrameFormat::mcap;
   if (!record.empty() && !is_recording) return bad_input("--record: end it in .mcap");
   return options.session.server.validate();
-}
-
-std::string_view environment(const char* name) {
-  const char* const value = std::getenv(name);
-  return value != nullptr ? value : "";
-}
-
-/// The domain of ROS 2 nodes that are started from the same shell.
-Result<std::uint64_t> domain_of_ros() {
-  const std::string_view text = environment("ROS_DOMAIN_ID");
-  std::uint64_t domain = 0;
-  if (text.empty()) return domain;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), domain);
-  if (error == std::errc() && end == text.data() + text.size()) return domain;
-  return bad_input(fmt::format("ROS_DOMAIN_ID: must be 0 to 232, is '{}'", text));
-}
-
-Result<dds::PublisherOptions> dds_options(const std::optional<std::uint64_t>& wanted) {
-  const Result<std::uint64_t> domain = wanted ? Result<std::uint64_t>(*wanted) : domain_of_ros();
-  if (!domain) return domain.error();
-  dds::PublisherOptions options;
-  options.domain =
-      static_cast<std::uint32_t>(std::min<std::uint64_t>(*domain, std::numeric_limits<std::uint32_t>::max()));
-  options.loopback_only =
-      environment("ROS_LOCALHOST_ONLY") == "1" || environment("ROS_AUTOMATIC_DISCOVERY_RANGE") == "LOCALHOST";
-  if (Status valid = options.validate(); !valid) return valid.error();
-  return options;
 }
 
 Result<fleet::PublisherOptions> publisher_options(const ServeOptions& options) {
@@ -129,7 +97,7 @@ Status set_up_array(ServeOptions& options) {
 Status serve_suit(ServeOptions& options) {
   if (Status possible = check(options); !possible) return possible;
   if (options.dds) {
-    Result<dds::PublisherOptions> dds = dds_options(options.domain);
+    Result<dds::PublisherOptions> dds = dds::options_of_environment(options.domain);
     if (!dds) return dds.error();
     options.session.dds = *dds;
   }

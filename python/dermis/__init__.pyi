@@ -101,6 +101,7 @@ class RawFrame:
     @property
     def lost_before(self) -> int: ...
     def _repr_png_(self) -> bytes: ...
+    def _repr_html_(self) -> str: ...
 
 class ForceFrame:
     """Forces of one frame. The arrays are views (rows, cols); they keep the frame alive."""
@@ -126,6 +127,7 @@ class ForceFrame:
         """Its standard deviation, with the errors that taxels share."""
     def total_of(self, mask: ArrayLike) -> tuple[float, float]:
         """The same of the taxels where mask (rows, cols) is true: newtons, standard deviation."""
+    def _repr_html_(self) -> str: ...
     def _repr_png_(self) -> bytes: ...
 
 class Recording:
@@ -171,6 +173,7 @@ class Recording:
     def supply_v(self) -> NDArray[np.float64]: ...
     @property
     def counts(self) -> NDArray[np.float32]: ...
+    def _repr_html_(self) -> str: ...
 
 class Forces:
     """Forces of many frames: newtons, sigma_newtons [N] and taxels (TaxelStatus) are (frames, rows, cols), status
@@ -239,6 +242,7 @@ class Pipeline:
         """The second is not over yet."""
     def follow_drift(self, follow: bool = True) -> None:
         """Follows the offsets of idle taxels slowly (docs/tare-and-drift.md). Off at first."""
+    def _repr_html_(self) -> str: ...
 
 class Contact:
     """A contact with the array in one place. Pairs are (x, y): x along the columns, y along the rows."""
@@ -498,6 +502,9 @@ def serve(
     host: str = "127.0.0.1",
     port: int = 8080,
     token: str = "",
+    dds: bool = False,
+    domain: int | None = None,
 ) -> Server:
     """The page and the stream of an array (uri and model) or of a suit; port 0 is any that is free. Where `record`
-    exists, the recording has the UTC time in its name."""
+    exists, the recording has the UTC time in its name. With `dds` nodes of ROS 2 hear its topics, in their `domain` or
+    in that of ROS_DOMAIN_ID."""

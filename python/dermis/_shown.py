@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
-"""How objects show themselves: one line for repr(), a heat map in notebooks."""
+"""How objects show themselves: one line for repr(), a heat map in notebooks, as a picture and as HTML."""
+
+from html import escape
 
 import numpy
 
@@ -85,8 +87,70 @@ def _forces_png(self):
     return _dermis.picture(self.newtons[k], "forces", total, "N")
 
 
+_PIXELS = 240  # of the longer side of a map
+_MOST_TAXELS = 4096  # more would be a page of a megabyte
+# Red, green and blue of nothing, half and the most, between which a taxel stands.
+_COLOURS = numpy.array([[13, 17, 48], [188, 55, 84], [252, 230, 150]])
+
+
+def _colour(share):
+    low = min(int(2 * share), 1)
+    red, green, blue = _COLOURS[low] + (2 * share - low) * (_COLOURS[low + 1] - _COLOURS[low])
+    return f"#{int(red):02x}{int(green):02x}{int(blue):02x}"
+
+
+def _map_svg(values, unit):
+    """A rectangle for each taxel, with its value as a title; grey where there is none."""
+    rows, cols = values.shape
+    if rows * cols > _MOST_TAXELS:
+        return ""
+    there = values[numpy.isfinite(values)]
+    least, most = (float(there.min()), float(there.max())) if there.size else (0.0, 0.0)
+    span = most - least or 1.0
+    cells = "".join(
+        f'<rect x="{col}" y="{row}" width="1" height="1" fill="{_colour((value - least) / span)}">'
+        f"<title>r{row}c{col}: {value:.4g} {unit}</title></rect>"
+        if numpy.isfinite(value)
+        else f'<rect x="{col}" y="{row}" width="1" height="1" fill="#888"><title>r{row}c{col}</title></rect>'
+        for row, line in enumerate(values.tolist())
+        for col, value in enumerate(line)
+    )
+    scale = _PIXELS / max(rows, cols)
+    caption = f"<figcaption>{least:.4g} to {most:.4g} {unit}</figcaption>" if there.size else ""
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{cols * scale:.0f}" height="{rows * scale:.0f}" '
+        f'viewBox="0 0 {cols} {rows}" shape-rendering="crispEdges">{cells}</svg>{caption}'
+    )
+
+
+def _html(line, values=None, unit=""):
+    drawn = "" if values is None else _map_svg(numpy.asarray(values), unit)
+    return f"<figure><code>{escape(line)}</code><br>{drawn}</figure>"
+
+
+def _counts_html(self):
+    return _html(repr(self), self.counts, "counts")
+
+
+def _force_html(self):
+    return _html(repr(self), self.newtons, "N")
+
+
+def _recording_html(self):
+    """The span of the counts of each taxel: where it was touched."""
+    if not len(self.counts):
+        return _html(repr(self))
+    return _html(repr(self), numpy.ptp(self.counts, axis=0), "counts, greatest less least")
+
+
+def _pipeline_html(self):
+    """Its taxels: it keeps no frame."""
+    array = self.model.array
+    return _html(f"{self!r}, {array.circuit}", numpy.full((array.rows, array.cols), numpy.nan))
+
+
 def show_well():
-    """Gives the classes of the module their __repr__ and pictures."""
+    """Gives the classes of the module their __repr__, pictures and HTML."""
     lines = {
         _dermis.Recording: _of_recording,
         _dermis.RawFrame: _of_raw,
@@ -108,3 +172,10 @@ def show_well():
         (_dermis.Forces, _forces_png),
     ):
         kind._repr_png_ = picture
+    for kind, page in (
+        (_dermis.RawFrame, _counts_html),
+        (_dermis.ForceFrame, _force_html),
+        (_dermis.Recording, _recording_html),
+        (_dermis.Pipeline, _pipeline_html),
+    ):
+        kind._repr_html_ = page

@@ -2,10 +2,12 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <thread>
 #include <utility>
 
 #include "bindings.hpp"
+#include "dermis/dds/publisher.hpp"
 #include "dermis/serve/served_suit.hpp"
 #include "dermis/serve/session.hpp"
 #include "viewer/viewer_assets.hpp"
@@ -88,7 +90,7 @@ void bind_serve(py::module_& module) {
       "serve",
       [](const py::object& uri, const py::object& model, const py::object& suit, const py::object& classes,
          const py::object& threats, const py::object& record, const std::string& host, std::uint16_t port,
-         const std::string& token) {
+         const std::string& token, bool dds, std::optional<std::uint64_t> domain) {
         const serve::SuitPlace place = {.from = text_of(uri),
                                         .model = text_of(model),
                                         .suit = text_of(suit),
@@ -99,12 +101,15 @@ void bind_serve(py::module_& module) {
         options.server.port = port;
         options.server.token = token;
         options.record = text_of(record);
+        if (domain && !dds) raise_where_failed(bad_field("domain", "is that of dds=True"));
+        if (dds) options.dds = value_or_raise(dds::options_of_environment(domain));
         raise_where_failed(options.server.validate());
         return std::make_unique<Server>(place, std::move(options));
       },
       py::arg("uri") = py::none(), py::arg("model") = py::none(), py::kw_only(), py::arg("suit") = py::none(),
       py::arg("classes") = py::none(), py::arg("threats") = py::none(), py::arg("record") = py::none(),
-      py::arg("host") = defaults.host, py::arg("port") = defaults.port, py::arg("token") = defaults.token);
+      py::arg("host") = defaults.host, py::arg("port") = defaults.port, py::arg("token") = defaults.token,
+      py::arg("dds") = false, py::arg("domain") = py::none());
 }
 
 }  // namespace dermis::python

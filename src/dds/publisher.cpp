@@ -2,8 +2,14 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/dds/publisher.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <cassert>
+#include <charconv>
+#include <cstdlib>
+#include <limits>
+#include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -16,11 +22,38 @@ namespace {
 constexpr std::uint32_t kLastDomain = 232;  // whose ports are below 65536
 constexpr std::size_t kMostWaitingBytes = std::size_t{16} << 20U;
 
+std::string_view environment(const char* name) {
+  const char* const value = std::getenv(name);
+  return value != nullptr ? value : "";
+}
+
+/// 0 where none is set.
+Result<std::uint64_t> domain_of_environment() {
+  const std::string_view text = environment("ROS_DOMAIN_ID");
+  std::uint64_t domain = 0;
+  if (text.empty()) return domain;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), domain);
+  if (error == std::errc() && end == text.data() + text.size()) return domain;
+  return bad_input("ROS_DOMAIN_ID: must be 0 to 232, is '" + std::string(text) + "'");
+}
+
 }  // namespace
 
 Status PublisherOptions::validate() const {
   if (domain <= kLastDomain) return Done{};
   return bad_field("domain", "must be 0 to 232, is " + std::to_string(domain));
+}
+
+Result<PublisherOptions> options_of_environment(std::optional<std::uint64_t> wanted) {
+  const Result<std::uint64_t> domain = wanted ? Result<std::uint64_t>(*wanted) : domain_of_environment();
+  if (!domain) return domain.error();
+  PublisherOptions options;
+  options.domain =
+      static_cast<std::uint32_t>(std::min<std::uint64_t>(*domain, std::numeric_limits<std::uint32_t>::max()));
+  options.loopback_only =
+      environment("ROS_LOCALHOST_ONLY") == "1" || environment("ROS_AUTOMATIC_DISCOVERY_RANGE") == "LOCALHOST";
+  if (Status valid = options.validate(); !valid) return valid.error();
+  return options;
 }
 
 class Publisher::Implementation {

@@ -28,8 +28,12 @@ Nanos read_header(CdrReader& reader) {
   return stamp;
 }
 
+Error not_whole(const char* type) {
+  return bad_input(std::string("the message is no whole ") + type + " in CDR");
+}
+
 Error not_whole(const MessageType& type) {
-  return bad_input(std::string("the message is no whole ") + type.name + " in CDR");
+  return not_whole(type.name);
 }
 
 /// The fields of an image before its data, and the place of the data.
@@ -127,6 +131,27 @@ Result<FrameShape> decode_image(std::span<const std::uint8_t> message, RawFrame&
     is_words ? read_words(bytes, big_endian, counts) : read_floats(bytes, big_endian, counts);
   }
   return FrameShape{rows, cols};
+}
+
+Result<FrameShape> decode_tactile_state(std::span<const std::uint8_t> message, RawFrame& frame) {
+  CdrReader reader(message);
+  frame.time = read_header(reader);
+  frame.counts.clear();
+  const std::size_t sensors = reader.read<std::uint32_t>();
+  std::size_t each = 0;
+  bool is_table = true;
+  for (std::size_t sensor = 0; sensor < sensors && reader.good(); ++sensor) {
+    static_cast<void>(reader.read_text());  // its name
+    const std::size_t values = reader.read<std::uint32_t>();
+    if (sensor == 0) each = values;
+    is_table = is_table && values == each;
+    for (std::size_t k = 0; k < values && reader.good(); ++k) frame.counts.push_back(reader.read<float>());
+  }
+  if (!reader.good()) return not_whole(kTactileState);
+  const FrameShape shape = is_table ? FrameShape{sensors, each} : FrameShape{1, frame.counts.size()};
+  if (is_possible(shape.rows, shape.cols)) return shape;
+  return bad_input("the sensors have " + std::to_string(shape.rows) + "x" + std::to_string(shape.cols) +
+                   " values; 1x1 to 1024x1024 can be read");
 }
 
 void encode_temperature(double celsius, Nanos time, std::string_view frame_id, std::vector<std::uint8_t>& message) {

@@ -8,10 +8,19 @@ namespace dermis::recordings {
 
 MessageKind kind_of(const McapChannel& channel) {
   if (channel.encoding != "cdr") return MessageKind::none;
-  if (channel.schema_name == messages::image_type().name) return MessageKind::image;
+  if (channel.schema_name == messages::image_type().name || is_tactile_state(channel)) return MessageKind::image;
   if (channel.schema_name == messages::acquisition_type().name) return MessageKind::acquisition;
   if (channel.schema_name == messages::temperature_type().name) return MessageKind::temperature;
   return MessageKind::none;
+}
+
+bool is_tactile_state(const McapChannel& channel) {
+  return channel.schema_name == messages::kTactileState;
+}
+
+Result<FrameShape> decode_counts(const McapChannel& channel, std::span<const std::uint8_t> message, RawFrame& frame) {
+  if (is_tactile_state(channel)) return messages::decode_tactile_state(message, frame);
+  return messages::decode_image(message, frame);
 }
 
 }  // namespace dermis::recordings

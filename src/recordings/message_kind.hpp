@@ -3,15 +3,26 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
+#include "dermis/core/frame_source.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/result.hpp"
 #include "dermis/recordings/mcap.hpp"
 
 namespace dermis::recordings {
 
-/// The meaning of a topic's messages for the frames.
+/// The meaning of a topic's messages for the frames; what holds counts is an image, also of sensors without places.
 enum class MessageKind : std::uint8_t { none, image, acquisition, temperature };
 
 /// Frames are read of messages in CDR alone.
 [[nodiscard]] MessageKind kind_of(const McapChannel& channel);
+
+/// Messages of sensors of touch: where there are some, the images of a bag are those of cameras.
+[[nodiscard]] bool is_tactile_state(const McapChannel& channel);
+
+/// Counts and stamp of a message of the kind `image`.
+[[nodiscard]] Result<FrameShape> decode_counts(const McapChannel& channel, std::span<const std::uint8_t> message,
+                                               RawFrame& frame);
 
 }  // namespace dermis::recordings

@@ -16,7 +16,7 @@ void RecordingCounts::count(const McapMessage& message, const McapChannel& chann
     lost_[folder] += frame_.acquisition.lost_before;
   }
   if (kind != MessageKind::image) return;
-  const Result<FrameShape> decoded = messages::decode_image(message.data, frame_);
+  const Result<FrameShape> decoded = decode_counts(channel, message.data, frame_);
   if (!decoded) {
     if (unread_.empty())
       unread_ = "an image of " + printable(channel.topic) + " cannot be read: " + decoded.error().message;

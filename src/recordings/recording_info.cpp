@@ -183,8 +183,8 @@ bool begins_with_frame(McapReader& reader) {
   while (true) {
     const Result<bool> got_message = reader.next(message);
     if (!got_message || !*got_message) return false;
-    if (kind_of(reader.channels().at(message.channel)) != MessageKind::image) continue;
-    return messages::decode_image(message.data, frame).has_value();
+    const McapChannel& channel = reader.channels().at(message.channel);
+    if (kind_of(channel) == MessageKind::image) return decode_counts(channel, message.data, frame).has_value();
   }
 }
 

@@ -120,12 +120,15 @@ void SuitRecordingReader::Implementation::describe() {
   for (std::size_t i = 0; i < count; ++i) arrays_[i].shape = read_[i].shape.value_or(FrameShape{});
 }
 
-/// The first topic of images is taken where the arrays are not said.
+/// The first topic of images is taken where the arrays are not said; images beside sensors of touch are of cameras.
 Use SuitRecordingReader::Implementation::find_use(std::uint16_t id, const McapChannel& channel) {
   Use use{kind_of(channel), 0};
   const std::string_view folder = topic_folder(channel.topic);
   if (folders_.empty()) {
     if (use.kind != MessageKind::image) return use;
+    const auto is_touch = [](const auto& known) { return is_tactile_state(known.second); };
+    const bool is_camera = !is_touch(std::pair(id, channel)) && std::ranges::any_of(mcap_->channels(), is_touch);
+    if (is_camera) return {};
     uses_.clear();
     folders_.emplace(folder, 0);
   } else {
@@ -170,7 +173,7 @@ Status SuitRecordingReader::Implementation::read_other(const Use& use, const Mca
 
 Status SuitRecordingReader::Implementation::read_image(const Use& use, const McapMessage& message, RawFrame& frame) {
   ReadArray& array = read_[use.array];
-  const Result<FrameShape> decoded = messages::decode_image(message.data, frame);
+  const Result<FrameShape> decoded = decode_counts(mcap_->channels().at(message.channel), message.data, frame);
   if (!decoded) return error(message, decoded.error());
   if (array.shape && *decoded != *array.shape) {
     return error(message, bad_input("the image is " + files::size_text(*decoded) + ", the first " +

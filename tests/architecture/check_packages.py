@@ -58,6 +58,9 @@ BRINGS = {
     "libopenmpi-dev": "MPI",
     "openmpi-bin": "mpirun",
     "universal-ctags": "ctags",
+    "ament-cmake": "ament_cmake",
+    "colcon": "colcon",
+    "rosidl-generator-c-cpp": "rosidl_generator_cpp",
     "clang-format-16": "clang-format-16",
     "clang-tidy-16": "clang-tidy-16",
     "libtorch-dev": "torch torch_cpu c10 torch/csrc/api/include/torch/torch.h",
@@ -92,6 +95,7 @@ TRACES = {
     '"name": "material"': "mkdocs-material",
     "--target dermis_python": "python3-numpy",
     "dermis_fast_dds dermis_open_mpi": "libopenmpi-dev",
+    '"colcon", "build"': "python3-colcon-cmake python3-colcon-ros",
     '"--oversubscribe"': "libopenmpi-dev openmpi-bin",
     "#!/usr/bin/python3": "python3",
     '"--zstd"': "zstd",
@@ -103,12 +107,20 @@ BARE = set(
 exec exit export fi find flock for git grep id if install ldd local ls make mkdir mktemp mount nproc printf return rm
 sed set sh sudo tail tar then touch trap umount while xargs""".split()
 )
-# Our own package, what ROS 2 brings to a launch file, and what tests/requirements.txt names.
-MODULES_OF_OTHERS = {"dermis", "launch", "rosbags", "safetensors"}
+# Our own package and what makes its wheel, what ROS 2 brings to a launch file, and what tests/requirements.txt names.
+MODULES_OF_OTHERS = {"build_backend", "dermis", "launch", "mcap", "mcap_ros2", "rosbags", "safetensors"}
 
 FOLDERS = ("scripts", ".ci", "tests", "packaging", "examples", "viewer")
 # Projects of others, what is built, and this table.
-LEFT_OUT = ("tests/install", "tests/npm", "ros", "build", "viewer/node_modules", "tests/architecture/check_packages")
+LEFT_OUT = (
+    "tests/install",
+    "tests/npm",
+    "tests/ros/reader",
+    "ros",
+    "build",
+    "viewer/node_modules",
+    "tests/architecture/check_packages",
+)
 COMMENT = re.compile(r"(?:^\s*|\s{2})(?:#|//) .*$", re.MULTILINE)
 LONG_TEXT = re.compile(r'(^\s*)?""".*?"""', re.MULTILINE | re.DOTALL)  # a docstring begins its line
 IMPORT = re.compile(r'^\s*(?:import|from) (\w+)\b(?! from ")', re.MULTILINE)

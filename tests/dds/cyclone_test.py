@@ -210,8 +210,8 @@ class Cyclone(SmallArray):
         for message in self.of("/contacts"):
             array = message["array"]
             rows = self.tables[array]["contacts"].at(time_of(message))
-            self.assertEqual(len(message["contacts"]), len(rows))
-            for contact, row in zip(message["contacts"], rows):
+            self.assertEqual(len(message["touches"]), len(rows))
+            for contact, row in zip(message["touches"], rows):
                 found += 1
                 self.expect_contact(contact, row)
                 place = np.array([contact["x"], contact["y"], 0.0])

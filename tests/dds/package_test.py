@@ -5,11 +5,16 @@ launches."""
 
 import re
 import runpy
+import shutil
+import subprocess
 import sys
+import tempfile
 import types
 import unittest
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
+
+import cyclone_types
 
 ROOT = Path(__file__).parents[2]
 PACKAGE = ROOT / "ros/dermis_msgs"
@@ -34,6 +39,25 @@ class Package(unittest.TestCase):
             for line in path.read_text().splitlines():
                 line = line.split("#")[0].strip()
                 self.assertTrue(not line or FIELD.fullmatch(line) or CONSTANT.fullmatch(line), f"{path.name}: {line}")
+
+    def test_names_differ_from_one_another_in_more_than_case(self):
+        for path in MESSAGES.iterdir():
+            lines = [line.split("#")[0].split() for line in path.read_text().splitlines()]
+            names = [path.stem, *(words[1].split("=")[0] for words in lines if words)]
+            self.assertEqual(len({name.lower() for name in names}), len(names), f"{path.name}: {names}")
+
+    @unittest.skipUnless(shutil.which("idlc"), "idlc is not installed")
+    def test_a_compiler_of_idl_that_ignores_case_takes_the_messages(self):
+        folders = [MESSAGES, *(MESSAGES.parent / name for name in ("builtin_interfaces", "geometry_msgs", "std_msgs"))]
+        every = {f"{folder.name}/{path.stem}": path.read_text() for folder in folders for path in folder.glob("*.msg")}
+        idl = "".join(cyclone_types.idl(name, every[name]) for name in cyclone_types.in_order(every))
+        # The names of ROS again, where those of DDS end in '_'.
+        idl = re.sub(r"(?<=\w)_(?!\w)", "", idl.replace("_value;", ";"))
+        self.assertIn("struct Contacts {", idl)
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "ros.idl").write_text(idl)
+            compiled = subprocess.run(["idlc", "-l", "c", "ros.idl"], cwd=folder, capture_output=True, text=True)
+        self.assertEqual(compiled.returncode, 0, compiled.stderr)
 
     def test_the_package_depends_on_what_its_messages_use(self):
         used = {

@@ -105,7 +105,7 @@ TEST(LiveMessages, contacts_stand_in_the_plane_and_in_the_suit) {
   encode_contacts({"chest", report, contacts, Vector3{4.0, 5.0, 6.0}, {-0.5, 0.25, 3}}, "suit", message);
   const json expected_contact = {{"id", 9},
                                  {"phase", 2},
-                                 {"onset", stamp()},
+                                 {"onset_time", stamp()},
                                  {"x", 0.01},
                                  {"y", 0.02},
                                  {"sigma_x", 0.03},
@@ -130,7 +130,7 @@ TEST(LiveMessages, contacts_stand_in_the_plane_and_in_the_suit) {
                                                                 {"sigma_total_n", 0.1},
                                                                 {"has_centre_of_pressure", true},
                                                                 {"centre_of_pressure", vector(4.0, 5.0, 6.0)},
-                                                                {"contacts", json::array({expected_contact})},
+                                                                {"touches", json::array({expected_contact})},
                                                                 {"sum_n", -0.5},
                                                                 {"sigma_sum_n", 0.25}}));
   encode_contacts({"chest", report, {}, {}}, "suit", message);
@@ -280,7 +280,7 @@ TEST(LiveMessages, a_threat_has_all_of_its_fields) {
                                                               {"quantity", "contact_force"},
                                                               {"state", 3},
                                                               {"changed", true},
-                                                              {"crossed", stamp()},
+                                                              {"crossed_time", stamp()},
                                                               {"value", 25.5},
                                                               {"sigma", 0.25},
                                                               {"worst", 30.5},

@@ -285,6 +285,41 @@ TEST(MessageTypes, definitions_name_every_type_that_they_use) {
 }
 
 /// As ROS 2 prints them ("ros2 topic info --verbose"), from recordings and programs of others.
+Bytes tactile_state(const std::vector<std::vector<float>>& sensors) {
+  Bytes message;
+  CdrWriter writer(message);
+  writer.write(std::int32_t{7});
+  writer.write(std::uint32_t{9});
+  writer.write_text("hand");
+  writer.write(static_cast<std::uint32_t>(sensors.size()));
+  for (const std::vector<float>& values : sensors) {
+    writer.write_text("tip");
+    writer.write(static_cast<std::uint32_t>(values.size()));
+    for (const float value : values) writer.write(value);
+  }
+  return message;
+}
+
+TEST(TactileState, sensors_of_as_many_values_are_rows) {
+  RawFrame frame;
+  EXPECT_EQ(decode_tactile_state(tactile_state({{1, 2, 3}, {4, 5, 0.5F}}), frame).value(), (FrameShape{2, 3}));
+  EXPECT_EQ(frame.counts, (std::vector<float>{1, 2, 3, 4, 5, 0.5F}));
+  EXPECT_EQ(frame.time, Nanos(7'000'000'009));
+  EXPECT_EQ(decode_tactile_state(tactile_state({{1, 2, 3}, {4}}), frame).value(), (FrameShape{1, 4}));
+  EXPECT_EQ(frame.counts, (std::vector<float>{1, 2, 3, 4}));
+}
+
+TEST(TactileState, one_that_is_cut_or_has_no_value_is_refused) {
+  RawFrame frame;
+  const Bytes whole = tactile_state({{1, 2}, {3, 4}});
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    EXPECT_EQ(decode_tactile_state(std::span(whole).first(size), frame).error().message,
+              "the message is no whole tactile_msgs/msg/TactileState in CDR");
+  }
+  EXPECT_EQ(decode_tactile_state(tactile_state({}), frame).error().message,
+            "the sensors have 0x0 values; 1x1 to 1024x1024 can be read");
+}
+
 TEST(MessageTypes, hashes_are_those_of_ros) {
   EXPECT_STREQ(image_type().hash, "RIHS01_d31d41a9a4c4bc8eae9be757b0beed306564f7526c88ea6a4588fb9582527d47");
   EXPECT_STREQ(point_cloud_type().hash, "RIHS01_9198cabf7da3796ae6fe19c4cb3bdd3525492988c70522628af5daa124bae2b5");

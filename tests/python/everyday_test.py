@@ -10,11 +10,18 @@ import pickle
 import struct
 import threading
 import time
+from xml.etree import ElementTree
 
 import numpy as np
 import workspace
 
 import dermis
+
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def figure_of(shown):
+    return ElementTree.fromstring(shown._repr_html_().replace("<br>", "<br/>"))
 
 
 def newtons_of(pipeline, counts):
@@ -224,6 +231,18 @@ class Everyday(workspace.CalibratedArray):
         self.assertGreater(min(*sizes.pop()), 100)
         self.assertNotEqual(force._repr_png_(), dermis.Pipeline(self.loaded).process(self.recording[6])._repr_png_())
         self.assertIsNone(self.forces[0:0]._repr_png_())
+
+    def test_notebooks_show_maps_of_what_can_be_shown(self):
+        pipeline = dermis.Pipeline(self.loaded)
+        force = pipeline.process(self.recording[5])
+        for shown in (self.recording, self.recording[5], force, pipeline):
+            figure = figure_of(shown)
+            self.assertEqual(figure.findtext("code").split(",")[0], repr(shown).split(",")[0])
+            self.assertEqual(len(figure.findall(f".//{SVG}rect")), 20)
+        titles = [title.text for title in figure_of(force).iter(f"{SVG}title")]
+        self.assertEqual(titles[7], f"r1c3: {force.newtons[1, 3]:.4g} N")
+        self.assertNotIn("<svg", self.recording[0:0]._repr_html_())
+        self.assertNotIn("<svg", dermis.Recording(np.zeros((2, 65, 64)), rate_hz=1.0)._repr_html_())
 
 
 if __name__ == "__main__":

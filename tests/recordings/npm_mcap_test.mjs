@@ -47,7 +47,7 @@ const decoded = {
   },
   "dermis_msgs/msg/Acquisition": (message, frame) => {
     assert.equal(String(message.time_ns), frame.time);
-    assert.equal(message.has_sequence ? String(message.sequence) : null, frame.sequence);
+    assert.equal(message.has_sequence_number ? String(message.sequence_number) : null, frame.sequence);
     assert.equal(message.has_device_time ? String(message.device_time_ns) : null, frame.device_time);
     assert.equal(String(message.arrival_steady_ns), frame.arrival_steady);
     assert.equal(String(message.arrival_utc_ns), frame.arrival_utc);

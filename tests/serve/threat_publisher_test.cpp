@@ -57,7 +57,7 @@ class Watching : public testing::Test {
     auto monitors = threat_monitors(suit_);
     ASSERT_TRUE(monitors) << monitors.error().message;
     topics_ = Topics::create(*server_, {}).value();
-    publisher_.emplace(suit_, *std::move(monitors), *topics_, recorder_,
+    publisher_.emplace(suit_, *std::move(monitors), ThreatPublisher::make_topic(*topics_, recorder_).value(),
                        [this](const std::string& line) { lines_.push_back(line); });
     end_ = server_->add_channel("/end", "none", "");
     const auto none = [] { return std::vector<stream::Parameter>{}; };
@@ -124,7 +124,7 @@ TEST_F(Watching, a_threat_is_told_with_the_time_of_its_first_crossing) {
   EXPECT_EQ(threat["quantity"], "taxel_force");
   EXPECT_EQ(threat["state"], kActive);
   EXPECT_EQ(threat["changed"], true);
-  EXPECT_EQ(threat["crossed"], json({{"sec", 0}, {"nanosec", 20'000'000}}));
+  EXPECT_EQ(threat["crossed_time"], json({{"sec", 0}, {"nanosec", 20'000'000}}));
   EXPECT_EQ(threat["value"], 6.0);
   EXPECT_EQ(threat["limit"], 5.0);
   EXPECT_EQ(threat["unit"], "N");

@@ -171,7 +171,7 @@ function checkImages(seen, frames, forces, suit) {
   for (const message of seen.get("/contacts")) {
     const onTaxels = forces.rows[rowOf(message)].reduce((sum, value) => sum + value, 0);
     assert.ok(message.total_force_n <= onTaxels * 1.001 + 1e-3, "contacts have no more than the taxels");
-    const sum = message.contacts.reduce((total, { force_n }) => total + force_n, 0);
+    const sum = message.touches.reduce((total, { force_n }) => total + force_n, 0);
     assert.ok(Math.abs(sum - message.total_force_n) < 1e-6);
   }
 }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -21,6 +22,10 @@ struct PublisherOptions {
   /// Names the first field that is out of its range, as "domain: ...".
   [[nodiscard]] Status validate() const;
 };
+
+/// As the nodes of ROS 2 have them that are started from the same shell. The domain is that of ROS_DOMAIN_ID where none
+/// is `wanted`. ROS_LOCALHOST_ONLY and ROS_AUTOMATIC_DISCOVERY_RANGE tell whether loopback is all.
+[[nodiscard]] Result<PublisherOptions> options_of_environment(std::optional<std::uint64_t> wanted = std::nullopt);
 
 /// The messages to be published. Subscribers may be reliable or, as for the data of sensors, not.
 struct Topic {

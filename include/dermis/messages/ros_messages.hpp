@@ -43,6 +43,11 @@ void encode_value_image(std::span<const float> values, Nanos time, const FrameSh
 /// either byte order.
 [[nodiscard]] Result<FrameShape> decode_image(std::span<const std::uint8_t> message, RawFrame& frame);
 
+/// tactile_msgs/msg/TactileState, as other robots have it: the values of sensors. Those of as many values each are the
+/// rows; else all values are one row. Sets counts, and time to the stamp. Accepts 1x1 ... 1024x1024 values.
+inline constexpr const char* kTactileState = "tactile_msgs/msg/TactileState";
+[[nodiscard]] Result<FrameShape> decode_tactile_state(std::span<const std::uint8_t> message, RawFrame& frame);
+
 /// sensor_msgs/msg/Temperature [C]; the variance is given as 0, unknown.
 void encode_temperature(double celsius, Nanos time, std::string_view frame_id, std::vector<std::uint8_t>& message);
 [[nodiscard]] Result<double> decode_temperature(std::span<const std::uint8_t> message);

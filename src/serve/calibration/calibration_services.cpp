@@ -165,7 +165,8 @@ Result<std::unique_ptr<Part>> make_calibration(Host& host) {
     if (!playback || playback->status().state != PlaybackStatus::State::ended) return Done{};
     return bad_input("the recording has ended: play it from its beginning, then begin");
   };
-  const Result<Topic> topic = host.topics.add({.stream = "/calibration"}, messages::calibration_state_type());
+  const Result<Topic> topic =
+      host.topics.add({.stream = "/calibration", .dds = "/calibration"}, messages::calibration_state_type());
   if (!topic) return topic.error();
   const auto notify = [&host, topic = *topic,
                        message = std::vector<std::uint8_t>()](const CalibrationServices& calibration) mutable {

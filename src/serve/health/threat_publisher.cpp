@@ -61,9 +61,13 @@ Result<std::vector<threats::ThreatMonitor>> threat_monitors(const ServedSuit& su
   return monitors;
 }
 
-ThreatPublisher::ThreatPublisher(const ServedSuit& suit, std::vector<threats::ThreatMonitor> monitors, Topics& topics,
-                                 SuitRecorder& recorder, Log log)
-    : limits_(*suit.threats), topic_("/threat", messages::threat_type(), topics, recorder), log_(std::move(log)) {
+Result<EventTopic> ThreatPublisher::make_topic(Topics& topics, SuitRecorder& recorder) {
+  return EventTopic::create({.stream = "/threat", .dds = "/threat"}, messages::threat_type(), topics, recorder);
+}
+
+ThreatPublisher::ThreatPublisher(const ServedSuit& suit, std::vector<threats::ThreatMonitor> monitors, EventTopic topic,
+                                 Log log)
+    : limits_(*suit.threats), topic_(std::move(topic)), log_(std::move(log)) {
   for (std::size_t k = 0; k < monitors.size(); ++k) arrays_.emplace_back(std::move(monitors[k]), suit.arrays[k].name);
 }
 
@@ -150,8 +154,9 @@ Result<std::unique_ptr<Part>> make_threats(Host& host) {
   if (!host.suit.threats) return std::unique_ptr<Part>();
   Result<std::vector<threats::ThreatMonitor>> monitors = threat_monitors(host.suit);
   if (!monitors) return monitors.error();
-  return std::unique_ptr<Part>(std::make_unique<ThreatPublisher>(host.suit, *std::move(monitors), host.topics,
-                                                                 host.recorder,
+  Result<EventTopic> topic = ThreatPublisher::make_topic(host.topics, host.recorder);
+  if (!topic) return topic.error();
+  return std::unique_ptr<Part>(std::make_unique<ThreatPublisher>(host.suit, *std::move(monitors), *std::move(topic),
                                                                  [&host](const std::string& line) { host.log(line); }));
 }
 

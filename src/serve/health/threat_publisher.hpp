@@ -32,9 +32,10 @@ class ThreatPublisher final : public Part {
  public:
   using Log = std::function<void(const std::string& line)>;
 
-  /// `monitors`: threat_monitors() of the suit, which has limits. The others must outlive it.
-  ThreatPublisher(const ServedSuit& suit, std::vector<threats::ThreatMonitor> monitors, Topics& topics,
-                  SuitRecorder& recorder, Log log);
+  /// The topic of all of them.
+  [[nodiscard]] static Result<EventTopic> make_topic(Topics& topics, SuitRecorder& recorder);
+  /// `monitors`: threat_monitors() of the suit, which has limits and must outlive it.
+  ThreatPublisher(const ServedSuit& suit, std::vector<threats::ThreatMonitor> monitors, EventTopic topic, Log log);
 
   /// "/threats/reset": latched threats end with the next frame of their array.
   [[nodiscard]] std::vector<stream::Service> services() override;

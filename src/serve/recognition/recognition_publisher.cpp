@@ -11,10 +11,25 @@
 #include "serve/parts/part_makers.hpp"
 
 namespace dermis::serve {
+namespace {
 
-RecognitionPublisher::RecognitionPublisher(const ServedSuit& suit, Topics& topics, SuitRecorder& recorder)
-    : topics_(topics), recorder_(recorder) {
-  for (const ServedArray& array : suit.arrays) arrays_.emplace_back().array = &array;
+std::string topic_of(const ServedArray& array) {
+  return "/" + array.name + "/recognition";
+}
+
+}  // namespace
+
+Result<std::unique_ptr<RecognitionPublisher>> RecognitionPublisher::create(const ServedSuit& suit, Topics& topics,
+                                                                           SuitRecorder& recorder) {
+  std::unique_ptr<RecognitionPublisher> part(new RecognitionPublisher(topics, recorder));
+  for (const ServedArray& array : suit.arrays) {
+    Named& named = part->arrays_.emplace_back();
+    named.array = &array;
+    const Result<Topic> nodes = topics.add({.dds = topic_of(array)}, messages::classification_type());
+    if (!nodes) return nodes.error();
+    named.nodes = *nodes;
+  }
+  return part;
 }
 
 Status RecognitionPublisher::prepare() {
@@ -33,7 +48,10 @@ Status RecognitionPublisher::use_classes(std::size_t array, const recognition::C
       LiveRecognition::create(classes, {recognition::sensed_array(named.array->model->array, name)});
   if (!made) return bad_input(fmt::format("array '{}': {}", name, made.error().message));
   if (!named.topic) {
-    named.topic.emplace("/" + name + "/recognition", messages::classification_type(), topics_, recorder_);
+    Result<EventTopic> topic =
+        EventTopic::create({.stream = topic_of(*named.array)}, messages::classification_type(), topics_, recorder_);
+    if (!topic) return topic.error();
+    named.topic.emplace(*std::move(topic));
   }
   const std::lock_guard lock(named.next_mutex);
   named.next = std::make_unique<LiveRecognition>(*std::move(made));
@@ -53,6 +71,7 @@ void RecognitionPublisher::hear(const live::ArrayResult& result) {
   if (!answer) return;
   results_of(*answer, named.recognition->classes(), named.order, named.results);
   messages::encode_classification(named.results, result.force.time, named.array->name, named.message);
+  named.nodes.publish(result.force.time, named.message, Ends::dds);
   named.topic->publish(result.force.time, named.message);
 }
 
@@ -74,7 +93,10 @@ void results_of(const recognition::Answer& answer, const recognition::Classes& c
 }
 
 Result<std::unique_ptr<Part>> make_recognition(Host& host) {
-  return std::unique_ptr<Part>(std::make_unique<RecognitionPublisher>(host.suit, host.topics, host.recorder));
+  Result<std::unique_ptr<RecognitionPublisher>> part =
+      RecognitionPublisher::create(host.suit, host.topics, host.recorder);
+  if (!part) return part.error();
+  return std::unique_ptr<Part>(*std::move(part));
 }
 
 }  // namespace dermis::serve

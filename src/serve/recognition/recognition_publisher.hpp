@@ -25,8 +25,10 @@ namespace dermis::serve {
 /// The topics /<array>/recognition of docs/stream.md. Thread-safe: each array on a thread of its own.
 class RecognitionPublisher final : public Part {
  public:
-  /// All must outlive it. An array without classes has no topic.
-  RecognitionPublisher(const ServedSuit& suit, Topics& topics, SuitRecorder& recorder);
+  /// All must outlive it. An array without classes has no topic in the stream. On DDS each array has one, as it may be
+  /// taught classes. Errors: those of Topics::add().
+  [[nodiscard]] static Result<std::unique_ptr<RecognitionPublisher>> create(const ServedSuit& suit, Topics& topics,
+                                                                            SuitRecorder& recorder);
 
   /// Takes the classes into use that the suit names.
   [[nodiscard]] Status prepare() override;
@@ -37,6 +39,7 @@ class RecognitionPublisher final : public Part {
  private:
   struct Named {
     const ServedArray* array = nullptr;
+    Topic nodes{};  // of ROS 2
     std::optional<EventTopic> topic{};
     std::atomic<bool> has_next = false;
     std::mutex next_mutex{};
@@ -47,6 +50,8 @@ class RecognitionPublisher final : public Part {
     std::vector<messages::Hypothesis> results{};
     std::vector<std::uint8_t> message{};
   };
+
+  RecognitionPublisher(Topics& topics, SuitRecorder& recorder) : topics_(topics), recorder_(recorder) {}
 
   Topics& topics_;
   SuitRecorder& recorder_;

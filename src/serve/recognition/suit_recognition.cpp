@@ -63,16 +63,19 @@ Result<std::unique_ptr<SuitRecognition>> SuitRecognition::create(const ServedSui
   if (!places) return places.error();
   Result<LiveRecognition> recognition = recognition_at(*suit.classes, suit.arrays, *places);
   if (!recognition) return recognition.error();
+  Result<EventTopic> topic = EventTopic::create({.stream = "/suit/recognition", .dds = "/suit/recognition"},
+                                                messages::classification_type(), topics, recorder);
+  if (!topic) return topic.error();
   return std::unique_ptr<SuitRecognition>(
-      new SuitRecognition(*std::move(recognition), suit.arrays, *places, topics, recorder));
+      new SuitRecognition(*std::move(recognition), suit.arrays, *places, *std::move(topic)));
 }
 
 SuitRecognition::SuitRecognition(LiveRecognition recognition, const std::vector<ServedArray>& arrays,
-                                 std::vector<std::size_t> places, Topics& topics, SuitRecorder& recorder)
+                                 std::vector<std::size_t> places, EventTopic topic)
     : recognition_(std::move(recognition)),
       places_(std::move(places)),
       joiner_(joiner_of(arrays, places_)),
-      topic_("/suit/recognition", messages::classification_type(), topics, recorder),
+      topic_(std::move(topic)),
       further_(recognition_.classes().layout.extras, kMissing) {}
 
 void SuitRecognition::hear(const live::ArrayResult& result) {

@@ -27,8 +27,8 @@ namespace dermis::serve {
 /// readings. Thread-safe: each array on a thread of its own.
 class SuitRecognition final : public Part {
  public:
-  /// By the classes of the suit, which must have some. Fails where they do not fit its arrays. `topics` and `recorder`
-  /// must outlive it.
+  /// By the classes of the suit, which must have some. Fails where they do not fit its arrays, and as Topics::add()
+  /// does. `topics` and `recorder` must outlive it.
   [[nodiscard]] static Result<std::unique_ptr<SuitRecognition>> create(const ServedSuit& suit, Topics& topics,
                                                                        SuitRecorder& recorder);
 
@@ -39,7 +39,7 @@ class SuitRecognition final : public Part {
 
  private:
   SuitRecognition(LiveRecognition recognition, const std::vector<ServedArray>& arrays, std::vector<std::size_t> places,
-                  Topics& topics, SuitRecorder& recorder);
+                  EventTopic topic);
 
   [[nodiscard]] Result<std::string> take_readings(const JsonRequest& request);
 

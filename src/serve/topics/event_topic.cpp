@@ -6,16 +6,23 @@
 
 namespace dermis::serve {
 
-EventTopic::EventTopic(std::string name, const messages::MessageType& type, Topics& topics, SuitRecorder& recorder)
-    : name_(std::move(name)), type_(type), topic_(topics.add({.stream = name_}, type).value()), recorder_(recorder) {}
+Result<EventTopic> EventTopic::create(const TopicNames& names, const messages::MessageType& type, Topics& topics,
+                                      SuitRecorder& recorder) {
+  const Result<Topic> topic = topics.add(names, type);
+  if (!topic) return topic.error();
+  return EventTopic(names.stream, type, *topic, recorder);
+}
+
+EventTopic::EventTopic(std::string name, const messages::MessageType& type, const Topic& topic, SuitRecorder& recorder)
+    : name_(std::move(name)), type_(&type), topic_(topic), recorder_(&recorder) {}
 
 void EventTopic::show(Nanos time, std::span<const std::uint8_t> message) {
-  topic_.publish(time, message, Ends::stream);
+  topic_.publish(time, message);
 }
 
 void EventTopic::publish(Nanos time, std::span<const std::uint8_t> message) {
   show(time, message);
-  recorder_.write({name_, type_, time, message});
+  recorder_->write({name_, *type_, time, message});
 }
 
 }  // namespace dermis::serve

@@ -7,28 +7,33 @@
 #include <string>
 
 #include "dermis/core/frames.hpp"
+#include "dermis/core/result.hpp"
 #include "dermis/messages/ros_messages.hpp"
 #include "serve/recording/suit_recorder.hpp"
 #include "serve/topics/topics.hpp"
 
 namespace dermis::serve {
 
-/// A topic of messages that belong to no frame: they go to clients and into recordings. Thread-safe.
+/// A topic of messages that belong to no frame: they go to both ends and into recordings. Thread-safe.
 class EventTopic {
  public:
-  /// `type`, `topics` and `recorder` must outlive it.
-  EventTopic(std::string name, const messages::MessageType& type, Topics& topics, SuitRecorder& recorder);
+  /// `names` has one for the stream, which recordings take, too. `type`, `topics` and `recorder` must outlive it.
+  /// Errors: those of Topics::add().
+  [[nodiscard]] static Result<EventTopic> create(const TopicNames& names, const messages::MessageType& type,
+                                                 Topics& topics, SuitRecorder& recorder);
 
-  /// To clients alone.
+  /// To those who listen alone.
   void show(Nanos time, std::span<const std::uint8_t> message);
-  /// To clients and into the recording that goes on.
+  /// To those who listen and into the recording that goes on.
   void publish(Nanos time, std::span<const std::uint8_t> message);
 
  private:
+  EventTopic(std::string name, const messages::MessageType& type, const Topic& topic, SuitRecorder& recorder);
+
   std::string name_;
-  const messages::MessageType& type_;
+  const messages::MessageType* type_;
   Topic topic_;
-  SuitRecorder& recorder_;
+  SuitRecorder* recorder_;
 };
 
 }  // namespace dermis::serve

@@ -102,7 +102,7 @@ def is_reported(frame, record):
     """The recording says of a frame what the device said."""
     acquisition = record.acquisition
     supply = acquisition["supply_v"] if acquisition["has_supply_v"] else None
-    sequence = acquisition["sequence"] if acquisition["has_sequence"] else None
+    sequence = acquisition["sequence_number"] if acquisition["has_sequence_number"] else None
     time = acquisition["device_time_ns"] if acquisition["has_device_time"] else None
     return (
         all(

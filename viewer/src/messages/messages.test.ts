@@ -27,7 +27,7 @@ function contacts(array: string, ids: number[]): DataView {
     sigma_total_n: 0.5,
     has_centre_of_pressure: true,
     centre_of_pressure: { x: 1, y: 2, z: 3 },
-    contacts: ids.map(contact),
+    touches: ids.map(contact),
     sum_n: -0.25,
     sigma_sum_n: 0.125,
   });
@@ -48,7 +48,7 @@ describe("contacts", () => {
     });
     expect([...frame.centreOfPressure]).toEqual([1, 2, 3]);
     const [, second] = frame.contacts;
-    const { position, normal, onset, velocity: _, ...rest } = contact(9);
+    const { position, normal, onset_time: onset, velocity: _, ...rest } = contact(9);
     expect(second).toMatchObject(simpleFields(rest));
     expect(second!.onsetS).toBe((onset as { sec: number }).sec + 0.25);
     expect([...second!.position]).toEqual(Object.values(position as object));
@@ -181,7 +181,7 @@ describe("what was recognised", () => {
 describe("threats", () => {
   it("read as they were written", () => {
     const threat = sample("dermis_msgs/msg/Threat");
-    const { sec } = threat.crossed as { sec: number };
+    const { sec } = threat.crossed_time as { sec: number };
     expect(readThreat(written("dermis_msgs/msg/Threat", { ...threat, header }))).toEqual({
       ...simpleFields(threat),
       stampS: 1234.5,
