@@ -101,7 +101,18 @@ exec exit export fi find flock for git grep id if install ldd local ls make mkdi
 sed set sh sudo tail tar then touch trap umount while xargs""".split()
 )
 # Our own package, what ROS 2 brings to a launch file, and what tests/requirements.txt names.
-MODULES_OF_OTHERS = {"dermis", "launch", "rosbags", "safetensors"}
+MODULES_OF_OTHERS = {
+    "datasets",
+    "dermis",
+    "launch",
+    "lerobot",
+    "pandas",
+    "pyarrow",
+    "rosbags",
+    "safetensors",
+    "torch",
+    "zarr",
+}
 
 FOLDERS = ("scripts", ".ci", "tests", "packaging", "examples", "viewer")
 # Projects of others, what is built, and this table.
