@@ -14,8 +14,8 @@
 namespace dermis::datasets {
 
 const std::vector<std::string>& dataset_formats() {
-  static const std::vector<std::string> names = {"lerobot", "hdf5", "robomimic", "zarr"};
-  return names;
+  static const std::vector<std::string> kNames = {"lerobot", "hdf5", "robomimic", "zarr"};
+  return kNames;
 }
 
 Result<DatasetFormat> dataset_format(const std::string& name) {

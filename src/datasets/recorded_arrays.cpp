@@ -85,17 +85,17 @@ Status RecordedArrays::open_suit(const std::string& path, const ArrayModels& mod
   return Done{};
 }
 
-Status RecordedArrays::open_single(const std::string& from, const ArrayModels& models, sources::SourceOptions options) {
-  // The only model, or that of its name where a suit has several.
+Status RecordedArrays::open_single(const std::string& from, const ArrayModels& models,
+                                   const sources::SourceOptions& options) {
   const Result<sources::SourceName> source = sources::SourceName::parse(from);
   if (!source) return source.error();
-  Result<std::unique_ptr<FrameSource>> probe = sources::open_source(*source, options);
-  if (!probe) return probe.error();
-  if ((*probe)->is_live()) return sources::has_no_end(from);
-  const recordings::FrameNotes notes = sources::notes_of_source(**probe, from);
+  Result<std::unique_ptr<FrameSource>> opened = sources::open_source(*source, options);
+  if (!opened) return opened.error();
+  single_ = *std::move(opened);
+  if (single_->is_live()) return sources::has_no_end(from);
+  const recordings::FrameNotes notes = sources::notes_of_source(*single_, from);
   const Result<const pipeline::Model*> model = models.of(notes.name, true);
   if (!model) return model.error();
-  single_ = *std::move(probe);
   first_.emplace();
   const Result<bool> more = single_->next(*first_);
   if (!more) return more.error();

@@ -53,7 +53,8 @@ class RecordedArrays {
 
  private:
   [[nodiscard]] Status open_suit(const std::string& path, const ArrayModels& models);
-  [[nodiscard]] Status open_single(const std::string& from, const ArrayModels& models, sources::SourceOptions options);
+  [[nodiscard]] Status open_single(const std::string& from, const ArrayModels& models,
+                                   const sources::SourceOptions& options);
   [[nodiscard]] Status add(const std::string& from, const std::string& name, FrameShape shape,
                            const pipeline::Model* model);
 

@@ -72,7 +72,7 @@ class ZarrColumn {
       if (Status written = write_chunk(); !written) return written;
     }
     // A number is an array of one dimension to those who index it by steps alone, so {1} stays a dimension.
-    const Status described =
+    Status described =
         folder_.write(name_ + "/.zarray", array_json(steps_, steps_of_chunk_, column_.shape, column_.type));
     if (!described) return described;
     return folder_.write(name_ + "/.zattrs", Json{{"axes", column_.axes}}.dump(2));
@@ -122,10 +122,10 @@ class ZarrWriter final : public EpisodeSink {
     Status finished = for_each([&](std::size_t k) { return columns_[k].finish(); });
     if (!finished) return finished;
     const std::string ends = "meta/episode_ends";
-    const Status described = folder_->write(
-        ends + "/.zarray", array_json(episode_ends_.size(), episode_ends_.size(), {}, ColumnType::int64));
+    Status described = folder_->write(ends + "/.zarray",
+                                      array_json(episode_ends_.size(), episode_ends_.size(), {}, ColumnType::int64));
     if (!described) return described;
-    const Status written = folder_->write(ends + "/0", zstd_compressed(std::as_bytes(std::span(episode_ends_))));
+    Status written = folder_->write(ends + "/0", zstd_compressed(std::as_bytes(std::span(episode_ends_))));
     if (!written) return written;
     return folder_->commit();
   }
