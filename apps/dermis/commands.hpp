@@ -22,6 +22,7 @@ void add_record(Command& command);
 void add_replay(Command& command);
 void add_emulate(Command& command);
 void add_convert(Command& command);
+void add_dataset(Command& command);
 void add_describe(Command& command);
 void add_info(Command& command);
 void add_recover(Command& command);

@@ -39,6 +39,7 @@ constexpr std::array kCommands{
     CommandEntry{"replay", "Play a recording at the pace of its frames, as counts or newtons", add_replay},
     CommandEntry{"emulate", "Play a device from a recording, to develop without hardware", add_emulate},
     CommandEntry{"convert", "Convert frames to another file format, by the ending of the name", add_convert},
+    CommandEntry{"dataset", "Turn recordings into episodes for learning: LeRobot, HDF5, zarr", add_dataset},
     CommandEntry{"describe", "Write the layout of bytes that dermis does not know", add_describe},
     CommandEntry{"info", "Show what a recording, another file of frames or a model holds", add_info},
     CommandEntry{"recover", "Repair a cut or damaged recording, and say what is lost", add_recover},

@@ -363,6 +363,34 @@ class Recogniser:
     @property
     def names(self) -> list[str]: ...
 
+class Dataset:
+    """Recordings as episodes for learning (docs/datasets.md); each recording is one, and a gap of 10 s begins another.
+    They are made when the first is asked for, and kept then.
+
+    model: of the array, or the suit.toml of several; without one there are no forces. window: each step has so many of
+    the last frames. columns: only these quantities. state, action: a CSV with time_s for each
+    recording. times_ns: the times of the steps of each recording, such as those of its images, in place of fps.
+    """
+
+    def __init__(
+        self,
+        recordings: _Path | Sequence[_Path],
+        *,
+        model: _Path | None = None,
+        fps: float = 30.0,
+        window: int = 1,
+        columns: Sequence[str] | None = None,
+        flat: bool = False,
+        state: _Path | Sequence[_Path] | None = None,
+        action: _Path | Sequence[_Path] | None = None,
+        times_ns: Sequence[ArrayLike] | None = None,
+    ) -> None: ...
+    def __len__(self) -> int: ...
+    def __getitem__(self, episode: int) -> dict[str, NDArray[Any]]:
+        """Columns by name, "chest" and "chest_sigma" for example; the first axis are the steps."""
+    def write(self, folder: _Path, *, format: str = "lerobot", task: str = "touch") -> None:
+        """A dataset in a new folder, as "lerobot", "hdf5" (ACT), "robomimic" or "zarr"; memory stays the same."""
+
 class Load:
     """A load that was known while a frame was taken: newtons over all taxels of `where`, or pascals on each of them.
 

@@ -38,6 +38,7 @@ void bind_serve(py::module_& module);
 void bind_picture(py::module_& module);
 void bind_threats(py::module_& module);
 void bind_recognition(py::module_& module);
+void bind_datasets(py::module_& module);
 
 /// Throws dermis.BadInput or dermis.Failed with the line of the error.
 [[noreturn]] void raise(const Error& error);

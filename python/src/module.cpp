@@ -118,6 +118,7 @@ PYBIND11_MODULE(_dermis, module) {
   bind_picture(module);
   bind_threats(module);
   bind_recognition(module);
+  bind_datasets(module);
 }
 
 }  // namespace dermis::python

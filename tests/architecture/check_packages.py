@@ -108,7 +108,21 @@ exec exit export fi find flock for git grep id if install ldd local ls make mkdi
 sed set sh sudo tail tar then touch trap umount while xargs""".split()
 )
 # Our own package and what makes its wheel, what ROS 2 brings to a launch file, and what tests/requirements.txt names.
-MODULES_OF_OTHERS = {"build_backend", "dermis", "launch", "mcap", "mcap_ros2", "rosbags", "safetensors"}
+MODULES_OF_OTHERS = {
+    "build_backend",
+    "datasets",
+    "dermis",
+    "launch",
+    "lerobot",
+    "mcap",
+    "mcap_ros2",
+    "pandas",
+    "pyarrow",
+    "rosbags",
+    "safetensors",
+    "torch",
+    "zarr",
+}
 
 FOLDERS = ("scripts", ".ci", "tests", "packaging", "examples", "viewer")
 # Projects of others, what is built, and this table.

@@ -42,6 +42,10 @@ class Examples(workspace.CalibratedArray):
     def test_robot_sensor(self):
         self.assertRegex(self.run_example("robot_sensor.py", self.uri(), self.model), r"\(5, 4\)} \d+\.\d\d N")
 
+    def test_train_on_touch(self):
+        said = self.run_example("train_on_touch.py", self.model, self.frames, self.frames, "--seconds", 0.5)
+        self.assertRegex(said, r"steps of 2 episodes, [1-9]\d* batches")
+
     def test_imitation_dataset(self):
         joints = self.folder / "joints.csv"
         joints.write_text("time_s,shoulder,elbow\n0,0,1\n100,50,1\n")

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "commands.hpp"
+#include "dermis/datasets/dataset_files.hpp"
+#include "dermis/datasets/episodes.hpp"
+#include "lost_input.hpp"
+#include "status_line.hpp"
+#include "stop_flag.hpp"
+
+namespace dermis::app {
+namespace {
+
+struct DatasetCommandOptions {
+  std::vector<std::string> recordings;
+  std::string out;
+  std::string format = "lerobot";
+  std::uint64_t window = 1;
+  std::string task = "touch";
+  datasets::EpisodeOptions episodes{};
+};
+
+void print_tally(const datasets::EpisodeTally& tally, const DatasetCommandOptions& options) {
+  print_notice(fmt::format("{} episode{}, {} steps in {}", tally.episodes, tally.episodes == 1 ? "" : "s", tally.steps,
+                           options.out));
+  for (const datasets::ArrayTally& array : tally.arrays) {
+    if (array.missed == 0) continue;
+    const bool is_short = array.most_fresh > options.window;
+    const std::string mend = is_short ? fmt::format("; --window {} holds all between two steps", array.most_fresh) : "";
+    print_notice(fmt::format("{}: {} of {} frames are in no window{}", array.name, array.missed, array.frames, mend));
+  }
+}
+
+Status make_dataset(DatasetCommandOptions& options) {
+  const Result<datasets::DatasetFormat> format = datasets::dataset_format(options.format);
+  if (!format) return format.error();
+  options.episodes.window = options.window;
+  options.episodes.stop = &stop_flag();
+  options.episodes.notice = print_notice;
+  options.episodes.loss = note_loss;
+  if (Status valid = options.episodes.validate(); !valid) return valid;
+  const auto sink =
+      datasets::create_dataset(options.out, {.format = *format, .fps = options.episodes.fps, .task = options.task});
+  if (!sink) return sink.error();
+  const Result<datasets::EpisodeTally> tally = datasets::make_episodes(options.recordings, options.episodes, **sink);
+  if (!tally) return tally.error();
+  print_tally(*tally, options);
+  return Done{};
+}
+
+}  // namespace
+
+void add_dataset(Command& command) {
+  auto options = std::make_shared<DatasetCommandOptions>();
+  command.input("recordings", options->recordings, "Recordings, or other files of frames; each is an episode")
+      .required();
+  command.option("--out", options->out, "Folder to write, which must not exist yet").required();
+  command.option("--format", options->format, "Layout: LeRobot v3, HDF5 of ACT or of robomimic, zarr replay buffer")
+      .one_of(datasets::dataset_formats())
+      .shows_default();
+  command.input_file("--model", options->episodes.model,
+                     "Model file of the array, or suit.toml of several; without one there are no forces");
+  command.input("--state", options->episodes.states,
+                "CSV with time_s for each recording: the state of the robot, such as joint angles");
+  command.input("--action", options->episodes.actions, "The same of the actions of the robot");
+  command.option("--fps", options->episodes.fps, "Steps a second [Hz]").shows_default();
+  command.option("--window", options->window, "Each step has this many of the last frames").shows_default();
+  command.option("--columns", options->episodes.quantities,
+                 "Only these: forces, sigma, valid, raw, age, fresh, contacts, temperature, supply");
+  command.flag("--flat", options->episodes.flat, "Every column has one dimension");
+  command.option("--task", options->task, "Sentence that says what is done (LeRobot)").shows_default();
+  command.action([options] { return make_dataset(*options); });
+}
+
+}  // namespace dermis::app

@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/datasets/episodes.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "datasets/array_steps.hpp"
+#include "datasets/in_parallel.hpp"
+#include "datasets/recorded_arrays.hpp"
+#include "datasets/sampled_series.hpp"
+#include "dermis/datasets/step_plan.hpp"
+#include "dermis/files/text.hpp"
+
+namespace dermis::datasets {
+namespace {
+
+constexpr std::array kQuantities = {"forces", "sigma",    "valid",       "raw",   "age",
+                                    "fresh",  "contacts", "temperature", "supply"};
+constexpr std::size_t kReadingsOfBatch = std::size_t{1} << 20U;
+constexpr std::size_t kFramesOfBatch = 4096;
+constexpr std::size_t kBytesOfBlock = std::size_t{8} << 20U;
+constexpr std::size_t kMostStepsOfBlock = 256;
+constexpr std::size_t kMostBytesOfStep = std::size_t{256} << 20U;
+constexpr const char* kTimeNs = "time_ns";
+
+/// "state" of a step, and the file for each recording.
+struct Series {
+  const char* quantity;
+  const std::vector<std::string>& files;
+  std::optional<SampledSeries> now{};
+};
+
+/// Makes episodes of one recording after the other.
+///
+/// Many members: a batch and a block keep their buffers from one to the next.
+class Maker {
+ public:
+  Maker(const EpisodeOptions& options, ArrayModels models, EpisodeSink& sink)
+      : options_(options), models_(std::move(models)), sink_(sink) {
+    for (const auto& [quantity, files] : {std::pair("state", &options.states), std::pair("action", &options.actions)}) {
+      if (!files->empty()) series_.push_back({quantity, *files});
+    }
+  }
+
+  [[nodiscard]] Status add(const std::string& from, std::size_t number);
+  [[nodiscard]] EpisodeTally tally() const { return tally_; }
+
+ private:
+  struct Arrival {
+    std::size_t array = 0;
+    RawFrame frame;
+  };
+
+  [[nodiscard]] Status begin_episode(const std::string& from, std::size_t number);
+  [[nodiscard]] Status check_arrays(const std::string& from) const;
+  [[nodiscard]] Status decide_columns();
+  [[nodiscard]] Status read_series(std::size_t number);
+  [[nodiscard]] Result<bool> read_batch();
+  [[nodiscard]] Status take(const std::string& from);
+  [[nodiscard]] Status end_episode();
+  [[nodiscard]] Status write_steps(bool is_over);
+  [[nodiscard]] Status write_steps(std::span<const Nanos> times);
+  [[nodiscard]] bool is_gap(Nanos time) const;
+
+  const EpisodeOptions& options_;
+  ArrayModels models_;
+  EpisodeSink& sink_;
+  std::vector<Series> series_;
+  std::optional<RecordedArrays> recorded_;
+  std::vector<RecordedArrays::Array> arrays_;
+  std::vector<Column> columns_;
+  std::vector<ArraySteps> steps_;
+  std::optional<StepPlan> plan_;
+  std::vector<Arrival> batch_;
+  std::size_t batch_count_ = 0;
+  StepBlock block_;
+  std::size_t steps_of_block_ = 1;
+  std::uint64_t steps_of_episode_ = 0;
+  EpisodeTally tally_;
+};
+
+Status Maker::check_arrays(const std::string& from) const {
+  const std::vector<RecordedArrays::Array>& now = recorded_->arrays();
+  const auto is_same = [](const RecordedArrays::Array& a, const RecordedArrays::Array& b) {
+    return a.name == b.name && a.shape == b.shape;
+  };
+  if (std::equal(now.begin(), now.end(), arrays_.begin(), arrays_.end(), is_same)) return Done{};
+  std::vector<std::string> names;
+  for (const RecordedArrays::Array& array : arrays_) {
+    names.push_back(fmt::format("{} ({}x{})", files::in_quotes(array.name), array.shape.rows, array.shape.cols));
+  }
+  return bad_input(
+      fmt::format("{}: has other arrays than the first recording, which has {}", from, fmt::join(names, ", ")));
+}
+
+/// Those of the arrays in the first batch, which has one frame at least.
+Status Maker::decide_columns() {
+  std::vector<RawFrame> first(arrays_.size());
+  for (std::size_t k = batch_count_; k-- > 0;) {
+    RawFrame& seen = first[batch_[k].array];
+    if (batch_[k].frame.temperature_celsius) seen.temperature_celsius = batch_[k].frame.temperature_celsius;
+    if (batch_[k].frame.supply_v) seen.supply_v = batch_[k].frame.supply_v;
+  }
+  columns_ = {{"", kTimeNs, ColumnType::int64, {1}, {"ns"}}};
+  for (const Series& series : series_) {
+    const std::vector<std::string>& names = series.now->names();
+    columns_.push_back({"", series.quantity, ColumnType::float32, {names.size()}, names});
+  }
+  for (std::size_t k = 0; k < arrays_.size(); ++k) {
+    const std::vector<Column> of_array = columns_of(arrays_[k], first[k], options_);
+    columns_.insert(columns_.end(), of_array.begin(), of_array.end());
+  }
+  std::size_t step_bytes = 0;
+  for (const Column& column : columns_) step_bytes += column.row_bytes();
+  if (step_bytes > kMostBytesOfStep) {
+    return bad_field("window", fmt::format("a step of {} frames would have more than 256 MiB", options_.window));
+  }
+  steps_of_block_ = std::clamp<std::size_t>(kBytesOfBlock / step_bytes, 1, kMostStepsOfBlock);
+  return Done{};
+}
+
+Status Maker::begin_episode(const std::string& from, std::size_t number) {
+  steps_.clear();
+  steps_of_episode_ = 0;
+  for (const RecordedArrays::Array& array : recorded_->arrays()) {
+    std::vector<Column> columns;
+    std::copy_if(columns_.begin(), columns_.end(), std::back_inserter(columns),
+                 [&](const Column& column) { return column.array == array.name; });
+    Result<ArraySteps> steps = ArraySteps::create(array, options_.window, std::move(columns));
+    if (!steps) return bad_input(from + ": " + steps.error().message);
+    steps_.push_back(*std::move(steps));
+  }
+  if (options_.times.empty()) {
+    plan_.emplace(arrays_.size(), options_.window, options_.fps);
+  } else {
+    plan_.emplace(arrays_.size(), options_.times[number]);
+  }
+  return Done{};
+}
+
+Status Maker::read_series(std::size_t number) {
+  for (Series& series : series_) {
+    const std::string& path = series.files[number];
+    Result<SampledSeries> read = SampledSeries::read(path);
+    if (!read) return read.error();
+    if (series.now && series.now->names() != read->names()) {
+      return bad_input(path + ": has other columns than " + series.files.front());
+    }
+    series.now = *std::move(read);
+  }
+  return Done{};
+}
+
+/// False at the end of the recording.
+Result<bool> Maker::read_batch() {
+  batch_count_ = 0;
+  std::size_t readings = 0;
+  while (batch_count_ < kFramesOfBatch && readings < kReadingsOfBatch) {
+    if (batch_count_ == batch_.size()) batch_.emplace_back();
+    Arrival& next = batch_[batch_count_];
+    Result<bool> more = recorded_->next(next.array, next.frame);
+    if (!more || !*more) return more;
+    readings += next.frame.counts.size();
+    ++batch_count_;
+  }
+  return true;
+}
+
+bool Maker::is_gap(Nanos time) const {
+  const std::optional<Nanos> newest = plan_->newest();
+  return options_.times.empty() && newest && time - *newest > kLongestGap;
+}
+
+/// The batch, of one episode or of several.
+Status Maker::take(const std::string& from) {
+  for (std::size_t k = 0; k < batch_count_; ++k) {
+    Arrival& arrival = batch_[k];
+    if (is_gap(arrival.frame.time)) {
+      if (Status ended = end_episode(); !ended) return ended;
+      if (Status begun = begin_episode(from, 0); !begun) return begun;
+    }
+    plan_->see(arrival.array, arrival.frame.time);
+    std::swap(steps_[arrival.array].next_frame(), arrival.frame);
+  }
+  return write_steps(false);
+}
+
+Status Maker::write_steps(std::span<const Nanos> times) {
+  block_.steps = times.size();
+  block_.values.resize(columns_.size());
+  for (std::vector<std::byte>& values : block_.values) values.clear();
+  const auto* const first = reinterpret_cast<const std::byte*>(times.data());
+  block_.values[0].assign(first, first + times.size_bytes());
+  std::size_t begin = 1;
+  for (const Series& series : series_) {
+    std::vector<std::byte>& values = block_.values[begin++];
+    for (const Nanos time : times) {
+      const auto row = std::as_bytes(std::span(series.now->at(time)));
+      values.insert(values.end(), row.begin(), row.end());
+    }
+  }
+  std::vector<std::size_t> begins;
+  for (const RecordedArrays::Array& array : arrays_) {
+    begins.push_back(begin);
+    while (begin < columns_.size() && columns_[begin].array == array.name) ++begin;
+  }
+  begins.push_back(begin);
+  in_parallel(steps_.size(), [&](std::size_t k) {
+    steps_[k].work(times, std::span(block_.values).subspan(begins[k], begins[k + 1] - begins[k]));
+  });
+  if (times.empty()) return Done{};
+  steps_of_episode_ += times.size();
+  tally_.steps += times.size();
+  return sink_.write(block_);
+}
+
+Status Maker::write_steps(bool is_over) {
+  const std::vector<Nanos> due = plan_->take_due(is_over);
+  std::span<const Nanos> left = due;
+  do {
+    if (options_.stop != nullptr && options_.stop->load()) return failed("interrupted; nothing is written");
+    const std::span<const Nanos> now = left.first(std::min(left.size(), steps_of_block_));
+    left = left.subspan(now.size());
+    if (Status written = write_steps(now); !written) return written;
+  } while (!left.empty());
+  if (options_.progressed) options_.progressed(tally_.steps);
+  return Done{};
+}
+
+Status Maker::end_episode() {
+  if (Status written = write_steps(true); !written) return written;
+  tally_.arrays.resize(arrays_.size());
+  for (std::size_t k = 0; k < steps_.size(); ++k) {
+    const ArrayTally of_episode = steps_[k].tally();
+    ArrayTally& sum = tally_.arrays[k];
+    sum.name = of_episode.name;
+    sum.frames += of_episode.frames;
+    sum.missed += of_episode.missed;
+    sum.most_fresh = std::max(sum.most_fresh, of_episode.most_fresh);
+  }
+  if (steps_of_episode_ == 0) return Done{};
+  ++tally_.episodes;
+  return sink_.end_episode();
+}
+
+Status Maker::add(const std::string& from, std::size_t number) {
+  const sources::SourceOptions how{.notice = options_.notice, .loss = options_.loss};
+  Result<RecordedArrays> opened = RecordedArrays::open(from, models_, how);
+  if (!opened) return opened.error();
+  recorded_.emplace(*std::move(opened));
+  const bool is_first = arrays_.empty();
+  if (is_first) arrays_ = recorded_->arrays();
+  if (Status same = check_arrays(from); !same) return same;
+  if (Status read = read_series(number); !read) return read;
+  Result<bool> more = read_batch();
+  if (more && batch_count_ == 0) return bad_input(from + ": has no frame");
+  if (!more) return more.error();
+  if (is_first) {
+    if (Status decided = decide_columns(); !decided) return decided;
+    if (Status begun = sink_.begin(columns_); !begun) return begun;
+  }
+  if (Status begun = begin_episode(from, number); !begun) return begun;
+  while (true) {
+    if (Status taken = take(from); !taken) return taken;
+    if (!*more) break;
+    more = read_batch();
+    if (!more) return more.error();
+  }
+  return end_episode();
+}
+
+/// "age, fresh, ... or valid"
+Status check_quantities(const std::vector<std::string>& quantities) {
+  for (const std::string& name : quantities) {
+    if (std::find(kQuantities.begin(), kQuantities.end(), name) == kQuantities.end()) {
+      return bad_field("columns",
+                       fmt::format("{} is none of {}", files::in_quotes(name), fmt::join(kQuantities, ", ")));
+    }
+  }
+  return Done{};
+}
+
+}  // namespace
+
+Status EpisodeOptions::validate() const {
+  constexpr double kSlowest = 0.001;
+  constexpr double kFastest = 10'000.0;
+  constexpr std::size_t kLongest = 1000;
+  if (!(fps >= kSlowest && fps <= kFastest)) return bad_field("fps", "must be 0.001 to 10000 steps a second");
+  if (window < 1 || window > kLongest) return bad_field("window", "must be 1 to 1000 frames");
+  return check_quantities(quantities);
+}
+
+Result<EpisodeTally> make_episodes(const std::vector<std::string>& recordings, const EpisodeOptions& options,
+                                   EpisodeSink& sink) {
+  if (Status valid = options.validate(); !valid) return valid.error();
+  if (recordings.empty()) return bad_input("name a recording");
+  for (const auto& [field, files] : {std::pair("state", &options.states), std::pair("action", &options.actions)}) {
+    if (!files->empty() && files->size() != recordings.size()) {
+      return bad_field(field, fmt::format("has {} files for {} recordings", files->size(), recordings.size()));
+    }
+  }
+  Result<ArrayModels> models = ArrayModels::read(options.model);
+  if (!models) return models.error();
+  Maker maker(options, *std::move(models), sink);
+  for (std::size_t k = 0; k < recordings.size(); ++k) {
+    if (Status added = maker.add(recordings[k], k); !added) return added.error();
+  }
+  if (Status committed = sink.commit(); !committed) return committed.error();
+  return maker.tally();
+}
+
+}  // namespace dermis::datasets

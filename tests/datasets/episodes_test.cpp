@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/datasets/episodes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <fstream>
+
+#include "dermis/recordings/suit_recording.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace dermis::datasets {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// Keeps the steps of all episodes.
+class Kept final : public EpisodeSink {
+ public:
+  Status begin(const std::vector<Column>& columns) override {
+    columns_ = columns;
+    values_.resize(columns.size());
+    return Done{};
+  }
+  Status write(const StepBlock& block) override {
+    for (std::size_t k = 0; k < values_.size(); ++k) {
+      EXPECT_EQ(block.values[k].size(), block.steps * columns_[k].row_bytes());
+      values_[k].insert(values_[k].end(), block.values[k].begin(), block.values[k].end());
+    }
+    steps_ += block.steps;
+    return Done{};
+  }
+  Status end_episode() override {
+    ends_.push_back(steps_);
+    return Done{};
+  }
+  Status commit() override {
+    is_committed_ = true;
+    return Done{};
+  }
+
+  template <typename T>
+  [[nodiscard]] std::vector<T> column(const std::string& name) const {
+    std::vector<T> values;
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      if (columns_[k].name() != name) continue;
+      values.resize(values_[k].size() / sizeof(T));
+      std::memcpy(values.data(), values_[k].data(), values_[k].size());
+    }
+    return values;
+  }
+  [[nodiscard]] std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (const Column& column : columns_) names.push_back(column.name());
+    return names;
+  }
+  [[nodiscard]] const std::vector<std::size_t>& ends() const { return ends_; }
+  [[nodiscard]] bool is_committed() const { return is_committed_; }
+
+ private:
+  std::vector<Column> columns_;
+  std::vector<std::vector<std::byte>> values_;
+  std::vector<std::size_t> ends_;
+  std::size_t steps_ = 0;
+  bool is_committed_ = false;
+};
+
+/// Two arrays of 1x2; the first has a frame at each of these times, with its number as counts, the second every tenth.
+void write_recording(const std::string& path, const std::vector<Nanos>& times, std::size_t cols = 2) {
+  const auto writer = recordings::SuitRecordingWriter::create(
+      path, {{.name = "left hand", .shape = {1, cols}}, {.name = "chest", .shape = {1, cols}}}, {.live = false});
+  ASSERT_TRUE(writer) << writer.error().message;
+  RawFrame frame;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    frame.time = times[k];
+    frame.counts.assign(cols, static_cast<float>(k));
+    ASSERT_TRUE((*writer)->write(0, frame));
+    const bool is_tenth = k % 10 == 0;
+    ASSERT_TRUE(!is_tenth || (*writer)->write(1, frame).has_value());
+  }
+  ASSERT_TRUE((*writer)->commit());
+}
+
+std::vector<Nanos> even_times(std::size_t count, Nanos first = {}) {
+  std::vector<Nanos> times;
+  for (std::size_t k = 0; k < count; ++k) times.push_back(first + milliseconds(10 * k));
+  return times;
+}
+
+std::string error_of(const std::vector<std::string>& recordings, const EpisodeOptions& options) {
+  Kept kept;
+  const Result<EpisodeTally> made = make_episodes(recordings, options, kept);
+  EXPECT_FALSE(kept.is_committed());
+  return made ? "" : made.error().message;
+}
+
+class Episodes : public testing::Test {
+ protected:
+  void SetUp() override { write_recording(path_, even_times(100)); }
+
+  support::TemporaryFolder folder_;
+  std::string path_ = folder_.file("rec.mcap");
+};
+
+TEST_F(Episodes, have_the_windows_and_ages_of_all_arrays) {
+  Kept kept;
+  const Result<EpisodeTally> tally = make_episodes({path_}, {.fps = 20.0, .window = 5}, kept);
+  ASSERT_TRUE(tally) << tally.error().message;
+  EXPECT_TRUE(kept.is_committed());
+  EXPECT_EQ(kept.ends(), (std::vector<std::size_t>{20}));
+  EXPECT_EQ(kept.names(),
+            (std::vector<std::string>{"time_ns", "left_hand_valid", "left_hand_raw", "left_hand_age", "left_hand_fresh",
+                                      "chest_valid", "chest_raw", "chest_age", "chest_fresh"}));
+  EXPECT_EQ(kept.column<std::int64_t>("time_ns")[1], 95'000'000);
+  const std::vector<float> raw = kept.column<float>("left_hand_raw");
+  for (std::size_t k = 0; k < raw.size(); ++k) EXPECT_EQ(raw[k], static_cast<float>(k / 2));  // each frame once
+  EXPECT_FLOAT_EQ(kept.column<float>("left_hand_age")[4], 0.005F);
+  const std::vector<float> ages = kept.column<float>("chest_age");
+  EXPECT_EQ(ages[3], -1.0F);
+  EXPECT_FLOAT_EQ(ages[4], 0.045F);
+  EXPECT_EQ(kept.column<std::uint8_t>("chest_valid")[7], 0);
+  EXPECT_EQ(kept.column<std::uint8_t>("chest_valid")[8], 1);
+  ASSERT_EQ(tally->arrays.size(), 2U);
+  EXPECT_EQ(tally->arrays[0].frames, 100U);
+  EXPECT_EQ(tally->arrays[0].missed + tally->arrays[1].missed, 0U);
+}
+
+TEST_F(Episodes, count_what_too_short_a_window_misses_and_say_how_long_it_must_be) {
+  Kept kept;
+  const Result<EpisodeTally> tally = make_episodes({path_}, {.fps = 20.0, .window = 2}, kept);
+  ASSERT_TRUE(tally);
+  EXPECT_GT(tally->arrays[0].missed, 50U);
+  EXPECT_EQ(tally->arrays[0].most_fresh, 5U);
+}
+
+TEST_F(Episodes, begin_anew_after_a_gap_and_with_every_recording) {
+  std::vector<Nanos> times = even_times(50);
+  const std::vector<Nanos> later = even_times(50, std::chrono::hours(100'000));
+  times.insert(times.end(), later.begin(), later.end());
+  const std::string gap = folder_.file("gap.mcap");
+  write_recording(gap, times);
+  Kept kept;
+  const Result<EpisodeTally> tally = make_episodes({gap, path_}, {.fps = 20.0, .window = 5}, kept);
+  ASSERT_TRUE(tally);
+  EXPECT_EQ(kept.ends(), (std::vector<std::size_t>{10, 20, 40}));
+}
+
+TEST_F(Episodes, have_steps_at_given_times_and_the_state_of_the_robot) {
+  std::ofstream(folder_.file("joints.csv")) << "time_s,elbow\n0.1,1\n0.3,2\n";
+  Kept kept;
+  EpisodeOptions options{.quantities = {"fresh"}, .states = {folder_.file("joints.csv")}};
+  options.times = {{milliseconds(100), milliseconds(299), milliseconds(300)}};
+  ASSERT_TRUE(make_episodes({path_}, options, kept));
+  EXPECT_EQ(kept.column<float>("state"), (std::vector<float>{1, 1, 2}));
+  EXPECT_EQ(kept.names(), (std::vector<std::string>{"time_ns", "state", "left_hand_fresh", "chest_fresh"}));
+}
+
+TEST_F(Episodes, name_what_is_wrong) {
+  EXPECT_NE(error_of({path_}, {.fps = 0.0}).find("fps: must be"), std::string::npos);
+  EXPECT_NE(error_of({path_}, {.window = 0}).find("window: must be"), std::string::npos);
+  EXPECT_NE(error_of({path_}, {.quantities = {"force"}}).find("'force' is none of forces"), std::string::npos);
+  EXPECT_NE(error_of({path_}, {.actions = {"a.csv", "b.csv"}}).find("2 files for 1 recordings"), std::string::npos);
+  EXPECT_NE(error_of({folder_.file("none.mcap")}, {}).find("none.mcap"), std::string::npos);
+  write_recording(folder_.file("wide.mcap"), even_times(3), 3);
+  EXPECT_NE(error_of({path_, folder_.file("wide.mcap")}, {}).find("'left_hand' (1x2)"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace dermis::datasets

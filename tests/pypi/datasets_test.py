@@ -1,0 +1,245 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 The dermis authors
+"""The readers of LeRobot, h5py and zarr load datasets of episodes. Usage: datasets_test.py DERMIS
+
+LeRobot itself needs torch, which is 8 GB with all that it brings. Where it is not installed, its loader is built here
+of the packages that it is made of, `datasets` and `pyarrow`."""
+
+import importlib.util
+import json
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import h5py
+import numpy
+import pandas
+import pyarrow.parquet
+import zarr
+
+import datasets
+
+DERMIS = sys.argv.pop(1)
+ARRAY = """[array]
+name = "pad"
+rows = 5
+cols = 4
+pitch_mm = [10.0, 12.0]
+taxel_area_mm2 = 60.0
+
+[readout]
+circuit = "divider"
+drive_ohm = 20.0
+load_ohm = 200.0
+adc_bits = 12
+adc_reference_v = 5.0
+supply_v = 5.0
+"""
+EPISODES = 3
+FRAMES = 151
+RATE_HZ = 150
+FPS = 30
+WINDOW = 5
+TAXELS = (5, 4)
+
+
+def dermis(*arguments):
+    subprocess.run([DERMIS, *map(str, arguments)], check=True, capture_output=True, text=True)
+
+
+def table_of(path):
+    return numpy.loadtxt(
+        path, delimiter=",", skiprows=1, usecols=range(2, 2 + TAXELS[0] * TAXELS[1]), dtype=numpy.float32
+    )
+
+
+class Datasets(unittest.TestCase):
+    """Three recordings of 150 Hz, with jitter, and what a step must hold by the tables of `dermis run`."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = Path(cls.temporary.name)
+        cls.addClassCleanup(cls.temporary.cleanup)
+        array, cls.model = cls.folder / "array.toml", cls.folder / "pad.safetensors"
+        array.write_text(ARRAY)
+        dermis("simulate", "--array", array, "--scene", "calibration", "--out", cls.folder / "c", "--seed", 3)
+        learned = ("--frames", cls.folder / "c/frames.csv", "--loads", cls.folder / "c/loads.csv", "--out", cls.model)
+        dermis("calibrate", "--array", array, *learned)
+        cls.recordings = [cls.make_recording(array, episode) for episode in range(EPISODES)]
+        cls.episodes = [cls.read_frames(recording) for recording in cls.recordings]
+
+    @classmethod
+    def make_recording(cls, array, seed):
+        simulated, recording = cls.folder / f"s{seed}", cls.folder / f"rec{seed}.mcap"
+        dermis("simulate", "--array", array, "--scene", "multitouch", "--frames", FRAMES, "--out", simulated)
+        lines = (simulated / "frames.csv").read_text().splitlines()
+        jitter = numpy.random.default_rng(seed).uniform(-0.001, 0.001, FRAMES)
+        times = numpy.arange(FRAMES) / RATE_HZ + jitter + 10 * seed + 1
+        rows = [f"{time:.9f},{line.split(',', 1)[1]}" for time, line in zip(times, lines[1:], strict=True)]
+        table = cls.folder / f"rec{seed}.csv"
+        table.write_text("\n".join([lines[0], *rows]) + "\n")
+        dermis("convert", table, recording, "--array", array)
+        return recording
+
+    @classmethod
+    def read_frames(cls, recording):
+        """Times, counts, forces and sigma of each frame by other commands."""
+        table = recording.with_suffix(".csv")
+        raw = numpy.loadtxt(table, delimiter=",", skiprows=1)
+        forces, sigma = cls.folder / "forces.csv", cls.folder / "sigma.csv"
+        dermis("run", "--model", cls.model, "--in", recording, "--out", forces, "--sigma", sigma)
+        frames = {"pad": table_of(forces), "pad_sigma": table_of(sigma), "pad_raw": raw[:, -20:].astype(numpy.float32)}
+        frames["pad_valid"] = ~numpy.isnan(frames["pad"])
+        frames = {
+            name: numpy.where(numpy.isnan(values), 0, values).reshape(-1, *TAXELS) for name, values in frames.items()
+        }
+        return numpy.round(raw[:, 0] * 1e9).astype(numpy.int64), frames
+
+    def make(self, layout, *more):
+        out = self.folder / f"{self.id()}-{layout}"
+        shape = ("--fps", FPS, "--window", WINDOW, "--model", self.model, *more)
+        dermis("dataset", *self.recordings, "--out", out, "--format", layout, *shape)
+        return out
+
+    def check_episode(self, episode, values):
+        """values: the columns of an episode by the names that HDF5 has for them."""
+        times, frames = self.episodes[episode]
+        steps = values["time_ns"].ravel()
+        numpy.testing.assert_array_less(numpy.abs(numpy.diff(steps) - 1e9 / FPS), 1.5)
+        self.assertGreaterEqual(steps[-1], times[-1])
+        ends = numpy.searchsorted(times, steps, side="right")
+        windows = [numpy.arange(end - WINDOW, end) for end in ends]
+        for name, of_frame in frames.items():
+            expected = numpy.stack(
+                [of_frame[window] if window[0] >= 0 else self.filled(of_frame, window) for window in windows]
+            )
+            numpy.testing.assert_array_equal(values[name].astype(expected.dtype), expected, name)
+        ages = numpy.stack([(step - times[window]) * 1e-9 for step, window in zip(steps, windows, strict=True)])
+        numpy.testing.assert_allclose(values["pad_age"], ages, rtol=1e-6, atol=1e-9)
+        fresh = values["pad_fresh"].ravel()
+        numpy.testing.assert_array_equal(fresh, numpy.diff(ends, prepend=0))
+        numpy.testing.assert_array_equal(fresh[:-1], WINDOW)  # none lost and none doubled
+        self.assertEqual(fresh.sum(), FRAMES)
+
+    @staticmethod
+    def filled(of_frame, window):
+        values = of_frame[numpy.maximum(window, 0)].copy()
+        values[window < 0] = 0
+        return values
+
+    def test_h5py_reads_the_episodes_of_act(self):
+        out = self.make("hdf5")
+        self.assertEqual(len(list(out.iterdir())), EPISODES)
+        for episode in range(EPISODES):
+            with h5py.File(out / f"episode_{episode}.hdf5") as root:
+                self.assertIs(bool(root.attrs["sim"]), False)
+                tactile = {name: values[:] for name, values in root["/observations/tactile"].items()}
+                self.check_episode(episode, {**tactile, "time_ns": root["time_ns"][:]})
+
+    def test_h5py_reads_the_demos_of_robomimic(self):
+        with h5py.File(self.make("robomimic") / "demo.hdf5") as root:
+            self.assertIn("env_name", json.loads(root["data"].attrs["env_args"]))
+            self.assertEqual(len(root["data"]), EPISODES)
+            for episode in range(EPISODES):
+                demo = root[f"data/demo_{episode}"]
+                values = {name.removeprefix("tactile_"): column[:] for name, column in demo["obs"].items()}
+                self.check_episode(episode, {**values, "time_ns": demo["time_ns"][:]})
+                self.assertEqual(demo.attrs["num_samples"], len(demo["time_ns"]))
+
+    def test_zarr_reads_the_replay_buffer(self):
+        root = zarr.open(str(self.make("zarr")), mode="r")
+        ends = root["meta/episode_ends"][:]
+        self.assertEqual(len(ends), EPISODES)
+        columns = {name.removeprefix("tactile_"): values[:] for name, values in root["data"].arrays()}
+        self.assertEqual({len(values) for values in columns.values()}, {ends[-1]})
+        for episode, (begin, end) in enumerate(zip([0, *ends[:-1]], ends, strict=True)):
+            self.check_episode(episode, {name: values[begin:end] for name, values in columns.items()})
+
+    def features_of(self, info):
+        """As lerobot.datasets makes them of info.json."""
+        kinds = {2: datasets.Array2D, 3: datasets.Array3D}
+        features = {}
+        for name, feature in info["features"].items():
+            shape, dtype = tuple(feature["shape"]), feature["dtype"]
+            if shape == (1,):
+                features[name] = datasets.Value(dtype)
+            elif len(shape) == 1:
+                features[name] = datasets.Sequence(datasets.Value(dtype), length=shape[0])
+            else:
+                features[name] = kinds[len(shape)](shape=shape, dtype=dtype)
+        return datasets.Features(features)
+
+    def load(self, out):
+        info = json.loads((out / "meta/info.json").read_text())
+        paths = sorted(str(path) for path in (out / "data").glob("*/*.parquet"))
+        return info, datasets.Dataset.from_parquet(
+            paths, features=self.features_of(info), cache_dir=str(self.folder / "cache"), keep_in_memory=True
+        )
+
+    def test_datasets_loads_what_lerobot_loads(self):
+        out = self.make("lerobot", "--task", "pick the cube")
+        info, loaded = self.load(out)
+        columns = {name: numpy.asarray(values) for name, values in loaded.with_format("numpy")[:].items()}
+        self.assertEqual((info["codebase_version"], info["fps"]), ("v3.0", FPS))
+        self.assertEqual((info["total_episodes"], info["total_frames"]), (EPISODES, len(loaded)))
+        numpy.testing.assert_array_equal(columns["index"], numpy.arange(len(loaded)))
+        episodes = pyarrow.parquet.read_table(out / "meta/episodes/chunk-000/file-000.parquet").to_pylist()
+        for row in episodes:
+            rows = slice(row["dataset_from_index"], row["dataset_to_index"])
+            self.assertEqual((rows.stop - rows.start, row["tasks"]), (row["length"], ["pick the cube"]))
+            numpy.testing.assert_array_equal(columns["episode_index"][rows], row["episode_index"])
+            numpy.testing.assert_array_equal(columns["frame_index"][rows], numpy.arange(row["length"]))
+            numpy.testing.assert_allclose(columns["timestamp"][rows], numpy.arange(row["length"]) / FPS, rtol=1e-6)
+            tactile = {name.removeprefix("observation.tactile."): values[rows] for name, values in columns.items()}
+            self.check_episode(row["episode_index"], tactile)
+        tasks = pandas.read_parquet(out / "meta/tasks.parquet")
+        self.assertEqual((list(tasks.index), list(tasks["task_index"])), (["pick the cube"], [0]))
+        self.check_statistics(json.loads((out / "meta/stats.json").read_text()), columns)
+
+    def check_statistics(self, stats, columns):
+        self.assertEqual(set(stats), set(columns))
+        for name, values in columns.items():
+            values = values.astype(numpy.float64)
+            values[~numpy.isfinite(values)] = numpy.nan
+            for key, expected in {
+                "min": numpy.nanmin(values, 0),
+                "max": numpy.nanmax(values, 0),
+                "mean": numpy.nanmean(values, 0),
+                "std": numpy.nanstd(values, 0),
+            }.items():
+                got = numpy.asarray(stats[name][key]).reshape(numpy.shape(expected))
+                numpy.testing.assert_allclose(got, expected, rtol=1e-6, atol=1e-7, err_msg=f"{name}, {key}")
+            self.assertEqual(stats[name]["count"], [len(values)])
+
+    def test_batches_in_any_order_have_one_shape(self):
+        _, loaded = self.load(self.make("lerobot", "--flat"))
+        sizes = set()
+        for batch in loaded.shuffle(seed=1).with_format("numpy").iter(batch_size=16):
+            sizes.add(numpy.asarray(batch["observation.tactile.pad"]).shape[1:])
+        self.assertEqual(sizes, {(WINDOW * TAXELS[0] * TAXELS[1],)})
+
+    @unittest.skipUnless(
+        importlib.util.find_spec("lerobot"), "lerobot is not installed: torch is too large for the gate"
+    )
+    def test_lerobot_itself_iterates(self):
+        import torch
+        from lerobot.datasets.lerobot_dataset import LeRobotDataset
+
+        out = self.make("lerobot")
+        dataset = LeRobotDataset("dermis/test", root=out)
+        self.assertEqual((dataset.num_episodes, dataset.num_frames), (EPISODES, len(dataset)))
+        _, loaded = self.load(out)
+        for index in (0, len(dataset) - 1):
+            tactile = dataset[index]["observation.tactile.pad"].numpy()
+            numpy.testing.assert_array_equal(
+                tactile, numpy.asarray(loaded[index]["observation.tactile.pad"], "float32")
+            )
+        steps = sum(len(batch["index"]) for batch in torch.utils.data.DataLoader(dataset, batch_size=8, shuffle=True))
+        self.assertEqual(steps, len(dataset))
+
+
+if __name__ == "__main__":
+    unittest.main()
