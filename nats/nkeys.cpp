@@ -93,6 +93,20 @@ Result<KeyBytes> parse_seed(const std::string& text) {
   return key;
 }
 
+using Key = std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)>;
+
+Error no_key() {
+  return failed("the library of keys (OpenSSL) makes no key");
+}
+
+Result<Key> key_of_seed(const std::string& seed) {
+  const Result<KeyBytes> bytes = parse_seed(seed);
+  if (!bytes) return bytes.error();
+  Key key(EVP_PKEY_new_raw_private_key(EVP_PKEY_ED25519, nullptr, bytes->data(), bytes->size()), &EVP_PKEY_free);
+  if (key == nullptr) return no_key();
+  return key;
+}
+
 }  // namespace
 
 std::string seed_text(const KeyBytes& seed) {
@@ -100,16 +114,25 @@ std::string seed_text(const KeyBytes& seed) {
 }
 
 Result<std::string> user_of_seed(const std::string& seed) {
-  const Result<KeyBytes> bytes = parse_seed(seed);
-  if (!bytes) return bytes.error();
-  const std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)> key(
-      EVP_PKEY_new_raw_private_key(EVP_PKEY_ED25519, nullptr, bytes->data(), bytes->size()), &EVP_PKEY_free);
+  const Result<Key> key = key_of_seed(seed);
+  if (!key) return key.error();
   KeyBytes user{};
   std::size_t size = user.size();
-  if (key == nullptr || EVP_PKEY_get_raw_public_key(key.get(), user.data(), &size) != 1) {
-    return failed("the library of keys (OpenSSL) makes no key");
-  }
+  if (EVP_PKEY_get_raw_public_key(key->get(), user.data(), &size) != 1) return no_key();
   return encode(std::array{kUser}, user);
+}
+
+Result<Signature> sign(const std::string& seed, std::string_view text) {
+  const Result<Key> key = key_of_seed(seed);
+  if (!key) return key.error();
+  const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(), &EVP_MD_CTX_free);
+  Signature signature{};
+  std::size_t size = signature.size();
+  const bool is_signed = context != nullptr &&
+                         EVP_DigestSignInit(context.get(), nullptr, nullptr, nullptr, key->get()) == 1 &&
+                         EVP_DigestSign(context.get(), signature.data(), &size,
+                                        reinterpret_cast<const std::uint8_t*>(text.data()), text.size()) == 1;
+  return is_signed ? Result<Signature>(signature) : no_key();
 }
 
 }  // namespace dermis::fleet

@@ -260,6 +260,13 @@ TEST_F(Accounts, nobody_enters_without_a_key) {
             servers->robot("anna").url() + ": the server does not know this user; give key=FILE of one that it knows");
 }
 
+TEST_F(Accounts, every_connection_signs_what_the_server_asks) {
+  for (int k = 0; k < 400; ++k) {  // one signature in 256 begins with 0
+    const auto robot = connect_broker(servers->robot_address("anna"));
+    ASSERT_TRUE(robot) << robot.error().message << ", connection " << k;
+  }
+}
+
 TEST_F(Accounts, a_worker_does_jobs_and_reads_frames_alone) {
   const Job job{"a", {"convert", "a.mcap", "a.csv"}};
   auto operators = JobQueue::connect(servers->operator_address());
