@@ -78,7 +78,7 @@ class FramePublisher::Implementation {
   [[nodiscard]] std::uint64_t left_out(std::size_t array) const noexcept { return arrays_[array]->left_out(); }
 
  private:
-  /// Of a message: late where there was no time left.
+  /// The fate of a message; late: there was no time left.
   enum class Fate : std::uint8_t { stored, refused, late };
 
   void work(std::size_t first, std::size_t stride, const std::stop_token& stop);

@@ -114,7 +114,10 @@ TEST_F(Episodes, have_the_windows_and_ages_of_all_arrays) {
                                       "chest_valid", "chest_raw", "chest_age", "chest_fresh"}));
   EXPECT_EQ(kept.column<std::int64_t>("time_ns")[1], 95'000'000);
   const std::vector<float> raw = kept.column<float>("left_hand_raw");
-  for (std::size_t k = 0; k < raw.size(); ++k) EXPECT_EQ(raw[k], static_cast<float>(k / 2));  // each frame once
+  for (std::size_t k = 0; k < raw.size(); ++k) {
+    const std::size_t frame = k / 2;  // each once
+    EXPECT_EQ(raw[k], static_cast<float>(frame));
+  }
   EXPECT_FLOAT_EQ(kept.column<float>("left_hand_age")[4], 0.005F);
   const std::vector<float> ages = kept.column<float>("chest_age");
   EXPECT_EQ(ages[3], -1.0F);

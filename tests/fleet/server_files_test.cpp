@@ -286,7 +286,7 @@ TEST_F(Accounts, a_worker_does_jobs_and_reads_frames_alone) {
   EXPECT_TRUE(hub_has("bob", 1));
 }
 
-/// Of another fleet on the same ports.
+/// Another fleet has the same ports.
 class Strangers : public Accounts {
  public:
   void SetUp() override {

@@ -33,7 +33,7 @@ class Hdf5Tables {
   /// Attributes of the file ("/"), a group or a table, which must exist.
   [[nodiscard]] Status set_text(const std::string& object, const char* name, const std::string& text);
   [[nodiscard]] Status set_number(const std::string& object, const char* name, std::int64_t number);
-  /// Of the type of booleans that h5py writes.
+  /// Its type is that of the booleans of h5py.
   [[nodiscard]] Status set_flag(const std::string& object, const char* name, bool flag);
 
   [[nodiscard]] Status commit();

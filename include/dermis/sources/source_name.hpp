@@ -31,8 +31,8 @@ struct SourceName {
   std::optional<fleet::StreamAddress> stream{};  ///< A stream of NATS; empty: it is none.
   std::optional<buses::BusAddress> bus{};        ///< Registers or a topic; empty: it is none.
 
-  /// Fails on what acquisition::parse_source_uri(), fleet::parse_stream_address() or buses::parse_bus_address() refuses.
-  /// Everything else is the path of a file.
+  /// Fails on what acquisition::parse_source_uri(), fleet::parse_stream_address() or buses::parse_bus_address()
+  /// refuses. Everything else is the path of a file.
   [[nodiscard]] static Result<SourceName> parse(const std::string& text);
 
   /// "rec.mcap#chest": the file without its folder, as tables name it.
