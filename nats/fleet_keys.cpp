@@ -11,23 +11,17 @@
 #include <memory>
 #include <utility>
 
+#include "destroyer.hpp"
 #include "nkeys.hpp"
 
 namespace dermis::fleet {
 namespace {
 
-template <auto Free>
-struct Freer {
-  template <typename Made>
-  void operator()(Made* made) const {
-    Free(made);
-  }
-};
-using Key = std::unique_ptr<EVP_PKEY, Freer<EVP_PKEY_free>>;
-using Certificate = std::unique_ptr<X509, Freer<X509_free>>;
-using Memory = std::unique_ptr<BIO, Freer<BIO_free_all>>;
-using Extension = std::unique_ptr<X509_EXTENSION, Freer<X509_EXTENSION_free>>;
-using Number = std::unique_ptr<BIGNUM, Freer<BN_free>>;
+using Key = std::unique_ptr<EVP_PKEY, Destroyer<EVP_PKEY_free>>;
+using Certificate = std::unique_ptr<X509, Destroyer<X509_free>>;
+using Memory = std::unique_ptr<BIO, Destroyer<BIO_free_all>>;
+using Extension = std::unique_ptr<X509_EXTENSION, Destroyer<X509_EXTENSION_free>>;
+using Number = std::unique_ptr<BIGNUM, Destroyer<BN_free>>;
 
 constexpr int kBitsOfSerial = 127;
 constexpr const char* kBegins = "19700101000000Z";  // the clock of a robot may stand there after a start

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <utility>
 
+#include "destroyer.hpp"
 #include "fleet/broker.hpp"
 #include "nkeys.hpp"
 
@@ -28,14 +29,6 @@ constexpr natsStatus kAskAgain = NATS_ILLEGAL_STATE;
 constexpr int kMostQuestions = 8;  // all of them end in vain once in 10^19 times
 constexpr const char* kIdHeader = "Nats-Msg-Id";
 
-/// Frees what the library has made.
-template <auto Destroy>
-struct Destroyer {
-  template <typename Made>
-  void operator()(Made* made) const {
-    Destroy(made);
-  }
-};
 using Options = std::unique_ptr<natsOptions, Destroyer<natsOptions_Destroy>>;
 using Connection = std::unique_ptr<natsConnection, Destroyer<natsConnection_Destroy>>;
 using JetStream = std::unique_ptr<jsCtx, Destroyer<jsCtx_Destroy>>;

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "destroyer.hpp"
+
 namespace dermis::fleet {
 namespace {
 
@@ -93,7 +95,8 @@ Result<KeyBytes> parse_seed(const std::string& text) {
   return key;
 }
 
-using Key = std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)>;
+using Key = std::unique_ptr<EVP_PKEY, Destroyer<EVP_PKEY_free>>;
+using Context = std::unique_ptr<EVP_MD_CTX, Destroyer<EVP_MD_CTX_free>>;
 
 Error no_key() {
   return failed("the library of keys (OpenSSL) makes no key");
@@ -102,7 +105,7 @@ Error no_key() {
 Result<Key> key_of_seed(const std::string& seed) {
   const Result<KeyBytes> bytes = parse_seed(seed);
   if (!bytes) return bytes.error();
-  Key key(EVP_PKEY_new_raw_private_key(EVP_PKEY_ED25519, nullptr, bytes->data(), bytes->size()), &EVP_PKEY_free);
+  Key key(EVP_PKEY_new_raw_private_key(EVP_PKEY_ED25519, nullptr, bytes->data(), bytes->size()));
   if (key == nullptr) return no_key();
   return key;
 }
@@ -125,7 +128,7 @@ Result<std::string> user_of_seed(const std::string& seed) {
 Result<Signature> sign(const std::string& seed, std::string_view text) {
   const Result<Key> key = key_of_seed(seed);
   if (!key) return key.error();
-  const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(), &EVP_MD_CTX_free);
+  const Context context(EVP_MD_CTX_new());
   Signature signature{};
   std::size_t size = signature.size();
   const bool is_signed = context != nullptr &&
