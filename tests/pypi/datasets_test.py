@@ -7,9 +7,7 @@ of the packages that it is made of, `datasets` and `pyarrow`."""
 
 import importlib.util
 import json
-import subprocess
 import sys
-import tempfile
 import unittest
 from pathlib import Path
 
@@ -21,22 +19,9 @@ import zarr
 
 import datasets
 
-DERMIS = sys.argv.pop(1)
-ARRAY = """[array]
-name = "pad"
-rows = 5
-cols = 4
-pitch_mm = [10.0, 12.0]
-taxel_area_mm2 = 60.0
+sys.path.append(str(Path(__file__).resolve().parents[1] / "python"))
+from workspace import CalibratedArray, dermis, main
 
-[readout]
-circuit = "divider"
-drive_ohm = 20.0
-load_ohm = 200.0
-adc_bits = 12
-adc_reference_v = 5.0
-supply_v = 5.0
-"""
 EPISODES = 3
 FRAMES = 151
 RATE_HZ = 150
@@ -45,43 +30,32 @@ WINDOW = 5
 TAXELS = (5, 4)
 
 
-def dermis(*arguments):
-    subprocess.run([DERMIS, *map(str, arguments)], check=True, capture_output=True, text=True)
-
-
 def table_of(path):
     return numpy.loadtxt(
         path, delimiter=",", skiprows=1, usecols=range(2, 2 + TAXELS[0] * TAXELS[1]), dtype=numpy.float32
     )
 
 
-class Datasets(unittest.TestCase):
+class Datasets(CalibratedArray):
     """Three recordings of 150 Hz, with jitter, and what a step must hold by the tables of `dermis run`."""
 
     @classmethod
     def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
-        cls.folder = Path(cls.temporary.name)
-        cls.addClassCleanup(cls.temporary.cleanup)
-        array, cls.model = cls.folder / "array.toml", cls.folder / "pad.safetensors"
-        array.write_text(ARRAY)
-        dermis("simulate", "--array", array, "--scene", "calibration", "--out", cls.folder / "c", "--seed", 3)
-        learned = ("--frames", cls.folder / "c/frames.csv", "--loads", cls.folder / "c/loads.csv", "--out", cls.model)
-        dermis("calibrate", "--array", array, *learned)
-        cls.recordings = [cls.make_recording(array, episode) for episode in range(EPISODES)]
+        super().setUpClass()
+        cls.recordings = [cls.make_recording(episode) for episode in range(EPISODES)]
         cls.episodes = [cls.read_frames(recording) for recording in cls.recordings]
 
     @classmethod
-    def make_recording(cls, array, seed):
+    def make_recording(cls, seed):
         simulated, recording = cls.folder / f"s{seed}", cls.folder / f"rec{seed}.mcap"
-        dermis("simulate", "--array", array, "--scene", "multitouch", "--frames", FRAMES, "--out", simulated)
+        dermis("simulate", "--array", cls.array, "--scene", "multitouch", "--frames", FRAMES, "--out", simulated)
         lines = (simulated / "frames.csv").read_text().splitlines()
         jitter = numpy.random.default_rng(seed).uniform(-0.001, 0.001, FRAMES)
         times = numpy.arange(FRAMES) / RATE_HZ + jitter + 10 * seed + 1
         rows = [f"{time:.9f},{line.split(',', 1)[1]}" for time, line in zip(times, lines[1:], strict=True)]
         table = cls.folder / f"rec{seed}.csv"
         table.write_text("\n".join([lines[0], *rows]) + "\n")
-        dermis("convert", table, recording, "--array", array)
+        dermis("convert", table, recording, "--array", cls.array)
         return recording
 
     @classmethod
@@ -242,4 +216,4 @@ class Datasets(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    main()
