@@ -16,6 +16,7 @@
 
 #include "messages/read_by_definition.hpp"
 #include "support/allocation_guard.hpp"
+#include "support/calibration_state.hpp"
 
 // tests/stream/npm_client_test.mjs reads the same messages with a reader that is not ours.
 namespace dermis::messages {
@@ -146,24 +147,7 @@ TEST(LiveMessages, a_wrench_has_its_force_and_its_torque) {
 }
 
 TEST(LiveMessages, a_calibration_state_has_all_of_its_fields) {
-  CalibrationState state;
-  state.time = kTime;
-  state.array = "hand";
-  state.stage = CalibrationState::Stage::pressing;
-  state.message = "Press r1c0";
-  state.taxel = 8;
-  state.weight_n = 5.0;
-  state.reading = 1.75;
-  state.hold_share = 0.5;
-  state.presses_done = 3;
-  state.presses_total = 12;
-  state.median_relative_error = 0.04;
-  state.taxel_presses = {1, 0, 2};
-  state.hint = CalibrationState::Hint::other_taxel;
-  state.pressed_taxel = 7;
-  state.unpressed_relative_error = 0.09;
-  state.together_with = 5;
-  state.together_reading = 1.5;
+  CalibrationState state = support::calibration_state(kTime);
   state.missing_taxel = 4;
   std::vector<std::uint8_t> message;
   encode_calibration_state(state, "suit", message);

@@ -15,6 +15,7 @@
 #include "dermis/messages/live_messages.hpp"
 #include "dermis/messages/ros_messages.hpp"
 #include "messages/read_by_definition.hpp"
+#include "support/calibration_state.hpp"
 
 namespace dermis::messages {
 namespace {
@@ -114,28 +115,6 @@ void print_contacts(Bytes& message) {
   print(transforms_type(), message);
 }
 
-CalibrationState calibration_state() {
-  CalibrationState state;
-  state.time = kTime;
-  state.array = "hand";
-  state.stage = CalibrationState::Stage::pressing;
-  state.message = "Press r1c0";
-  state.taxel = 8;
-  state.weight_n = 5.0;
-  state.reading = 1.75;
-  state.hold_share = 0.5;
-  state.presses_done = 3;
-  state.presses_total = 12;
-  state.median_relative_error = 0.04;
-  state.taxel_presses = {1, 0, 2};
-  state.hint = CalibrationState::Hint::other_taxel;
-  state.pressed_taxel = 7;
-  state.unpressed_relative_error = 0.09;
-  state.together_with = 5;
-  state.together_reading = 1.5;
-  return state;
-}
-
 Statistics statistics() {
   Statistics statistics;
   statistics.time = kTime;
@@ -149,7 +128,7 @@ Statistics statistics() {
 }
 
 void print_states(Bytes& message) {
-  encode_calibration_state(calibration_state(), "suit", message);
+  encode_calibration_state(support::calibration_state(kTime), "suit", message);
   print(calibration_state_type(), message);
   encode_statistics(statistics(), "suit", message);
   print(statistics_type(), message);
