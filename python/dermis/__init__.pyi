@@ -97,6 +97,9 @@ class RawFrame:
     @property
     def counts(self) -> NDArray[np.float32]: ...
     @property
+    def sensor_celsius(self) -> NDArray[np.float32]:
+        """Temperatures of the sensors of the array; empty where there is one temperature."""
+    @property
     def sequence(self) -> int | None: ...
     @property
     def lost_before(self) -> int: ...
@@ -134,7 +137,8 @@ class Recording:
     """Frames of one array in memory, from and to any file of frames: .mcap, .csv, .h5, .npy and more.
 
     counts: (frames, rows, cols). Give rate_hz, or time_ns (frames,), which does not go back. temperature_celsius [C]
-    and supply_v [V] are (frames,), one number for all frames, or None; NaN stands for a frame without.
+    and supply_v [V] are (frames,), one number for all frames, or None; NaN stands for a frame without. sensor_celsius
+    [C] is (frames, sensors), where the array has several sensors of temperature.
     """
 
     def __init__(
@@ -144,6 +148,7 @@ class Recording:
         time_ns: ArrayLike | None = None,
         rate_hz: float | None = None,
         temperature_celsius: ArrayLike | None = None,
+        sensor_celsius: ArrayLike | None = None,
         supply_v: ArrayLike | None = None,
         array: ArrayDescription | _Path | None = None,
     ) -> None: ...
@@ -169,6 +174,8 @@ class Recording:
     def time_ns(self) -> NDArray[np.int64]: ...
     @property
     def temperature_celsius(self) -> NDArray[np.float64]: ...
+    @property
+    def sensor_celsius(self) -> NDArray[np.float32]: ...
     @property
     def supply_v(self) -> NDArray[np.float64]: ...
     @property
@@ -213,11 +220,11 @@ class Pipeline:
     def process(
         self,
         counts: ArrayLike,
-        temperature: float | None = None,
+        temperature: float | ArrayLike | None = None,
         supply: float | None = None,
         time_ns: int | None = None,
     ) -> ForceFrame:
-        """counts (rows, cols); temperature [C]; supply [V]; time_ns: now, by the host's clock, where it is None."""
+        """counts (rows, cols); temperature [C], one or one of each sensor; supply [V]; time_ns: now, by the host's clock, where it is None."""
     def run(
         self,
         frames: Recording | _Path | ArrayLike,

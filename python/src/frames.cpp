@@ -61,11 +61,12 @@ std::vector<std::int64_t> times(const py::object& time_ns, const std::optional<d
 }
 
 Recording make_recording(const py::object& counts, const py::object& time_ns, std::optional<double> rate_hz,
-                         const py::object& temperature, const py::object& supply, const py::object& array) {
+                         const py::object& temperature, const py::object& sensors, const py::object& supply,
+                         const py::object& array) {
   const std::optional<ArrayDescription> description =
       array.is_none() ? std::nullopt : std::optional<ArrayDescription>(array_of(array));
   Recording recording =
-      recording_of(counts, description ? &*description : nullptr, {time_ns, rate_hz, temperature, supply});
+      recording_of(counts, description ? &*description : nullptr, {time_ns, rate_hz, temperature, supply, sensors});
   if (!description) return recording;
   recording.notes = {description->name, files::array_to_toml(*description)};
   return recording;
@@ -150,6 +151,12 @@ void bind_single_frames(py::module_& module) {
   py::class_<ShapedRaw>(module, "RawFrame")
       .def_property_readonly("time_ns", [](const ShapedRaw& raw) { return raw.frame.time.count(); })
       .def_property_readonly("temperature_celsius", [](const ShapedRaw& raw) { return raw.frame.temperature_celsius; })
+      .def_property_readonly("sensor_celsius",
+                             [](const py::object& self) {
+                               auto& raw = self.cast<ShapedRaw&>();
+                               return view(self, raw.frame.sensor_celsius,
+                                           {static_cast<py::ssize_t>(raw.frame.sensor_celsius.size())});
+                             })
       .def_property_readonly("supply_v", [](const ShapedRaw& raw) { return raw.frame.supply_v; })
       .def_property_readonly("counts",
                              [](const py::object& self) {
@@ -162,7 +169,7 @@ void bind_single_frames(py::module_& module) {
           [](const ShapedRaw& raw) {
             return py::make_tuple(raw.shape.rows, raw.shape.cols, raw.frame.time.count(), raw.frame.temperature_celsius,
                                   raw.frame.supply_v, raw.frame.counts, raw.frame.acquisition.sequence,
-                                  raw.frame.acquisition.lost_before);
+                                  raw.frame.acquisition.lost_before, raw.frame.sensor_celsius);
           },
           [](const py::tuple& state) {
             ShapedRaw raw;
@@ -173,6 +180,7 @@ void bind_single_frames(py::module_& module) {
             raw.frame.counts = state[5].cast<std::vector<float>>();
             raw.frame.acquisition.sequence = state[6].cast<std::optional<std::uint64_t>>();
             raw.frame.acquisition.lost_before = state[7].cast<std::uint32_t>();
+            raw.frame.sensor_celsius = state[8].cast<std::vector<float>>();
             return raw;
           }));
 
@@ -267,7 +275,9 @@ Recording part_of_recording(const Recording& whole, const py::slice& slice) {
           picked(whole.temperature_celsius, places),
           picked(whole.supply_v, places),
           picked(whole.counts, places, whole.shape.taxel_count()),
-          whole.notes};
+          whole.notes,
+          whole.sensors,
+          picked(whole.sensor_celsius, places, whole.sensors)};
 }
 
 Forces part_of_forces(const Forces& whole, const py::slice& slice) {
@@ -288,7 +298,7 @@ void bind_many_frames(py::module_& module) {
   py::class_<Recording>(module, "Recording")
       .def(py::init(&make_recording), py::arg("counts"), py::kw_only(), py::arg("time_ns") = py::none(),
            py::arg("rate_hz") = py::none(), py::arg("temperature_celsius") = py::none(),
-           py::arg("supply_v") = py::none(), py::arg("array") = py::none())
+           py::arg("sensor_celsius") = py::none(), py::arg("supply_v") = py::none(), py::arg("array") = py::none())
       .def_static(
           "read",
           [](const py::object& path, std::optional<double> rate_hz) { return read_recording(path_of(path), rate_hz); },
@@ -328,6 +338,13 @@ void bind_many_frames(py::module_& module) {
                              })
       .def_property_readonly("time_ns", per_frame(&Recording::time_ns))
       .def_property_readonly("temperature_celsius", per_frame(&Recording::temperature_celsius))
+      .def_property_readonly(
+          "sensor_celsius",
+          [](const py::object& self) {
+            auto& recording = self.cast<Recording&>();
+            return view(self, recording.sensor_celsius,
+                        {static_cast<py::ssize_t>(recording.size()), static_cast<py::ssize_t>(recording.sensors)});
+          })
       .def_property_readonly("supply_v", per_frame(&Recording::supply_v))
       .def_property_readonly("counts", per_taxel(&Recording::counts))
       .def(py::pickle(
@@ -335,7 +352,7 @@ void bind_many_frames(py::module_& module) {
             return py::make_tuple(recording.shape.rows, recording.shape.cols, recording.time_ns,
                                   recording.temperature_celsius, recording.supply_v, recording.counts,
                                   recording.notes.name, recording.notes.array_toml, recording.notes.model_hash,
-                                  recording.notes.simulation);
+                                  recording.notes.simulation, recording.sensors, recording.sensor_celsius);
           },
           [](const py::tuple& state) {
             return Recording{{state[0].cast<std::size_t>(), state[1].cast<std::size_t>()},
@@ -344,7 +361,9 @@ void bind_many_frames(py::module_& module) {
                              state[4].cast<std::vector<double>>(),
                              state[5].cast<std::vector<float>>(),
                              {state[6].cast<std::string>(), state[7].cast<std::string>(), state[8].cast<std::string>(),
-                              state[9].cast<std::string>()}};
+                              state[9].cast<std::string>()},
+                             state[10].cast<std::size_t>(),
+                             state[11].cast<std::vector<float>>()};
           }));
 
   py::class_<Forces>(module, "Forces")
@@ -389,10 +408,15 @@ void bind_many_frames(py::module_& module) {
 }  // namespace
 
 void Recording::append(const RawFrame& frame) {
+  if (time_ns.empty()) sensors = frame.sensor_celsius.size();
+  sensor_celsius.insert(
+      sensor_celsius.end(), frame.sensor_celsius.begin(),
+      frame.sensor_celsius.begin() + static_cast<std::ptrdiff_t>(std::min(sensors, frame.sensor_celsius.size())));
   time_ns.push_back(frame.time.count());
   temperature_celsius.push_back(frame.temperature_celsius.value_or(kNone));
   supply_v.push_back(frame.supply_v.value_or(kNone));
   counts.insert(counts.end(), frame.counts.begin(), frame.counts.end());
+  sensor_celsius.resize(size() * sensors, std::numeric_limits<float>::quiet_NaN());
 }
 
 void Recording::read(std::size_t index, RawFrame& frame) const {
@@ -402,6 +426,8 @@ void Recording::read(std::size_t index, RawFrame& frame) const {
   const std::size_t taxels = shape.taxel_count();
   const float* const first = counts.data() + index * taxels;
   frame.counts.assign(first, first + taxels);
+  const float* const first_sensor = sensor_celsius.data() + index * sensors;
+  frame.sensor_celsius.assign(first_sensor, first_sensor + sensors);
 }
 
 std::vector<RawFrame> Recording::frames() const {
@@ -421,6 +447,11 @@ Recording recording_of(const py::object& counts, const ArrayDescription* array, 
   recording.time_ns = times(beside.time_ns, beside.rate_hz, frames);
   recording.temperature_celsius = series(beside.temperature_celsius, "temperature_celsius", frames);
   recording.supply_v = series(beside.supply_v, "supply_v", frames);
+  if (beside.sensor_celsius.is_none()) return recording;
+  const py::array_t<float> sensors =
+      numbers<float>(beside.sensor_celsius, "sensor_celsius", {static_cast<py::ssize_t>(frames), -1});
+  recording.sensors = static_cast<std::size_t>(sensors.shape(1));
+  recording.sensor_celsius = copied(sensors);
   return recording;
 }
 

@@ -32,6 +32,8 @@ struct Recording {
   std::vector<double> supply_v;             // [frames]
   std::vector<float> counts;                // [frames, rows, cols]
   recordings::FrameNotes notes;
+  std::size_t sensors = 0;            // of temperature
+  std::vector<float> sensor_celsius;  // [frames, sensors]
 
   [[nodiscard]] std::size_t size() const { return time_ns.size(); }
   void append(const RawFrame& frame);
@@ -49,6 +51,7 @@ struct FrameSeries {
   std::optional<double> rate_hz;
   py::object temperature_celsius;
   py::object supply_v;
+  py::object sensor_celsius = py::none();
 };
 
 /// Counts [frames, rows, cols] as a recording. `array`: whose shape they must have; null: any.

@@ -39,12 +39,12 @@ class SharedPipeline {
 
   [[nodiscard]] std::shared_ptr<pipeline::Model> model() const { return model_; }
 
-  ShapedForce process(const py::object& counts, std::optional<double> temperature, std::optional<double> supply,
+  ShapedForce process(const py::object& counts, const py::object& temperature, std::optional<double> supply,
                       std::optional<std::int64_t> time_ns) {
     const std::unique_lock lock = exclusively();
     const py::array_t<float> values = numbers<float>(counts, "counts", extents());
     raw_.time = time_ns ? Nanos(*time_ns) : steady_now();
-    raw_.temperature_celsius = temperature;
+    set_temperature(temperature);
     raw_.supply_v = supply;
     raw_.counts.assign(values.data(), values.data() + values.size());
     ShapedForce force{shape_, {}};
@@ -96,6 +96,21 @@ class SharedPipeline {
   }
 
  private:
+  /// One of the array, or one of each sensor.
+  void set_temperature(const py::object& celsius) {
+    raw_.temperature_celsius.reset();
+    raw_.sensor_celsius.clear();
+    if (celsius.is_none()) return;
+    const bool is_list = py::isinstance<py::array>(celsius) ? celsius.cast<py::array>().ndim() > 0
+                                                            : py::isinstance<py::sequence>(celsius);
+    if (!is_list) {
+      raw_.temperature_celsius = static_cast<double>(py::float_(celsius));
+      return;
+    }
+    const py::array_t<float> sensors = numbers<float>(celsius, "temperature", {-1});
+    raw_.sensor_celsius.assign(sensors.data(), sensors.data() + sensors.size());
+  }
+
   void process_all(const Recording& recording, Forces& forces) {
     const py::gil_scoped_release release;
     ForceFrame force;

@@ -149,6 +149,7 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
   conductance.time = conditioned.time;
   conductance.status = conditioned.status;
   conductance.temperature_celsius = conditioned.temperature_celsius;
+  conductance.taxel_celsius = conditioned.taxel_celsius;
   conductance.taxels = conditioned.taxels;
   conductance.siemens.resize(conditioned.ratio.size());
   conductance.sigma_siemens.resize(conditioned.ratio.size());

@@ -79,6 +79,7 @@ class OffsetDrift::Implementation {
   void begin_block(Nanos time) noexcept;
   void forget_history() noexcept;
   void accumulate(const ConductanceFrame& frame) noexcept;
+  void level_gradient(const ConductanceFrame& frame) noexcept;
   [[nodiscard]] bool block_is_complete(double block_s) const noexcept;
   void finish_block(double block_s) noexcept;
   void average_block() noexcept;
@@ -210,7 +211,8 @@ void OffsetDrift::Implementation::forget_history() noexcept {
 
 DERMIS_PROCESSOR_CLONES void OffsetDrift::Implementation::accumulate(const ConductanceFrame& frame) noexcept {
   const TemperatureSpan& calibrated = unloaded_.law.temperature;
-  block_.temperature_sum += calibrated.offset(frame.temperature_celsius.value_or(calibrated.centre_celsius));
+  block_.temperature_sum += calibrated.offset(frame.temperature_celsius);
+  if (!frame.taxel_celsius.empty()) level_gradient(frame);
   const double* const siemens = frame.siemens.data();
   double* const sum = block_.sum.data();
   for (std::size_t k = 0; k < block_.sum.size(); ++k) sum[k] += siemens[k];
@@ -220,6 +222,15 @@ DERMIS_PROCESSOR_CLONES void OffsetDrift::Implementation::accumulate(const Condu
   std::copy(frame.sigma_siemens.begin(), frame.sigma_siemens.end(), block_.sigma.begin());
   block_.last_time = frame.time;
   ++block_.frames;
+}
+
+/// As if all taxels had the mean temperature.
+void OffsetDrift::Implementation::level_gradient(const ConductanceFrame& frame) noexcept {
+  const TemperatureSpan& calibrated = unloaded_.law.temperature;
+  const double mean = calibrated.offset(frame.temperature_celsius);
+  for (std::size_t k = 0; k < block_.sum.size(); ++k) {
+    block_.sum[k] -= unloaded_.law.per_celsius[k] * (calibrated.offset(frame.celsius(k)) - mean);
+  }
 }
 
 bool OffsetDrift::Implementation::block_is_complete(double block_s) const noexcept {

@@ -140,6 +140,25 @@ Status validate_absent(const ArrayDescription& array) {
   return Done{};
 }
 
+Status validate_temperatures(const ArrayDescription& array) {
+  constexpr std::size_t kMostSensors = 64;
+  constexpr double kMostGradientCelsius = 100.0;
+  const double gradient = array.temperature_gradient_celsius;
+  if (!(gradient >= 0.0 && gradient <= kMostGradientCelsius)) {
+    return bad_input("array.temperature_gradient_celsius: must be 0 to 100 C");
+  }
+  const auto is_on_line = [](double place, std::size_t lines) {
+    return place >= 0.0 && place <= static_cast<double>(lines - 1);
+  };
+  for (const auto& [row, col] : array.temperature_sensors) {
+    if (is_on_line(row, array.rows) && is_on_line(col, array.cols)) continue;
+    return bad_input("array.temperature_sensors: must be places [row, col] on the array, from [0, 0] on");
+  }
+  if (array.temperature_sensors.size() <= kMostSensors) return Done{};
+  if (array.temperature_sensors == sensors_on_each_taxel(array.rows, array.cols)) return Done{};
+  return bad_input("array.temperature_sensors: must be at most 64, or \"each taxel\"");
+}
+
 Status validate_order(const ArrayDescription& array) {
   const auto of_key = [](const Error& error) { return bad_input("array." + error.message); };
   if (array.order.skip_columns >= kMaxLines) {
@@ -282,6 +301,7 @@ Status ArrayDescription::validate() const {
   if (cols < 1 || cols > kMaxLines) return bad_input("array.cols: must be 1 to " + std::to_string(kMaxLines));
   if (Status valid = validate_geometry(*this); !valid) return valid;
   if (Status valid = validate_absent(*this); !valid) return valid;
+  if (Status valid = validate_temperatures(*this); !valid) return valid;
   if (Status valid = validate_order(*this); !valid) return valid;
   return validate_readout(*this);
 }
@@ -303,6 +323,16 @@ const char* to_string(IdleColumns idle_columns) noexcept {
 
 const char* to_string(IdleRows idle_rows) noexcept {
   return idle_rows == IdleRows::grounded ? "grounded" : "floating";
+}
+
+std::vector<TemperatureSensor> sensors_on_each_taxel(std::size_t rows, std::size_t cols) {
+  std::vector<TemperatureSensor> sensors;
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t col = 0; col < cols; ++col) {
+      sensors.push_back({static_cast<double>(row), static_cast<double>(col)});
+    }
+  }
+  return sensors;
 }
 
 std::string taxel_name(std::size_t row, std::size_t col) {

@@ -22,6 +22,7 @@ constexpr double kSquareMillimetresPerSquareMetre = 1e6;
 constexpr int kMostAdcBits = 24;  // which a float holds exactly
 constexpr const char* kPressure = "pressure";
 constexpr const char* kForce = "force";
+constexpr const char* kEachTaxel = "each taxel";
 
 void read_line_count(ConfigFile& file, std::string_view key, std::size_t& lines) {
   file.require(key);
@@ -54,6 +55,32 @@ void read_absent(ConfigFile& file, ArrayDescription& array) {
   }
   std::sort(array.absent.begin(), array.absent.end());
   array.absent.erase(std::unique(array.absent.begin(), array.absent.end()), array.absent.end());
+}
+
+/// "each taxel", or [[row, col], ...].
+void read_temperatures(ConfigFile& file, ArrayDescription& array) {
+  file.number("array.temperature_gradient_celsius", array.temperature_gradient_celsius);
+  if (file.is_text("array.temperature_sensors", kEachTaxel)) {
+    array.temperature_sensors = sensors_on_each_taxel(array.rows, array.cols);
+    return;
+  }
+  std::vector<std::vector<double>> places;
+  file.number_rows("array.temperature_sensors", 2, places);
+  for (const std::vector<double>& place : places) array.temperature_sensors.push_back({place[0], place[1]});
+}
+
+std::string temperatures_toml(const ArrayDescription& array) {
+  std::string text;
+  if (array.temperature_gradient_celsius > 0.0) {
+    text += fmt::format("temperature_gradient_celsius = {}\n", array.temperature_gradient_celsius);
+  }
+  if (array.temperature_sensors.empty()) return text;
+  if (array.temperature_sensors == sensors_on_each_taxel(array.rows, array.cols)) {
+    return text + fmt::format("temperature_sensors = \"{}\"\n", kEachTaxel);
+  }
+  std::vector<std::string> places;
+  for (const auto& [row, col] : array.temperature_sensors) places.push_back(fmt::format("[{}, {}]", row, col));
+  return text + fmt::format("temperature_sensors = [{}]\n", fmt::join(places, ", "));
 }
 
 void read_order(ConfigFile& file, LineOrder& order) {
@@ -197,6 +224,7 @@ Result<ArrayDescription> read_array(ConfigFile& file) {
   ArrayDescription array;
   read_geometry(file, array);
   read_absent(file, array);
+  read_temperatures(file, array);
   read_order(file, array.order);
   read_readout(file, array);
   file.ignore("layout");
@@ -318,6 +346,7 @@ std::string array_to_toml(const ArrayDescription& array) {
     text += fmt::format("taxel_area_mm2 = {:.15g}\n", *array.taxel_area_m2 * kSquareMillimetresPerSquareMetre);
   }
   if (!array.absent.empty()) text += fmt::format("absent = [{}]\n", fmt::join(absent_names(array), ", "));
+  text += temperatures_toml(array);
   text += order_toml(array.order);
   text += "\n[readout]\n" + circuit_toml(readout);
   text += fmt::format("adc_bits = {}\nadc_noise_counts = {}\nsupply_noise = {}\nadc_reference_v = {}\n",

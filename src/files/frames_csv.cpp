@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <initializer_list>
 #include <limits>
 #include <optional>
@@ -20,16 +21,24 @@
 namespace dermis::files {
 namespace {
 
-enum class Column { time, temperature, supply };
+enum class Column { time, temperature, supply, sensor };
 
 constexpr std::array<const char*, 3> kColumnNames{"time_s", "temperature_celsius", "supply_v"};
+constexpr std::string_view kSensorBegin = "sensor";
+constexpr std::string_view kSensorEnd = "_celsius";
 constexpr std::size_t kMaxColumns = kMaxLines * kMaxLines + kColumnNames.size();
 
 const char* name_of(Column column) {
   return kColumnNames[static_cast<std::size_t>(column)];
 }
 
+/// "sensor0_celsius"
+std::string sensor_name(std::size_t sensor) {
+  return std::string(kSensorBegin).append(std::to_string(sensor)).append(kSensorEnd);
+}
+
 std::optional<Column> column_named(std::string_view name) {
+  if (name.starts_with(kSensorBegin) && name.ends_with(kSensorEnd)) return Column::sensor;
   const auto* const found = std::find(kColumnNames.begin(), kColumnNames.end(), name);
   if (found == kColumnNames.end()) return std::nullopt;
   return static_cast<Column>(found - kColumnNames.begin());
@@ -108,10 +117,15 @@ Result<std::vector<Column>> parse_columns(const Cells& cells) {
     return bad_input("is a table of " + std::string(other) + ", not of raw counts");
   }
   std::vector<Column> columns;
+  std::size_t sensors = 0;
   for (const std::string_view cell : cells) {
     const std::optional<Column> column = column_named(cell);
     if (!column) break;
-    if (std::find(columns.begin(), columns.end(), *column) != columns.end()) {
+    if (*column == Column::sensor) {
+      if (const std::string name = sensor_name(sensors++); cell != name) {
+        return bad_input("column " + in_quotes(cell) + " stands where " + name + " is expected");
+      }
+    } else if (std::find(columns.begin(), columns.end(), *column) != columns.end()) {
       return bad_input("column " + in_quotes(cell) + " stands twice; remove one");
     }
     columns.push_back(*column);
@@ -130,6 +144,7 @@ Result<std::vector<Column>> parse_columns(const Cells& cells) {
 struct Header {
   std::vector<Column> columns;  ///< Before the taxels.
   FrameShape shape;
+  std::size_t sensors = 0;
 };
 
 Result<Header> parse_header(const Cells& cells, std::optional<FrameShape> shape) {
@@ -140,7 +155,8 @@ Result<Header> parse_header(const Cells& cells, std::optional<FrameShape> shape)
   if (!are_taxels_in_order(cells, columns->size(), expected->shape)) {
     return bad_input(taxel_mistake(cells, columns->size(), *expected));
   }
-  return Header{*std::move(columns), expected->shape};
+  const auto sensors = static_cast<std::size_t>(std::count(columns->begin(), columns->end(), Column::sensor));
+  return Header{*std::move(columns), expected->shape, sensors};
 }
 
 }  // namespace
@@ -154,6 +170,7 @@ struct FramesCsvReader::State {
 
   Status read_header(std::optional<FrameShape> shape);
   std::optional<Error> read_value(Column column, std::string_view cell, RawFrame& frame) const;
+  std::optional<Error> read_sensor(std::string_view cell, RawFrame& frame) const;
   Status read_frame(std::string_view line, RawFrame& frame) const;
   Error count_error(std::size_t taxel, std::string_view cell) const;
 };
@@ -177,6 +194,7 @@ std::optional<Error> FramesCsvReader::State::read_value(Column column, std::stri
     if (parse_seconds(cell, frame.time)) return std::nullopt;
     return csv.error("column time_s: " + in_quotes(cell) + " is not a time; write seconds of at most 9e9");
   }
+  if (column == Column::sensor) return read_sensor(cell, frame);
   std::optional<double>& target = column == Column::supply ? frame.supply_v : frame.temperature_celsius;
   if (cell.empty()) {
     target.reset();
@@ -191,11 +209,20 @@ std::optional<Error> FramesCsvReader::State::read_value(Column column, std::stri
   return std::nullopt;
 }
 
+/// An empty cell is a sensor without a reading.
+std::optional<Error> FramesCsvReader::State::read_sensor(std::string_view cell, RawFrame& frame) const {
+  float& celsius = frame.sensor_celsius.emplace_back(std::numeric_limits<float>::quiet_NaN());
+  if (cell.empty() || parse_number(cell, celsius)) return std::nullopt;
+  return csv.error("column " + sensor_name(frame.sensor_celsius.size() - 1) + ": " + in_quotes(cell) +
+                   " is not a number; leave the cell empty where there is no value");
+}
+
 Status FramesCsvReader::State::read_frame(std::string_view line, RawFrame& frame) const {
   const std::size_t taxel_count = header.shape.taxel_count();
   const std::size_t header_size = header.columns.size() + taxel_count;
   if (const Status right = check_count(line, header_size); !right) return csv.error(right.error().message);
   frame.temperature_celsius.reset();
+  frame.sensor_celsius.clear();
   frame.supply_v.reset();
   frame.counts.resize(taxel_count);
   CsvCells cells(line);
@@ -265,23 +292,29 @@ std::string FramesCsvReader::place() const {
   return state_->csv.place();
 }
 
-FramesCsvWriter::FramesCsvWriter(AtomicFile file, std::size_t taxel_count, const FramesCsvColumns& columns)
-    : file_(std::move(file)), taxel_count_(taxel_count), columns_(columns) {}
+FramesCsvWriter::FramesCsvWriter(AtomicFile file, FrameShape shape, const FramesCsvColumns& columns)
+    : file_(std::move(file)), shape_(shape), columns_(columns) {}
 
 Result<std::unique_ptr<FramesCsvWriter>> FramesCsvWriter::create(const std::string& path, FrameShape shape,
                                                                  const FramesCsvColumns& columns) {
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return file.error();
+  return std::unique_ptr<FramesCsvWriter>(new FramesCsvWriter(*std::move(file), shape, columns));
+}
+
+void FramesCsvWriter::write_header(std::size_t sensors) {
   std::string header = name_of(Column::time);
-  if (columns.temperature_celsius) header.append(",").append(name_of(Column::temperature));
-  if (columns.supply_v) header.append(",").append(name_of(Column::supply));
-  append_taxel_names(header, shape.rows, shape.cols);
-  file->write(header + "\n");
-  return std::unique_ptr<FramesCsvWriter>(new FramesCsvWriter(*std::move(file), shape.taxel_count(), columns));
+  if (columns_.temperature_celsius) header.append(",").append(name_of(Column::temperature));
+  for (std::size_t sensor = 0; sensor < sensors; ++sensor) header.append(",").append(sensor_name(sensor));
+  if (columns_.supply_v) header.append(",").append(name_of(Column::supply));
+  append_taxel_names(header, shape_.rows, shape_.cols);
+  file_.write(header + "\n");
+  sensors_ = sensors;
 }
 
 Status FramesCsvWriter::write(const RawFrame& frame) {
-  assert(frame.counts.size() == taxel_count_);
+  assert(frame.counts.size() == shape_.taxel_count());
+  if (!sensors_) write_header(frame.sensor_celsius.size());
   line_.clear();
   append_seconds(line_, frame.time);
   const auto append_optional = [this](const std::optional<double>& value) {
@@ -289,6 +322,11 @@ Status FramesCsvWriter::write(const RawFrame& frame) {
     if (value) append_number(line_, *value);
   };
   if (columns_.temperature_celsius) append_optional(frame.temperature_celsius);
+  for (std::size_t sensor = 0; sensor < *sensors_; ++sensor) {
+    const bool has_reading = sensor < frame.sensor_celsius.size() && !std::isnan(frame.sensor_celsius[sensor]);
+    line_ += ',';
+    if (has_reading) append_number(line_, frame.sensor_celsius[sensor]);
+  }
   if (columns_.supply_v) append_optional(frame.supply_v);
   for (const float count : frame.counts) {
     line_ += ',';
@@ -300,6 +338,7 @@ Status FramesCsvWriter::write(const RawFrame& frame) {
 }
 
 Status FramesCsvWriter::commit() {
+  if (!sensors_) write_header(0);
   return file_.commit();
 }
 

@@ -100,6 +100,10 @@ float ForceNetworks::sigma_place(float log_newtons) const noexcept {
 ForceFusion::ForceFusion(ForceNetworks networks)
     : networks_(std::move(networks)),
       bank_(networks_.shape, networks_.taxel_count(), networks_.parameters),
+      temperatures_{{},
+                    std::vector<double>(networks_.taxel_count()),
+                    std::vector<float>(networks_.taxel_count()),
+                    std::vector<float>(networks_.taxel_count())},
       offset_per_celsius_(networks_.unloaded.per_celsius.begin(), networks_.unloaded.per_celsius.end()),
       excess_siemens_(networks_.taxel_count()),
       sigma_siemens_(networks_.taxel_count()),
@@ -144,23 +148,42 @@ void ForceFusion::process(const ConductanceFrame& conductance, ForceFrame& force
     std::fill(force.sums.newtons.begin(), force.sums.newtons.end(), kNoForce);
     return;
   }
-  const Temperature temperature = this->temperature(conductance, force);
-  prepare_inputs(conductance, temperature.offset);
+  find_temperatures(conductance, force);
+  prepare_inputs(conductance);
   bank_.evaluate(inputs_, outputs_, gradient_);
-  look_up(temperature.offset);
-  compute_forces(temperature, force);
-  compute_signals(temperature.sigma, force);
+  look_up();
+  compute_forces(force);
+  compute_signals(force);
   apply_status(force);
 }
 
-ForceFusion::Temperature ForceFusion::temperature(const ConductanceFrame& conductance,
-                                                  ForceFrame& force) const noexcept {
+void ForceFusion::find_temperatures(const ConductanceFrame& conductance, ForceFrame& force) noexcept {
+  const std::size_t taxels = networks_.taxel_count();
+  temperatures_.of_array = temperature(conductance.temperature_celsius, force);
+  std::fill(temperatures_.offset.begin(), temperatures_.offset.end(), temperatures_.of_array.offset);
+  std::fill(temperatures_.sigma.begin(), temperatures_.sigma.end(), static_cast<float>(temperatures_.of_array.sigma));
+  std::fill(temperatures_.unlearned_variance.begin(), temperatures_.unlearned_variance.end(),
+            temperatures_.of_array.unlearned_variance());
+  if (conductance.taxel_celsius.size() != taxels) return;
+  for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
+    const Temperature own = temperature(conductance.celsius(taxel), force);
+    temperatures_.offset[taxel] = own.offset;
+    temperatures_.sigma[taxel] = static_cast<float>(own.sigma);
+    temperatures_.unlearned_variance[taxel] = own.unlearned_variance();
+  }
+}
+
+float ForceFusion::Temperature::unlearned_variance() const noexcept {
+  return static_cast<float>(std::pow(kUnlearnedPerCelsius * outside, 2));
+}
+
+ForceFusion::Temperature ForceFusion::temperature(std::optional<double> measured, ForceFrame& force) const noexcept {
   const TemperatureSpan& calibrated = networks_.unloaded.temperature;
-  if (!conductance.temperature_celsius) {
+  if (!measured) {
     if (uses_temperature()) force.status |= FrameStatus::temperature_unknown;
     return {0.0, calibrated.half_span_celsius / std::numbers::sqrt3, 0.0};  // anywhere in the calibrated span
   }
-  const double celsius = *conductance.temperature_celsius;
+  const double celsius = *measured;
   const double offset = celsius - calibrated.centre_celsius;
   const double clamped = calibrated.offset(celsius);
   const bool is_known = calibrated.half_span_celsius > 0.0;  // at which temperatures the forces were calibrated
@@ -172,11 +195,10 @@ ForceFusion::Temperature ForceFusion::temperature(const ConductanceFrame& conduc
   return {clamped, std::hypot(networks_.temperature_sigma_celsius, outside, in_gap), outside};
 }
 
-DERMIS_PROCESSOR_CLONES void ForceFusion::prepare_inputs(const ConductanceFrame& conductance,
-                                                         double temperature_offset) noexcept {
+DERMIS_PROCESSOR_CLONES void ForceFusion::prepare_inputs(const ConductanceFrame& conductance) noexcept {
   const std::size_t taxels = networks_.taxel_count();
   for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
-    const double unloaded = networks_.unloaded.at(taxel, temperature_offset);
+    const double unloaded = networks_.unloaded.at(taxel, temperatures_.offset[taxel]);
     excess_siemens_[taxel] = static_cast<float>(conductance.siemens[taxel] - unloaded);
     const auto noise = static_cast<float>(conductance.sigma_siemens[taxel]);
     const float offset_sigma = networks_.offset_sigma_siemens[taxel];
@@ -186,18 +208,20 @@ DERMIS_PROCESSOR_CLONES void ForceFusion::prepare_inputs(const ConductanceFrame&
                       sigma_siemens_},
                      std::span(inputs_).first(2 * taxels));
   if (!uses_temperature()) return;
-  const auto t = static_cast<float>(temperature_offset / networks_.unloaded.temperature.half_span_celsius);
-  std::fill(inputs_.begin() + static_cast<std::ptrdiff_t>(2 * taxels), inputs_.end(), t);
+  const double half_span = networks_.unloaded.temperature.half_span_celsius;
+  std::transform(temperatures_.offset.begin(), temperatures_.offset.end(),
+                 inputs_.begin() + static_cast<std::ptrdiff_t>(2 * taxels),
+                 [half_span](double offset) { return static_cast<float>(offset / half_span); });
 }
 
 /// In the place of the networks, where there are tables.
-void ForceFusion::look_up(double temperature_offset) noexcept {
+void ForceFusion::look_up() noexcept {
   const std::size_t taxels = networks_.taxel_count();
   const ForceTables& tables = networks_.tables;
   for (std::size_t table = 0; table < tables.taxels.size(); ++table) {
     const std::size_t taxel = tables.taxels[table];
     const float asked = networks_.reference_siemens[taxel] * std::exp(inputs_[taxel]);
-    const ForceTables::Value value = tables.at(table, asked, static_cast<float>(temperature_offset));
+    const ForceTables::Value value = tables.at(table, asked, static_cast<float>(temperatures_.offset[taxel]));
     outputs_[taxel] = value.log_newtons - log_gain_[taxel];
     const bool is_beyond = excess_siemens_[taxel] > networks_.heaviest_siemens[taxel];
     gradient_[taxel] = is_beyond ? tables.end_exponent(table) : value.exponent;
@@ -212,7 +236,7 @@ void ForceFusion::look_up(double temperature_offset) noexcept {
   }
 }
 
-void ForceFusion::compute_forces(const Temperature& temperature, ForceFrame& force) noexcept {
+void ForceFusion::compute_forces(ForceFrame& force) noexcept {
   const float first = std::log(networks_.sigma_knots_newtons[0]);
   const float last = std::log(networks_.sigma_knots_newtons[1]);
   ForceSources sources;
@@ -226,24 +250,24 @@ void ForceFusion::compute_forces(const Temperature& temperature, ForceFrame& for
   sources.offset_sigma = networks_.offset_sigma_siemens;
   sources.variance_rises = variance_rises_;
   sources.table_variance = table_variance_;
-  sources.temperature_sigma = static_cast<float>(temperature.sigma);
+  sources.temperature_sigma = temperatures_.sigma;
   if (uses_temperature()) {
     sources.temperature_per_celsius = static_cast<float>(1.0 / networks_.unloaded.temperature.half_span_celsius);
   }
-  sources.unlearned_variance = static_cast<float>(std::pow(kUnlearnedPerCelsius * temperature.outside, 2));
+  sources.unlearned_variance = temperatures_.unlearned_variance;
   sources.log_first_knot = first;
   sources.knots_per_log = static_cast<float>(kSigmaKnots - 1) / (last - first);
   ForceSums& sums = force.sums;
   forces(sources, {force.newtons, force.sigma_newtons, noise_newtons_, sums.newtons, sums.own_variance,
                    sums.newtons_per_siemens, sums.newtons_per_celsius});
-  sums.temperature_sigma = temperature.sigma;
-  sums.gain_sigma = std::sqrt(static_cast<double>(sources.unlearned_variance));
+  sums.temperature_sigma = temperatures_.of_array.sigma;
+  sums.gain_sigma = std::sqrt(static_cast<double>(temperatures_.of_array.unlearned_variance()));
 }
 
-DERMIS_PROCESSOR_CLONES void ForceFusion::compute_signals(double temperature_sigma, ForceFrame& force) const noexcept {
-  const float common = kCommonSigmas * static_cast<float>(temperature_sigma);
+DERMIS_PROCESSOR_CLONES void ForceFusion::compute_signals(ForceFrame& force) const noexcept {
   for (std::size_t taxel = 0; taxel < networks_.taxel_count(); ++taxel) {
-    const float noise = sigma_siemens_[taxel] + common * std::abs(offset_per_celsius_[taxel]);
+    const float noise =
+        sigma_siemens_[taxel] + kCommonSigmas * temperatures_.sigma[taxel] * std::abs(offset_per_celsius_[taxel]);
     force.signal_to_noise[taxel] = excess_siemens_[taxel] / std::max(noise, std::numeric_limits<float>::min());
   }
 }

@@ -99,12 +99,12 @@ void compute_forces(const ForceSources sources, const FusedForces fused) {
       of_temperature = hn::Mul(load(sources.gradient, 2), hn::Set(d, sources.temperature_per_celsius));
     }
     const auto per_celsius = hn::Sub(of_temperature, offset_drift);  // q
-    const auto drift = hn::Mul(per_celsius, hn::Set(d, sources.temperature_sigma));
+    const auto drift = hn::Mul(per_celsius, load(sources.temperature_sigma));
     const auto below = hn::Max(hn::Sub(hn::Set(d, sources.log_first_knot), log_reached), hn::Zero(d));
     const auto law_below = hn::Mul(hn::Set(d, kExponentSigmaBelow), below);
     const auto of_material = hn::Add(material_variance(d, sources, log_reached, first), load(sources.table_variance));
     const auto of_law = hn::MulAdd(law_below, law_below, of_material);
-    auto variance = hn::Add(of_law, hn::Set(d, sources.unlearned_variance));
+    auto variance = hn::Add(of_law, load(sources.unlearned_variance));
     variance = hn::MulAdd(noise, noise, variance);
     variance = hn::MulAdd(drift, drift, variance);
     const auto at_reached = hn::Exp(d, hn::Min(log_reached, hn::Set(d, kLargestLog)));

@@ -33,9 +33,9 @@ struct ForceSources {
   std::span<const float> variance_rises;      ///< relative_sigma^2, of the first knot and from knot to knot
                                               ///< [kSigmaKnots, taxels]
   std::span<const float> table_variance;      ///< Relative, of the law that a table does not know.
-  float temperature_sigma = 0.0F;             ///< [C]
+  std::span<const float> temperature_sigma;   ///< [C]
   float temperature_per_celsius = 0.0F;       ///< Rise of the third input [1/C]; 0 where there is none.
-  float unlearned_variance = 0.0F;            ///< Relative, of temperatures that were not calibrated.
+  std::span<const float> unlearned_variance;  ///< Relative, of temperatures that were not calibrated.
   float log_first_knot = 0.0F;                ///< ln of the first knot of relative_sigma.
   float knots_per_log = 0.0F;                 ///< Knots for a rise of ln(newtons) by one.
 };

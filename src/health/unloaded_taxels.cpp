@@ -12,9 +12,8 @@ namespace dermis::health {
 void UnloadedTaxels::expect(const ConductanceFrame& conductance) {
   const UnloadedLaw& unloaded = model_.networks.unloaded;
   const double centre_celsius = unloaded.temperature.centre_celsius;
-  const double offset_celsius = conductance.temperature_celsius.value_or(centre_celsius) - centre_celsius;
   for (std::size_t taxel = 0; taxel < expected_.size(); ++taxel) {
-    expected_[taxel] = unloaded.at(taxel, offset_celsius);
+    expected_[taxel] = unloaded.at(taxel, conductance.celsius(taxel).value_or(centre_celsius) - centre_celsius);
   }
 }
 

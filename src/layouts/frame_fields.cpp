@@ -3,6 +3,7 @@
 #include "layouts/frame_fields.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -18,7 +19,27 @@ bool holds(const std::vector<std::uint64_t>& values, const std::optional<std::ui
   return flags && std::find(values.begin(), values.end(), *flags) != values.end();
 }
 
+/// The mean of those that are not NaN; NaN without any.
+double mean_of(const std::vector<float>& values) {
+  double sum = 0.0;
+  double count = 0.0;
+  for (const float value : values) {
+    if (std::isnan(value)) continue;
+    sum += static_cast<double>(value);
+    ++count;
+  }
+  return sum / count;
+}
+
 }  // namespace
+
+void Piece::add_temperature(double celsius) {
+  if (temperature_celsius && sensor_celsius.empty()) {
+    sensor_celsius.push_back(static_cast<float>(*temperature_celsius));
+  }
+  if (temperature_celsius) sensor_celsius.push_back(static_cast<float>(celsius));
+  temperature_celsius = sensor_celsius.empty() ? celsius : mean_of(sensor_celsius);
+}
 
 FrameFields::FrameFields(const Layout& layout, const Moduli& moduli)
     : layout_(layout),
@@ -38,6 +59,8 @@ bool FrameFields::write(const Piece& piece, RawFrame& frame) {
   if (holds(layout_.flags.corrupt, piece.flags)) return false;
   if (holds(layout_.flags.absent, piece.flags)) std::fill(frame.counts.begin(), frame.counts.end(), kAbsent);
   frame.temperature_celsius = piece.temperature_celsius;
+  if (frame.temperature_celsius && std::isnan(*frame.temperature_celsius)) frame.temperature_celsius.reset();
+  frame.sensor_celsius = piece.sensor_celsius;
   frame.supply_v = piece.supply_v;
   frame.acquisition = {};
   if (piece.frame) count(*piece.frame, frame.acquisition);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "dermis/core/frames.hpp"
 #include "dermis/layouts/layout.hpp"
@@ -24,7 +25,11 @@ struct Piece {
   std::optional<std::uint64_t> time_ns{};
   double time_unit = 0.0;  ///< Seconds, of the field that was read last.
   std::optional<double> temperature_celsius{};
+  std::vector<float> sensor_celsius{};  ///< Where there are several temperatures; NaN: no reading.
   std::optional<double> supply_v{};
+
+  /// One after the other; NaN: no reading.
+  void add_temperature(double celsius);
 
   /// A time in a smaller unit than the one before adds to it: seconds and then microseconds.
   void set_time(std::uint64_t nanos, double unit) noexcept {

@@ -123,7 +123,7 @@ bool LineMatch::read_field(const TextField& field, const TextField* next, Piece&
   }
   if (!read_number(number)) return fail("a number is expected");
   number *= field.unit;
-  if (field.role == Role::temperature) piece.temperature_celsius = number;
+  if (field.role == Role::temperature) piece.add_temperature(number);
   if (field.role == Role::supply && number > 0.0) piece.supply_v = number;
   if (field.role != Role::time) return true;
   const double nanos = std::round(1e9 * number);

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "layouts/has_role.hpp"
 
@@ -177,7 +178,7 @@ std::size_t PacketMatch::count_of(const PacketField& field, std::size_t array, c
 bool PacketMatch::use(const PacketField& field, double number, Piece& piece) {
   const double value = field.unit * number + field.offset;
   if (field.role == Role::temperature) {
-    if (std::isfinite(value)) piece.temperature_celsius = value;
+    piece.add_temperature(std::isfinite(value) ? value : std::numeric_limits<double>::quiet_NaN());
     return true;
   }
   if (field.role == Role::supply) {

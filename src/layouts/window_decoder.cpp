@@ -11,6 +11,7 @@ namespace {
 /// Times are the caller's.
 void clear(RawFrame& frame) {
   frame.temperature_celsius.reset();
+  frame.sensor_celsius.clear();
   frame.supply_v.reset();
   frame.acquisition.sequence.reset();
   frame.acquisition.device_time.reset();

@@ -185,7 +185,8 @@ void ArrayWorker::find_contacts(const RawFrame& frame) {
   tracker_.process(results_.force, results_.report);
   place_contacts();
   follow_standing();
-  results_.temperature_celsius = frame.temperature_celsius;
+  results_.temperature_celsius =
+      frame.sensor_celsius.empty() ? frame.temperature_celsius : pipeline_->conditioned().temperature_celsius;
   results_.supply_v = frame.supply_v;
   const Nanos now = steady_now();
   meter(frame, now);

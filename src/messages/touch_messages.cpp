@@ -46,17 +46,20 @@ void skip_motor(CdrReader& reader) {
   skip<std::uint32_t>(reader, 7);
 }
 
-/// The temperature of a module is the mean over its sensors that are there.
+/// Beside each pressure is the temperature of its sensor, NaN where there is none. That of the module is their mean.
 void read_module(CdrReader& reader, TouchReading& reading) {
   reading.shape = kModule;
   std::vector<float>& counts = reading.frame.counts;
   counts.resize(kModuleTaxels);
   for (float& count : counts) count = reader.read<float>();
+  std::vector<float>& sensors = reading.frame.sensor_celsius;
+  sensors.assign(kModuleTaxels, std::numeric_limits<float>::quiet_NaN());
   double sum = 0.0;
   int measured = 0;
-  for (const float count : counts) {
+  for (std::size_t k = 0; k < kModuleTaxels; ++k) {
     const auto celsius = reader.read<float>();
-    if (count == kAbsentPressure || !(celsius >= kColdest && celsius <= kWarmest)) continue;
+    if (counts[k] == kAbsentPressure || !(celsius >= kColdest && celsius <= kWarmest)) continue;
+    sensors[k] = celsius;
     sum += celsius;
     ++measured;
   }

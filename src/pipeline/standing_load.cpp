@@ -70,10 +70,8 @@ void StandingLoadWatch::add(const ConductanceFrame& conductance, const ForceFram
   if (has(conductance.status, FrameStatus::rejected | FrameStatus::not_converged)) return;
   if (frames_++ == 0) first_ = force.time;
   last_ = force.time;
-  const TemperatureSpan& calibrated = unloaded_.temperature;
-  const double offset_celsius = calibrated.offset(conductance.temperature_celsius.value_or(calibrated.centre_celsius));
   for (std::size_t taxel = 0; taxel < bears_.size(); ++taxel) {
-    const double at_rest = std::max(unloaded_.at(taxel, offset_celsius), 0.0);
+    const double at_rest = std::max(unloaded_.at(taxel, unloaded_.temperature.offset(conductance.celsius(taxel))), 0.0);
     const double most =
         (1.0 + compensation::kMostDriftOfUnloaded) * at_rest + kTouchedSigmas * conductance.sigma_siemens[taxel];
     const bool is_loaded = conductance.siemens[taxel] > most && std::isfinite(force.newtons[taxel]);

@@ -48,11 +48,11 @@ void TareJudge::end(compensation::OffsetDrift& drift, const ConductanceFrame& co
 }
 
 void TareJudge::press(const compensation::TareStep& step, const ConductanceFrame& conductance) noexcept {
-  const TemperatureSpan& calibrated = unloaded_.temperature;
-  const double offset_celsius = calibrated.offset(conductance.temperature_celsius.value_or(calibrated.centre_celsius));
   pressed_.temperature_celsius = conductance.temperature_celsius;
+  pressed_.taxel_celsius = conductance.taxel_celsius;
   for (std::size_t taxel = 0; taxel < pressed_.siemens.size(); ++taxel) {
-    pressed_.siemens[taxel] = unloaded_.at(taxel, offset_celsius) + step.siemens[taxel];
+    pressed_.siemens[taxel] =
+        unloaded_.at(taxel, unloaded_.temperature.offset(conductance.celsius(taxel))) + step.siemens[taxel];
   }
 }
 

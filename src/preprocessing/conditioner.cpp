@@ -60,6 +60,7 @@ Conditioner::Conditioner(const ArrayDescription& array, const SupplyBounds& supp
   AdcErrors& errors = array_.readout.adc_errors;
   if (errors.is_unknown()) errors = {{}, {}, errors.curve};  // calibration has yet to find them
   if (errors.any()) adc_.emplace(array_);
+  if (!array_.temperature_sensors.empty()) temperatures_.emplace(array_);
   const Readout& readout = array_.readout;
   if (readout.pressure_raises_reading) {
     highest_counts_ = static_cast<float>(readout.rail_counts.value_or(readout.full_scale_counts())) - kHalfCount;
@@ -116,7 +117,7 @@ Rejection Conditioner::inspect_supply(const RawFrame& raw) const noexcept {
 
 void Conditioner::process(const RawFrame& raw, ConditionedFrame& conditioned) noexcept {
   conditioned.time = raw.time;
-  conditioned.temperature_celsius = without_nan(raw.temperature_celsius);
+  find_temperatures(raw, conditioned);
   conditioned.status = FrameStatus::ok;
   conditioned.supply_doubt = 0.0;
   conditioned.ratio.resize(array_.taxel_count());
@@ -137,6 +138,14 @@ void Conditioner::process(const RawFrame& raw, ConditionedFrame& conditioned) no
   convert(raw, conditioned);
   if (missing > 0 || !array_.absent.empty()) mark_missing(raw, conditioned);
   if (raw.supply_v && !supply_bounds_.trusted().contains(*raw.supply_v)) doubt_supply(*raw.supply_v, conditioned);
+}
+
+void Conditioner::find_temperatures(const RawFrame& raw, ConditionedFrame& conditioned) noexcept {
+  conditioned.temperature_celsius = without_nan(raw.temperature_celsius);
+  if (!temperatures_ || !temperatures_->interpolate(raw.sensor_celsius, conditioned.taxel_celsius)) return;
+  double sum = 0.0;
+  for (const float celsius : conditioned.taxel_celsius) sum += static_cast<double>(celsius);
+  conditioned.temperature_celsius = sum / static_cast<double>(array_.taxel_count());
 }
 
 DERMIS_PROCESSOR_CLONES void Conditioner::convert(const RawFrame& raw, ConditionedFrame& conditioned) noexcept {

@@ -14,11 +14,13 @@ namespace {
 struct Extras {
   bool is_timed = false;
   bool has_temperature = false;
+  bool has_sensors = false;
   bool has_supply = false;
   bool has_acquisition = false;
 
   void add(const RawFrame& frame) {
     has_temperature = has_temperature || frame.temperature_celsius;
+    has_sensors = has_sensors || !frame.sensor_celsius.empty();
     has_supply = has_supply || frame.supply_v;
     has_acquisition = has_acquisition || frame.acquisition != Acquisition{};
   }
@@ -30,6 +32,7 @@ std::vector<std::string> left_out(const Extras& extras, bool has_forces, const F
   const bool holds_temperature = holds_all || format == FrameFormat::csv;
   if (extras.is_timed && !has_times(format)) names.emplace_back("times");
   if (extras.has_temperature && !holds_temperature) names.emplace_back("temperature");
+  if (extras.has_sensors && !holds_temperature) names.emplace_back("temperatures of several sensors");
   if (extras.has_supply && !holds_temperature) names.emplace_back("supply");
   if (extras.has_acquisition && !holds_all) names.emplace_back("numbers, device times and arrivals of the frames");
   if (!notes.array_toml.empty() && !holds_all) names.emplace_back("the description of the array");

@@ -19,6 +19,7 @@ namespace {
 
 constexpr const char* kCounts = "counts";
 constexpr const char* kTimeS = "time_s";
+constexpr const char* kSensors = "sensor_celsius";
 
 /// Which optional members of a frame have a value, as in the dataset `known`.
 constexpr unsigned kTemperature = 1;
@@ -113,6 +114,7 @@ struct Hdf5FramesReader::State {
   CountsDataset counts;
   Fields<Column> columns{};
   Column<double> time_s{};  ///< Where there is no time_ns.
+  std::optional<CountsDataset> sensors{};
   FrameNotes notes{};
   hsize_t next = 0;
   std::uint64_t lost = 0;
@@ -120,6 +122,7 @@ struct Hdf5FramesReader::State {
   template <typename T>
   Status open_column(const char* name, Column<T>& column);
   Status open_columns();
+  Status open_sensors();
   Status read_fields(Fields<Value>& fields);
   Status read_time(std::int64_t& nanos);
   unsigned known_without_saying(const Fields<Value>& fields) const;
@@ -144,6 +147,22 @@ Status Hdf5FramesReader::State::open_columns() {
     return bad_input(file.path() + ": has counts, but neither time_ns nor time_s");
   }
   return opened;
+}
+
+/// Temperatures: one number for each sensor in each frame.
+Status Hdf5FramesReader::State::open_sensors() {
+  if (!file.contains(kSensors)) return Done{};
+  const Result<Hdf5Dataset> dataset = file.dataset(kSensors);
+  if (!dataset) return dataset.error();
+  if (dataset->sizes.size() != 2 || dataset->sizes[0] != counts.frame_count() || dataset->sizes[1] == 0 ||
+      dataset->sizes[1] > kMaxLines * kMaxLines) {
+    return bad_input(dataset->place + " does not hold the sensors of each of " + std::to_string(counts.frame_count()) +
+                     " frames");
+  }
+  Result<CountsDataset> opened = CountsDataset::open(file, kSensors, FrameShape{1, dataset->sizes[1]});
+  if (!opened) return opened.error();
+  sensors = *std::move(opened);
+  return Done{};
 }
 
 Status Hdf5FramesReader::State::read_time(std::int64_t& nanos) {
@@ -191,6 +210,7 @@ Result<std::unique_ptr<Hdf5FramesReader>> Hdf5FramesReader::open(const std::stri
   if (!counts) return counts.error();
   auto state = std::make_unique<State>(State{*std::move(file), *std::move(counts)});
   if (const Status opened = state->open_columns(); !opened) return opened.error();
+  if (const Status opened = state->open_sensors(); !opened) return opened.error();
   state->notes = {state->file.text("name"), state->file.text("array"), state->file.text("model_hash"),
                   state->file.text("simulation")};
   return std::unique_ptr<Hdf5FramesReader>(new Hdf5FramesReader(std::move(state)));
@@ -202,6 +222,10 @@ Result<bool> Hdf5FramesReader::next(RawFrame& frame) {
   Fields<Value> fields;
   if (const Status read = state_->read_fields(fields); !read) return read.error();
   if (const Status read = state_->counts.read(state_->next, frame.counts); !read) return read.error();
+  frame.sensor_celsius.clear();
+  if (state_->sensors) {
+    if (const Status read = state_->sensors->read(state_->next, frame.sensor_celsius); !read) return read.error();
+  }
   restore(fields, frame);
   state_->lost += frame.acquisition.lost_before;
   ++state_->next;
@@ -243,6 +267,8 @@ struct Hdf5FramesWriter::State {
   Hdf5Id counts{};
   Column<double> time_s{};
   Fields<Column> columns{};
+  std::optional<std::size_t> sensor_count{};  ///< Of the first frame.
+  Column<float> sensors{};
   bool is_u16 = true;
   hsize_t written = 0;      ///< Frames in the datasets.
   std::size_t waiting = 0;  ///< Frames that are not yet in the datasets.
@@ -252,6 +278,8 @@ struct Hdf5FramesWriter::State {
   void add_notes(const FrameNotes& notes) const;
   Status create_datasets();
   Hdf5Id create_counts(const char* name, hid_t type) const;
+  Status create_sensors(std::size_t count);
+  void append_sensors(const std::vector<float>& celsius);
   template <typename T>
   bool create_column(const Label<T>& label, Column<T>& column) const;
   template <typename T>
@@ -290,6 +318,23 @@ Status Hdf5FramesWriter::State::create_datasets() {
                  [&](const auto& label, auto& column) { are_created = are_created && create_column(label, column); });
   if (!are_created) return file.failure();
   return file.status();
+}
+
+Status Hdf5FramesWriter::State::create_sensors(std::size_t count) {
+  sensor_count = count;
+  if (count == 0) return Done{};
+  const std::size_t frames = std::clamp<std::size_t>(kChunkBytes / (count * sizeof(float)), 1, kMaxChunkFrames);
+  sensors.dataset = file.create_dataset(kSensors, hdf5_type<float>(), {count}, frames);
+  if (!sensors.dataset) return file.failure();
+  Hdf5Output::add_text(sensors.dataset.get(), "units", "degC");
+  return file.status();
+}
+
+/// A sensor that this frame has not is NaN.
+void Hdf5FramesWriter::State::append_sensors(const std::vector<float>& celsius) {
+  for (std::size_t sensor = 0; sensor < *sensor_count; ++sensor) {
+    sensors.waiting.push_back(sensor < celsius.size() ? celsius[sensor] : std::numeric_limits<float>::quiet_NaN());
+  }
 }
 
 /// The counts of earlier frames as f32 too, since u16 cannot hold those of the next.
@@ -334,6 +379,7 @@ Status Hdf5FramesWriter::State::flush() {
   if (waiting == 0) return file.status();
   Status done = flush_counts();
   if (done) done = flush_column(time_s);
+  if (done && sensors.dataset) done = flush_column(sensors);
   for_each_field(columns, columns, [&](auto& column, const auto& /*same*/) {
     if (done) done = flush_column(column);
   });
@@ -372,6 +418,10 @@ Status Hdf5FramesWriter::write(const RawFrame& frame) {
     if (Status widened = state.widen(); !widened) return widened;
   }
   state.counts_f32.insert(state.counts_f32.end(), frame.counts.begin(), frame.counts.end());
+  if (!state.sensor_count) {
+    if (Status created = state.create_sensors(frame.sensor_celsius.size()); !created) return created;
+  }
+  state.append_sensors(frame.sensor_celsius);
   state.time_s.waiting.push_back(files::seconds_of(frame.time));
   const Fields<Value> fields = fields_of(frame);
   for_each_field(state.columns, fields, [](auto& column, const auto& field) { column.waiting.push_back(field); });

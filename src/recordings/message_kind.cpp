@@ -8,7 +8,10 @@ namespace dermis::recordings {
 
 MessageKind kind_of(const McapChannel& channel) {
   if (channel.encoding != "cdr") return MessageKind::none;
-  if (channel.schema_name == messages::image_type().name || is_tactile_state(channel)) return MessageKind::image;
+  if (is_tactile_state(channel)) return MessageKind::image;
+  if (channel.schema_name == messages::image_type().name) {
+    return channel.topic.ends_with(std::string("/") + kSensorsTopic) ? MessageKind::sensors : MessageKind::image;
+  }
   if (channel.schema_name == messages::acquisition_type().name) return MessageKind::acquisition;
   if (channel.schema_name == messages::temperature_type().name) return MessageKind::temperature;
   return MessageKind::none;

@@ -30,6 +30,8 @@ struct ReadArray {
   std::optional<std::uint64_t> acquisition_time;
   double celsius = 0.0;
   std::optional<std::uint64_t> temperature_time;
+  RawFrame sensors;  // as counts
+  std::optional<std::uint64_t> sensors_time;
 
   void add_to(RawFrame& frame, std::uint64_t log_time);
 };
@@ -46,8 +48,11 @@ void ReadArray::add_to(RawFrame& frame, std::uint64_t log_time) {
     frame.supply_v = acquisition.supply_v;
   }
   if (temperature_time == log_time) frame.temperature_celsius = celsius;
+  frame.sensor_celsius.clear();
+  if (sensors_time == log_time) frame.sensor_celsius = sensors.counts;
   acquisition_time.reset();
   temperature_time.reset();
+  sensors_time.reset();
 }
 
 /// The meaning of a channel's messages for the frames.
@@ -167,6 +172,10 @@ Status SuitRecordingReader::Implementation::read_other(const Use& use, const Mca
     if (!taken) return error(message, taken.error());
     array.celsius = *taken;
     array.temperature_time = message.log_time;
+  } else if (use.kind == MessageKind::sensors) {
+    const Result<FrameShape> taken = messages::decode_image(message.data, array.sensors);
+    if (!taken) return error(message, taken.error());
+    array.sensors_time = message.log_time;
   }
   return Done{};
 }
@@ -218,6 +227,7 @@ void SuitRecordingReader::Implementation::seek(Nanos time) {
   for (ReadArray& array : read_) {
     array.acquisition_time.reset();
     array.temperature_time.reset();
+    array.sensors_time.reset();
   }
 }
 

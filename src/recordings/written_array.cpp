@@ -36,6 +36,7 @@ void WrittenArray::encode(const RawFrame& frame, const ForceFrame* force) {
   if (frame.temperature_celsius) {
     messages::encode_temperature(*frame.temperature_celsius, frame.time, frame_id_, temperature_.message);
   }
+  encode_sensors(frame);
   messages::encode_acquisition(frame, acquisition_.message);
   acquisition_.is_in_frame = true;
   force_status_.is_in_frame = force_.is_in_frame = force != nullptr;
@@ -45,6 +46,15 @@ void WrittenArray::encode(const RawFrame& frame, const ForceFrame* force) {
   }
   messages::encode_image(frame, description_.shape, frame_id_, raw_.message);
   raw_.is_in_frame = true;
+}
+
+/// As an image of one row.
+void WrittenArray::encode_sensors(const RawFrame& frame) {
+  sensors_.is_in_frame = !frame.sensor_celsius.empty();
+  if (!sensors_.is_in_frame) return;
+  temperatures_.time = frame.time;
+  temperatures_.counts = frame.sensor_celsius;
+  messages::encode_image(temperatures_, {1, frame.sensor_celsius.size()}, frame_id_, sensors_.message);
 }
 
 }  // namespace dermis::recordings

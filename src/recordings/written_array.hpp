@@ -11,6 +11,7 @@
 #include "dermis/messages/ros_messages.hpp"
 #include "dermis/recordings/mcap.hpp"
 #include "dermis/recordings/suit_recording.hpp"
+#include "recordings/message_kind.hpp"
 
 namespace dermis::recordings {
 
@@ -46,13 +47,16 @@ class WrittenArray {
     bool is_in_frame = false;
   };
 
+  void encode_sensors(const RawFrame& frame);
   template <typename Mcap>
   void declare(Mcap& mcap, Topic& topic);
 
   RecordedArray description_;
   std::string frame_id_;
+  RawFrame temperatures_;  // of the sensors, as counts
   // In the order of the file. The image comes last: a frame whose image is there is whole.
   Topic temperature_{"temperature", messages::temperature_type()};
+  Topic sensors_{kSensorsTopic, messages::image_type()};
   Topic acquisition_{"acquisition", messages::acquisition_type()};
   Topic force_status_{"force_status", messages::frame_status_type()};
   Topic force_{"force", messages::grid_type()};
@@ -75,7 +79,7 @@ void WrittenArray::declare(Mcap& mcap) {
 
 template <typename Mcap>
 void WrittenArray::add_to(Mcap& mcap) {
-  for (Topic* topic : {&temperature_, &acquisition_, &force_status_, &force_, &raw_}) {
+  for (Topic* topic : {&temperature_, &sensors_, &acquisition_, &force_status_, &force_, &raw_}) {
     if (!topic->is_in_frame) continue;
     declare(mcap, *topic);
     mcap.add_message({*topic->channel, static_cast<std::uint32_t>(frames_), log_time_, log_time_, topic->message});

@@ -197,12 +197,15 @@ void ConductiveRubber::advance_noise() {
 }
 
 void ConductiveRubber::read(double temperature_celsius, std::span<double> siemens) {
-  assert(siemens.size() == taxels_.size());
+  read(std::vector<double>(taxels_.size(), temperature_celsius), siemens);
+}
+
+void ConductiveRubber::read(std::span<const double> taxel_celsius, std::span<double> siemens) {
+  assert(siemens.size() == taxels_.size() && taxel_celsius.size() == taxels_.size());
   if (options_.pink_noise > 0.0 && unread_seconds_ > 0.0) advance_noise();
   unread_seconds_ = 0.0;
   for (std::size_t i = 0; i < taxels_.size(); ++i) {
-    siemens[i] =
-        conductance(i, unloaded_siemens(i), effective_force(i), temperature_celsius) * (1.0 + relative_noise(i));
+    siemens[i] = conductance(i, unloaded_siemens(i), effective_force(i), taxel_celsius[i]) * (1.0 + relative_noise(i));
   }
 }
 

@@ -119,6 +119,7 @@ const SceneKind* find_scene(std::string_view name) noexcept {
 Status EnvironmentOptions::validate() const {
   return check_ranges({{"environment.supply_variation", supply_variation, 0.0, 0.5},
                        {"environment.temperature_noise_celsius", temperature_noise_celsius, 0.0, 20.0},
+                       {"environment.gradient_celsius", gradient_celsius, 0.0, 50.0},
                        {"environment.supply_noise", supply_noise, 0.0, 0.1},
                        {"environment.adc_noise_lsb", adc_noise_lsb, 0.0, 1000.0}});
 }

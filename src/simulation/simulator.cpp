@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "dermis/files/config_table.hpp"
@@ -62,6 +63,7 @@ void read_memory(files::ConfigFile& file, RubberOptions& rubber) {
 void read_environment(files::ConfigFile& file, EnvironmentOptions& environment) {
   file.number("environment.supply_variation", environment.supply_variation);
   file.number("environment.temperature_noise_celsius", environment.temperature_noise_celsius);
+  file.number("environment.gradient_celsius", environment.gradient_celsius);
   file.number("environment.supply_noise", environment.supply_noise);
   file.number("environment.adc_noise_lsb", environment.adc_noise_lsb);
 }
@@ -121,6 +123,37 @@ Result<std::unique_ptr<Simulator>> Simulator::create(const ArrayDescription& arr
                                                   std::move(faulty), options.environment, seed));
 }
 
+/// True temperature at a place of the sheet.
+double Simulator::celsius_at(const TemperatureSensor& place) const {
+  constexpr double kTurnS = 600.0;
+  if (environment_.gradient_celsius == 0.0) return truth_.temperature_celsius;
+  const auto from_middle = [](double line, std::size_t lines) { return line / static_cast<double>(lines - 1) - 0.5; };
+  const double angle = 2.0 * std::numbers::pi * time_s_ / kTurnS;
+  const double across = array_.cols > 1 ? from_middle(place.col, array_.cols) * std::cos(angle) : 0.0;
+  const double along = array_.rows > 1 ? from_middle(place.row, array_.rows) * std::sin(angle) : 0.0;
+  return truth_.temperature_celsius + environment_.gradient_celsius * (across + along);
+}
+
+std::vector<double> Simulator::taxel_celsius() const {
+  std::vector<double> celsius;
+  for (const TemperatureSensor& place : sensors_on_each_taxel(array_.rows, array_.cols)) {
+    celsius.push_back(celsius_at(place));
+  }
+  return celsius;
+}
+
+void Simulator::measure_temperature(RawFrame& frame) {
+  const auto measured = [&](double celsius) {
+    return celsius + environment_.temperature_noise_celsius * instruments_.normal();
+  };
+  frame.temperature_celsius.reset();
+  frame.sensor_celsius.clear();
+  if (array_.temperature_sensors.empty()) frame.temperature_celsius = measured(truth_.temperature_celsius);
+  for (const TemperatureSensor& sensor : array_.temperature_sensors) {
+    frame.sensor_celsius.push_back(static_cast<float>(measured(celsius_at(sensor))));
+  }
+}
+
 Result<bool> Simulator::next(RawFrame& frame) {
   if (next_frame_ == scene_.frame_count()) return false;
   const std::size_t index = next_frame_++;
@@ -130,14 +163,13 @@ Result<bool> Simulator::next(RawFrame& frame) {
   for (const std::size_t taxel : array_.absent) truth_.force_n[taxel] = 0.0;
   if (truth_.rest_s > 0.0) rubber_.press(unloaded_n_, truth_.rest_s);
   rubber_.press(truth_.force_n, truth_.hold_s);
-  rubber_.read(truth_.temperature_celsius, siemens_);
+  rubber_.read(taxel_celsius(), siemens_);
   for (const std::size_t taxel : array_.absent) siemens_[taxel] = 0.0;
   is_faulty ? faulty_->ratios(siemens_, index, ratio_) : circuit_.ratios(siemens_, ratio_);
   time_s_ += truth_.rest_s + truth_.hold_s;
 
   frame.time = Nanos(std::llround(time_s_ * 1e9));
-  frame.temperature_celsius =
-      truth_.temperature_celsius + environment_.temperature_noise_celsius * instruments_.normal();
+  measure_temperature(frame);
   frame.supply_v = truth_.supply_v * (1.0 + environment_.supply_noise * instruments_.normal());
   frame.counts.resize(ratio_.size());
   capacitor_.sample(ratio_, truth_.supply_v);

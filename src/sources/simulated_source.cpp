@@ -147,6 +147,7 @@ Result<MakeFrame> scene_loop(const acquisition::SourceUri& uri, const ArrayDescr
   return MakeFrame([frames = std::move(frames)](std::uint64_t number, RawFrame& frame) {
     const RawFrame& simulated = frames[number % frames.size()];
     frame.temperature_celsius = simulated.temperature_celsius;
+    frame.sensor_celsius = simulated.sensor_celsius;
     frame.supply_v = simulated.supply_v;
     frame.counts = simulated.counts;
   });
@@ -181,6 +182,16 @@ Result<MakeFrame> frames_of(const acquisition::SourceUri& uri, const ArrayDescri
   return scene_loop(uri, array, rubber, options.simulated);
 }
 
+/// Scenes of one temperature give it to all sensors.
+MakeFrame with_sensors(MakeFrame frames, std::size_t sensors) {
+  return [frames = std::move(frames), sensors](std::uint64_t number, RawFrame& frame) mutable {
+    frame.sensor_celsius.clear();
+    frames(number, frame);
+    if (!frame.sensor_celsius.empty() || !frame.temperature_celsius) return;
+    frame.sensor_celsius.assign(sensors, static_cast<float>(*frame.temperature_celsius));
+  };
+}
+
 Result<std::unique_ptr<FrameSource>> open_scene(const acquisition::SourceUri& uri, const ArrayDescription& array,
                                                 const SourceOptions& options) {
   const Result<simulation::RubberOptions> rubber = rubber_of(uri);
@@ -188,6 +199,7 @@ Result<std::unique_ptr<FrameSource>> open_scene(const acquisition::SourceUri& ur
   if (uri.rate_hz) {
     Result<MakeFrame> frames = frames_of(uri, array, options, *rubber);
     if (!frames) return frames.error();
+    if (!array.temperature_sensors.empty()) frames = with_sensors(*std::move(frames), array.temperature_sensors.size());
     return std::unique_ptr<FrameSource>(std::make_unique<SimulatedDevice>(
         *std::move(frames), FrameShape{array.rows, array.cols}, *uri.rate_hz, options.stop));
   }

@@ -374,6 +374,26 @@ TEST(ArrayToml, reads_which_taxels_the_sheet_does_not_have) {
             std::string::npos);
 }
 
+TEST(ArrayToml, reads_and_writes_where_the_temperature_is_measured) {
+  const std::string key = "temperature_gradient_celsius = 4.5\ntemperature_sensors = ";
+  const Result<ArrayDescription> few = array_from_toml(with("[readout]", key + "[[0, 0], [1, 1.5]]\n[readout]"), "a");
+  ASSERT_TRUE(few) << few.error().message;
+  EXPECT_EQ(few->temperature_sensors, (std::vector<TemperatureSensor>{{0.0, 0.0}, {1.0, 1.5}}));
+  EXPECT_EQ(few->temperature_gradient_celsius, 4.5);
+  const Result<ArrayDescription> all = array_from_toml(with("[readout]", key + "\"each taxel\"\n[readout]"), "a");
+  ASSERT_TRUE(all) << all.error().message;
+  EXPECT_EQ(all->temperature_sensors, sensors_on_each_taxel(2, 3));
+  for (const ArrayDescription& array : {*few, *all}) {
+    const ArrayDescription again = array_from_toml(array_to_toml(array), "a").value();
+    EXPECT_EQ(again.temperature_sensors, array.temperature_sensors);
+    EXPECT_EQ(again.temperature_gradient_celsius, 4.5);
+  }
+  EXPECT_NE(error_of(with("[readout]", "temperature_sensors = [[2, 0]]\n[readout]")).find("places [row, col] on the"),
+            std::string::npos);
+  EXPECT_NE(error_of(with("[readout]", "temperature_gradient_celsius = -1\n[readout]")).find("must be 0 to 100 C"),
+            std::string::npos);
+}
+
 TEST(ArrayToml, reads_where_the_readout_saturates) {
   const Result<ArrayDescription> array = array_from_toml(std::string(kComplete) + "rail_counts = 4000\n", "array.toml");
   ASSERT_TRUE(array) << array.error().message;

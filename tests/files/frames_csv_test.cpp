@@ -324,6 +324,36 @@ TEST(FramesCsvWriter, writes_only_the_columns_asked_for) {
   EXPECT_EQ(support::read_bytes(folder.file("f.csv")), "time_s,supply_v,r0c0,r0c1\n-1.5,5,1,nan\n2,,0.5,4095\n");
 }
 
+TEST(FramesCsvWriter, temperatures_of_several_sensors_read_back_equal) {
+  const support::TemporaryFolder folder;
+  const auto writer = FramesCsvWriter::create(folder.file("f.csv"), {1, 2});
+  ASSERT_TRUE(writer);
+  RawFrame frame{Nanos(0), 20.5, 5.0, {1.0F, 2.0F}};
+  frame.sensor_celsius = {20.25F, std::nanf(""), -3.1F};
+  ASSERT_TRUE((*writer)->write(frame));
+  ASSERT_TRUE((*writer)->commit());
+  EXPECT_EQ(support::read_bytes(folder.file("f.csv")),
+            "time_s,temperature_celsius,sensor0_celsius,sensor1_celsius,sensor2_celsius,supply_v,r0c0,r0c1\n"
+            "0,20.5,20.25,,-3.1,5,1,2\n");
+  const auto reader = FramesCsvReader::open(folder.file("f.csv"));
+  ASSERT_TRUE(reader) << reader.error().message;
+  RawFrame read;
+  ASSERT_TRUE((*reader)->next(read));
+  ASSERT_EQ(read.sensor_celsius.size(), 3U);
+  EXPECT_EQ(read.sensor_celsius[0], 20.25F);
+  EXPECT_TRUE(std::isnan(read.sensor_celsius[1]));
+  EXPECT_EQ(read.sensor_celsius[2], -3.1F);
+  EXPECT_EQ(read.supply_v, 5.0);
+}
+
+TEST(FramesCsvReader, sensors_are_numbered_from_0_on) {
+  const support::TemporaryFolder folder;
+  support::write_bytes(folder.file("f.csv"), "time_s,sensor1_celsius,r0c0\n0,20,1\n");
+  const auto reader = FramesCsvReader::open(folder.file("f.csv"));
+  ASSERT_FALSE(reader);
+  EXPECT_NE(reader.error().message.find("sensor0_celsius is expected"), std::string::npos) << reader.error().message;
+}
+
 TEST(FramesCsvWriter, reports_a_full_disk) {
   const auto writer = FramesCsvWriter::create("/dev/full", {1, 1});
   ASSERT_TRUE(writer);

@@ -633,6 +633,26 @@ TEST(ForceNetworks, every_broken_field_is_found) {
   }
 }
 
+TEST(ForceFusion, each_taxel_of_a_map_has_the_force_that_its_temperature_gives_to_all) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Random random(seed);
+    const ForceNetworks networks = support::random_networks(6, 3, 2, seed);
+    ConductanceFrame frame = make_frame(std::vector<double>(6), 25.0);
+    for (double& siemens : frame.siemens) siemens = random.uniform(1e-5, 2e-3);
+    for (int k = 0; k < 6; ++k) frame.taxel_celsius.push_back(static_cast<float>(random.uniform(0.0, 50.0)));
+    const ForceFrame of_map = fuse(networks, frame);
+    for (std::size_t taxel = 0; taxel < 6; ++taxel) {
+      ConductanceFrame alone = frame;
+      alone.taxel_celsius.clear();
+      alone.temperature_celsius = frame.taxel_celsius[taxel];
+      const ForceFrame of_one = fuse(networks, alone);
+      EXPECT_EQ(of_map.newtons[taxel], of_one.newtons[taxel]) << "seed " << seed;
+      EXPECT_EQ(of_map.sigma_newtons[taxel], of_one.sigma_newtons[taxel]) << "seed " << seed;
+      EXPECT_EQ(of_map.signal_to_noise[taxel], of_one.signal_to_noise[taxel]) << "seed " << seed;
+    }
+  }
+}
+
 /// As many taxels of one law: F = 10 N (e / 1 mS)^exponent, without an error of its own.
 ForceNetworks equal_laws(std::size_t taxels, float exponent) {
   ForceNetworks networks = equal_power_laws(taxels);

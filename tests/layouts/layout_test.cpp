@@ -171,6 +171,19 @@ TEST(TextLayout, what_surrounds_the_readings_goes_into_the_frame) {
   EXPECT_EQ(frames[1].supply_v, 3.3);
 }
 
+TEST(TextLayout, several_temperatures_are_those_of_sensors) {
+  const auto frames =
+      frames_of(std::string(kTwoByTwo) + "line = \"{temperature} {temperature} {temperature}: {values}\"\n",
+                bytes_of("21.5 22 23: 1 2 3 4\n20 nan 22: 5 6 7 8\n"));
+  EXPECT_EQ(readings_of(frames), kOneToEight);
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_EQ(frames[0].sensor_celsius, (std::vector<float>{21.5F, 22.0F, 23.0F}));
+  EXPECT_NEAR(*frames[0].temperature_celsius, 66.5 / 3.0, 1e-6);
+  ASSERT_EQ(frames[1].sensor_celsius.size(), 3U);
+  EXPECT_TRUE(std::isnan(frames[1].sensor_celsius[1]));
+  EXPECT_EQ(frames[1].temperature_celsius, 21.0) << "the mean of those that read";
+}
+
 TEST(TextLayout, a_clock_goes_on_over_midnight_and_a_date_counts_from_1970) {
   const std::string clock = std::string(kTwoByTwo) + "line = \"{clock} {values}\"\n";
   const auto night = frames_of(clock, bytes_of("23:59:59.500 1 2 3 4\n00:00:00,500 5 6 7 8\n"));
@@ -416,6 +429,15 @@ TEST(PacketLayout, counters_and_clocks_go_on_where_they_wrap) {
   EXPECT_EQ(frames[1].acquisition.lost_before, 2U);
   EXPECT_EQ(*frames[1].acquisition.device_time - *frames[0].acquisition.device_time, std::chrono::milliseconds(10));
   EXPECT_NEAR(*frames[0].temperature_celsius, 21.5, 1e-9);
+}
+
+TEST(PacketLayout, several_temperatures_are_those_of_sensors) {
+  const auto frames = frames_of(std::string(kTwoByTwo) +
+                                    "packet = [\"AA\", \"temperature i16le *0.01\", \"temperature i16le *0.01\", "
+                                    "\"values u8\"]\n",
+                                {0xAA, 0x66, 8, 0xCC, 16, 1, 2, 3, 4, 0xAA, 0x66, 8, 0x66, 8, 5, 6, 7, 8});
+  ASSERT_EQ(readings_of(frames), kOneToEight);
+  EXPECT_EQ(frames[0].sensor_celsius, (std::vector<float>{21.5F, 43.0F}));
 }
 
 TEST(PacketLayout, a_frame_may_come_in_runs) {

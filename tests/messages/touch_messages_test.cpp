@@ -62,6 +62,9 @@ TEST(TouchMessages, modules_of_a_hand_have_pressures_and_the_mean_of_their_tempe
   EXPECT_EQ(readings[8].frame.counts[10], pressure_of(8, 10));
   EXPECT_TRUE(std::isnan(readings[8].frame.counts[11])) << "there is no sensor";
   EXPECT_DOUBLE_EQ(*readings[8].frame.temperature_celsius, 25.0) << "of 20 ... 30 C";
+  ASSERT_EQ(readings[8].frame.sensor_celsius.size(), 12U);
+  EXPECT_EQ(readings[8].frame.sensor_celsius[10], 30.0F);
+  EXPECT_TRUE(std::isnan(readings[8].frame.sensor_celsius[11]));
 }
 
 TEST(TouchMessages, modules_that_a_message_lacks_have_no_shape) {

@@ -416,6 +416,27 @@ TEST(Rejection, every_reason_has_words_of_its_own) {
   EXPECT_EQ(words.size(), 9U);
 }
 
+TEST(Conditioner, several_sensors_give_each_taxel_a_temperature_and_the_frame_their_mean) {
+  ArrayDescription array = make_array();
+  array.temperature_sensors = sensors_on_each_taxel(array.rows, array.cols);
+  RawFrame raw = make_frame({0.0F, 1.0F, 2.0F});
+  raw.sensor_celsius = {20.0F, 21.0F, 25.0F};
+  const ConditionedFrame conditioned = condition(array, raw);
+  EXPECT_EQ(conditioned.taxel_celsius, raw.sensor_celsius);
+  EXPECT_EQ(conditioned.temperature_celsius, 22.0);
+}
+
+TEST(Conditioner, without_readings_of_its_sensors_a_frame_has_its_one_temperature) {
+  ArrayDescription array = make_array();
+  array.temperature_sensors = {{0.0, 0.0}, {0.0, 2.0}};
+  RawFrame raw = make_frame({0.0F, 1.0F, 2.0F});
+  raw.temperature_celsius = 23.5;
+  raw.sensor_celsius = {kNan, kNan};
+  const ConditionedFrame conditioned = condition(array, raw);
+  EXPECT_TRUE(conditioned.taxel_celsius.empty());
+  EXPECT_EQ(conditioned.temperature_celsius, 23.5);
+}
+
 TEST(BareReadings, are_the_share_of_full_scale_whatever_the_supply) {
   ArrayDescription array = make_array();
   array.readout.adc_reference_v = 3.3;

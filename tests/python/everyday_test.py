@@ -99,6 +99,32 @@ class Everyday(workspace.CalibratedArray):
         part.write(self.folder / "part.csv")
         self.assertEqual(len(dermis.Recording.read(self.folder / "part.csv")), 10)
 
+    def test_sensors_of_temperature_stay_with_their_frames(self):
+        counts = np.arange(48.0).reshape(3, 4, 4)
+        sensors = np.array([[20.0, 21.0], [20.5, np.nan], [22.0, 23.0]], np.float32)
+        recording = dermis.Recording(counts, rate_hz=10.0, sensor_celsius=sensors)
+        np.testing.assert_array_equal(recording.sensor_celsius, sensors)
+        np.testing.assert_array_equal(recording[1:].sensor_celsius, sensors[1:])
+        np.testing.assert_array_equal(recording[1].sensor_celsius, sensors[1])
+        np.testing.assert_array_equal(pickle.loads(pickle.dumps(recording)).sensor_celsius, sensors)
+        np.testing.assert_array_equal(pickle.loads(pickle.dumps(recording[2])).sensor_celsius, sensors[2])
+        for suffix in ("mcap", "csv", "h5"):
+            path = self.folder / f"sensors.{suffix}"
+            recording.write(path)
+            np.testing.assert_array_equal(dermis.Recording.read(path).sensor_celsius, sensors)
+        self.assertEqual(self.recording.sensor_celsius.shape, (len(self.recording), 0))
+        with self.assertRaisesRegex(ValueError, "sensor_celsius"):
+            dermis.Recording(counts, rate_hz=10.0, sensor_celsius=sensors[:2])
+
+    def test_a_pipeline_takes_a_temperature_or_those_of_sensors(self):
+        counts = self.recording.counts[0]
+        one = dermis.Pipeline(self.model).process(counts, 25.0)
+        np.testing.assert_array_equal(dermis.Pipeline(self.model).process(counts, np.float32(25.0)).newtons, one.newtons)
+        unknown = dermis.Pipeline(self.model).process(counts, [25.0, 25.0])
+        self.assertTrue(unknown.status & dermis.FrameStatus.TEMPERATURE_UNKNOWN, "the array has one sensor")
+        with self.assertRaises(TypeError):
+            dermis.Pipeline(self.model).process(counts, object())
+
     def test_times_never_go_back(self):
         pipeline = dermis.Pipeline(self.loaded)
         for backwards in (lambda: self.recording[::-1], lambda: self.forces[::-1]):

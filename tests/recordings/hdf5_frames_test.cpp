@@ -54,6 +54,31 @@ TEST(Hdf5Frames, rewrite_whole_counts_where_a_later_frame_has_others) {
   }
 }
 
+TEST(Hdf5Frames, hold_the_temperatures_of_several_sensors) {
+  for (const std::size_t sensors : {1U, 12U}) {
+    std::vector<RawFrame> frames = support::random_frames(6, 1500, 12);
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      frames[k].sensor_celsius.assign(sensors, 20.0F + 0.01F * static_cast<float>(k));
+    }
+    frames[1300].sensor_celsius.back() = std::nanf("");
+    expect_round_trip({3, 4}, frames);
+  }
+}
+
+TEST(Hdf5Frames, sensors_that_a_frame_lacks_have_no_reading) {
+  const support::TemporaryFolder folder;
+  std::vector<RawFrame> frames = support::random_frames(7, 3, 12);
+  frames[0].sensor_celsius = {20.0F, 21.0F};
+  frames[2].sensor_celsius = {20.0F, 21.0F, 22.0F};
+  ASSERT_TRUE(write_file(folder.file("f.h5"), {3, 4}, frames));
+  const Result<std::vector<RawFrame>> read = read_file(folder.file("f.h5"));
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->at(0).sensor_celsius, frames[0].sensor_celsius);
+  ASSERT_EQ(read->at(1).sensor_celsius.size(), 2U);
+  EXPECT_TRUE(std::isnan(read->at(1).sensor_celsius[0]));
+  EXPECT_EQ(read->at(2).sensor_celsius, frames[0].sensor_celsius);
+}
+
 TEST(Hdf5Frames, keep_what_is_said_of_all_frames) {
   const support::TemporaryFolder folder;
   const FrameNotes notes{"chest", "[array]\nname = \"chest\"\n# \xC2\xB5\n", "00ff", "sim:multitouch"};

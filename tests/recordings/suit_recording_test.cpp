@@ -110,6 +110,26 @@ TEST(SuitRecording, every_frame_of_every_array_reads_back_with_the_same_bits) {
   }
 }
 
+TEST(SuitRecording, temperatures_of_several_sensors_read_back_with_the_same_bits) {
+  const support::TemporaryFolder folder;
+  const std::vector<RecordedArray> arrays = three_arrays();
+  std::vector<Written> all = interleaved(arrays, 200, 2);
+  Random random(3);
+  for (Written& written : all) {
+    if (written.array == 1) continue;  // some arrays have one sensor
+    for (std::size_t k = 0; k < 4; ++k) {
+      written.frame.sensor_celsius.push_back(static_cast<float>(random.uniform(-10.0, 60.0)));
+    }
+  }
+  record(folder.file("rec.mcap"), arrays, all);
+  const std::vector<Written> read = read_suit(folder.file("rec.mcap"));
+  ASSERT_EQ(read.size(), all.size());
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    EXPECT_EQ(read[k].frame.sensor_celsius, all[k].frame.sensor_celsius);
+    EXPECT_EQ(read[k].frame.counts, all[k].frame.counts);
+  }
+}
+
 TEST(SuitRecording, of_one_array_is_a_recording_as_recording_writer_makes_it) {
   const support::TemporaryFolder folder;
   const std::vector<RecordedArray> arrays{three_arrays().front()};

@@ -121,6 +121,23 @@ TEST(Simulator, instruments_report_with_their_noise) {
   EXPECT_NEAR(supply_variance / (0.001 * 0.001), 1.0, five_sigma);
 }
 
+TEST(Simulator, sensors_at_opposite_edges_show_the_gradient) {
+  ArrayDescription array = reference_array(8, 8);
+  array.temperature_sensors = {{3.5, 0.0}, {3.5, 7.0}};
+  SimulationOptions options;
+  options.environment.gradient_celsius = 10.0;
+  options.environment.temperature_noise_celsius = 0.0;
+  const auto simulator = Simulator::create(array, options, "idle", 5, 10);
+  ASSERT_TRUE(simulator) << simulator.error().message;
+  RawFrame frame;
+  ASSERT_TRUE((*simulator)->next(frame));
+  ASSERT_EQ(frame.sensor_celsius.size(), 2U);
+  EXPECT_FALSE(frame.temperature_celsius);
+  EXPECT_NEAR(frame.sensor_celsius[1] - frame.sensor_celsius[0], 10.0, 0.1);  // the warm edge begins on the right
+  EXPECT_NEAR(0.5 * (frame.sensor_celsius[0] + frame.sensor_celsius[1]), (*simulator)->truth().temperature_celsius,
+              1e-4);
+}
+
 TEST(Simulator, creep_is_seen_in_the_conductance_of_a_press) {
   SimulationOptions options;
   options.rubber.creep = 0.1;

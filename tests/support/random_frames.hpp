@@ -63,6 +63,11 @@ inline void expect_same_frame(const RawFrame& read, const RawFrame& written) {
   for (std::size_t i = 0; i < read.counts.size(); ++i) {
     ASSERT_EQ(std::bit_cast<std::uint32_t>(read.counts[i]), std::bit_cast<std::uint32_t>(written.counts[i])) << i;
   }
+  ASSERT_EQ(read.sensor_celsius.size(), written.sensor_celsius.size());
+  for (std::size_t i = 0; i < read.sensor_celsius.size(); ++i) {
+    ASSERT_EQ(std::bit_cast<std::uint32_t>(read.sensor_celsius[i]),
+              std::bit_cast<std::uint32_t>(written.sensor_celsius[i]));
+  }
 }
 
 inline Status write_all(FrameSink& sink, const std::vector<RawFrame>& frames) {

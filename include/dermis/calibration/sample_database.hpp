@@ -39,7 +39,8 @@ struct Sample {
   /// Share of each known force that the material felt, after all that came before [taxels]; NaN: not known. Empty: all
   /// of it.
   std::vector<float> material_share{};
-  bool unloaded = false;  ///< Nothing presses anywhere.
+  bool unloaded = false;               ///< Nothing presses anywhere.
+  std::vector<float> taxel_celsius{};  ///< As in ConditionedFrame.
 };
 
 /// The paper's "sample database": what the networks are trained on.

@@ -107,6 +107,14 @@ struct Readout {
   [[nodiscard]] double full_scale_counts() const noexcept;
 };
 
+/// The place of a temperature sensor, between taxels by fractions: r0c0 is at {0, 0}.
+struct TemperatureSensor {
+  double row = 0.0;
+  double col = 0.0;
+
+  bool operator==(const TemperatureSensor&) const = default;
+};
+
 /// A resistive tactile array: rows are driven, columns are sensed (the other way round for `flexitac`); r0c0 is the
 /// corner next to the connector.
 struct ArrayDescription {
@@ -119,6 +127,11 @@ struct ArrayDescription {
   /// Crossings of lines where the sheet has no taxel, as row-major indices, rising. They conduct nothing, their
   /// readings are ignored and they have no force. Not all taxels may be absent.
   std::vector<std::size_t> absent;
+  /// Places on the sheet of those that RawFrame::sensor_celsius has: at most 64, or one on each taxel in their order.
+  /// Empty: frames have one temperature for all taxels.
+  std::vector<TemperatureSensor> temperature_sensors;
+  /// By how much one end of the sheet may be warmer than the other, in any direction [C], 0 ... 100; 0: not known.
+  double temperature_gradient_celsius = 0.0;
   Readout readout;
   LineOrder order;  ///< Which way round the device sends `rows` and `cols`. Frames in files are turned already.
 
@@ -145,6 +158,9 @@ struct ArrayDescription {
 [[nodiscard]] const char* to_string(Circuit circuit) noexcept;
 [[nodiscard]] const char* to_string(IdleRows idle_rows) noexcept;
 [[nodiscard]] const char* to_string(IdleColumns idle_columns) noexcept;
+
+/// One on each taxel, in their order.
+[[nodiscard]] std::vector<TemperatureSensor> sensors_on_each_taxel(std::size_t rows, std::size_t cols);
 
 /// "r3c5", as in the headers of the CSV files.
 [[nodiscard]] std::string taxel_name(std::size_t row, std::size_t col);

@@ -77,6 +77,9 @@ struct RawFrame {
   std::optional<double> supply_v;             ///< Measured supply [V], > 0; empty where the source has none.
   std::vector<float> counts;  ///< ADC readings [counts], 0 ... 2^adc_bits - 1; fractional where a source averages.
   Acquisition acquisition{};
+  /// Temperatures of ArrayDescription::temperature_sensors [C]; NaN: no reading. Empty where the source has one for
+  /// all.
+  std::vector<float> sensor_celsius{};
 };
 
 /// Unit 2 -> 3. Validated; the supply is divided out.
@@ -89,6 +92,7 @@ struct ConditionedFrame {
   std::vector<float> noise_gain;  ///< Factor on sigma_ratio for each ratio, where the ADC has a curve; empty: 1.
   double supply_doubt = 0.0;      ///< Relative standard deviation of a supply that is not trusted, beside its noise.
   std::vector<TaxelStatus> taxels;
+  std::vector<float> taxel_celsius{};  ///< Temperature of each taxel [C]; empty: temperature_celsius is that of all.
 };
 
 /// Unit 3 -> 4. Crosstalk is removed.
@@ -102,7 +106,13 @@ struct ConductanceFrame {
   /// The reading of a taxel held at 0 is below instead.
   double residual_sigma = 0.0;
   std::vector<TaxelStatus> taxels;
-  ConductanceErrors errors{};  ///< Before any drift is taken out.
+  ConductanceErrors errors{};          ///< Before any drift is taken out.
+  std::vector<float> taxel_celsius{};  ///< As in ConditionedFrame.
+
+  /// Temperature of a taxel [C]; empty: not known.
+  [[nodiscard]] std::optional<double> celsius(std::size_t taxel) const noexcept {
+    return taxel_celsius.empty() ? temperature_celsius : std::optional(static_cast<double>(taxel_celsius[taxel]));
+  }
 };
 
 /// Unit 4 ->. Forces for the robot.

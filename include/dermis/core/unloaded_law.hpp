@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace dermis {
@@ -13,9 +14,9 @@ struct TemperatureSpan {
   double centre_celsius = 20.0;
   double half_span_celsius = 0.0;  ///< >= 0
 
-  /// A temperature relative to the centre [C], clamped to the span.
-  [[nodiscard]] double offset(double celsius) const noexcept {
-    return std::clamp(celsius - centre_celsius, -half_span_celsius, half_span_celsius);
+  /// A temperature relative to the centre [C], clamped to the span; 0 where it is not known.
+  [[nodiscard]] double offset(std::optional<double> celsius) const noexcept {
+    return celsius ? std::clamp(*celsius - centre_celsius, -half_span_celsius, half_span_celsius) : 0.0;
   }
 };
 

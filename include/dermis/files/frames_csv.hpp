@@ -25,9 +25,9 @@ struct FramesCsvColumns {
 };
 
 /// Reads frames.csv (docs/file-formats.md) frame by frame. The memory is that of one line, at most 32 MiB. Counts may
-/// be fractional, nan or inf; preprocessing decides whether a reading can be used. An empty cell of temperature_celsius
-/// or supply_v is no value. Errors name the line and the column. An incomplete last line without line end is left out
-/// if frames come before it, with a notice. Not thread-safe.
+/// be fractional, nan or inf; preprocessing decides whether a reading can be used. An empty cell of
+/// temperature_celsius, supply_v or sensor0_celsius is no value. Errors name the line and the column. An incomplete
+/// last line without line end is left out if frames come before it, with a notice. Not thread-safe.
 class FramesCsvReader final : public FrameSource {
  public:
   using Notice = std::function<void(const std::string&)>;  ///< Takes one line.
@@ -63,15 +63,18 @@ class FramesCsvWriter final : public FrameSink {
   [[nodiscard]] static Result<std::unique_ptr<FramesCsvWriter>> create(const std::string& path, FrameShape shape,
                                                                        const FramesCsvColumns& columns = {});
 
-  /// Appends a frame of `shape`; values of columns that are not in the file are dropped.
+  /// Appends a frame of `shape`; values of columns that are not in the file are dropped. It has columns for as many
+  /// temperature sensors as the first frame has.
   [[nodiscard]] Status write(const RawFrame& frame) override;
   [[nodiscard]] Status commit() override;
 
  private:
-  FramesCsvWriter(AtomicFile file, std::size_t taxel_count, const FramesCsvColumns& columns);
+  FramesCsvWriter(AtomicFile file, FrameShape shape, const FramesCsvColumns& columns);
+  void write_header(std::size_t sensors);
 
   AtomicFile file_;
-  [[maybe_unused]] std::size_t taxel_count_;  ///< What write() asserts.
+  FrameShape shape_;
+  std::optional<std::size_t> sensors_;  // of temperature, with columns of their own; empty: no header yet
   FramesCsvColumns columns_;
   std::string line_;
 };

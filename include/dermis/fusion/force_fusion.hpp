@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -116,13 +117,23 @@ class ForceFusion {
     double offset = 0.0;
     double sigma = 0.0;
     double outside = 0.0;  // that the clamp took
+
+    [[nodiscard]] float unlearned_variance() const noexcept;
+  };
+  /// The temperature of the array, and of each taxel [taxels].
+  struct Temperatures {
+    Temperature of_array{};
+    std::vector<double> offset;
+    std::vector<float> sigma;
+    std::vector<float> unlearned_variance;  // ForceSources::unlearned_variance
   };
   [[nodiscard]] bool uses_temperature() const noexcept { return networks_.shape.inputs == kInputsWithTemperature; }
-  [[nodiscard]] Temperature temperature(const ConductanceFrame& conductance, ForceFrame& force) const noexcept;
-  void prepare_inputs(const ConductanceFrame& conductance, double temperature_offset) noexcept;
-  void look_up(double temperature_offset) noexcept;
-  void compute_forces(const Temperature& temperature, ForceFrame& force) noexcept;
-  void compute_signals(double temperature_sigma, ForceFrame& force) const noexcept;
+  [[nodiscard]] Temperature temperature(std::optional<double> celsius, ForceFrame& force) const noexcept;
+  void find_temperatures(const ConductanceFrame& conductance, ForceFrame& force) noexcept;
+  void prepare_inputs(const ConductanceFrame& conductance) noexcept;
+  void look_up() noexcept;
+  void compute_forces(ForceFrame& force) noexcept;
+  void compute_signals(ForceFrame& force) const noexcept;
   void apply_status(ForceFrame& force) const noexcept;
   [[nodiscard]] bool are_plain(std::size_t from, std::size_t to, const ForceFrame& force) const noexcept;
   [[nodiscard]] bool apply_status(std::size_t taxel, ForceFrame& force) const noexcept;
@@ -130,6 +141,7 @@ class ForceFusion {
 
   ForceNetworks networks_;
   network::PerceptronBank bank_;
+  Temperatures temperatures_;
   std::vector<float> per_reference_siemens_;  // [taxels]
   std::vector<float> log_gain_;               // [taxels]
   std::vector<float> offset_per_celsius_;     // [taxels]

@@ -41,7 +41,7 @@ enum class Role {
   time,         ///< In `unit` seconds, since any moment.
   clock,        ///< Time of day, "18:45:00.125"; text only.
   datetime,     ///< "2026-11-27 18:45:00.125", or with a T; text only.
-  temperature,  ///< [C] after `unit` and `offset`.
+  temperature,  ///< [C] after `unit` and `offset`. Several are those of the sensors of the array, in their order.
   supply,       ///< [V] after `unit`.
   flags,        ///< Remarks of the device on the frame.
   length,       ///< Bytes of the packet from behind this field on, less `offset`.

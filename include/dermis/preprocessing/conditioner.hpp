@@ -10,6 +10,7 @@
 #include "dermis/core/frames.hpp"
 #include "dermis/preprocessing/adc_correction.hpp"
 #include "dermis/preprocessing/supply_bounds.hpp"
+#include "dermis/preprocessing/temperature_field.hpp"
 
 namespace dermis::preprocessing {
 
@@ -40,7 +41,8 @@ enum class Rejection {
 /// (AdcCorrection). Pressure drives readings to one end of the ADC, or to readout.rail_counts. Readings within half a
 /// count of that end, or beyond it, are marked saturated. A taxel has no reading if it is NaN, infinite, above
 /// 2^adc_bits - 1, or below 0 where readings are counts. It is invalid and gets the mean ratio of its neighbours that
-/// have one. A taxel that the sheet does not have is invalid and has the ratio 0. A temperature of NaN is none.
+/// have one. A taxel that the sheet does not have is invalid and has the ratio 0. A temperature of NaN is none. Where
+/// the array has several sensors, each taxel gets its temperature (TemperatureField), and the frame the mean of them.
 ///
 /// A supply outside of the trusted ones (SupplyBounds) is replaced by the nearest of them, or by nominal. The frame
 /// then has the status supply_clamped or supply_implausible, and supply_doubt says how far that is. Not thread-safe:
@@ -74,6 +76,7 @@ class Conditioner {
   [[nodiscard]] std::size_t count_missing(const RawFrame& raw) const noexcept;
   [[nodiscard]] Rejection inspect(const RawFrame& raw) const noexcept;
   [[nodiscard]] Rejection inspect_supply(const RawFrame& raw) const noexcept;
+  void find_temperatures(const RawFrame& raw, ConditionedFrame& conditioned) noexcept;
   void convert(const RawFrame& raw, ConditionedFrame& conditioned) noexcept;
   void doubt_supply(double measured_v, ConditionedFrame& conditioned) const noexcept;
   void mark_saturated(const RawFrame& raw, ConditionedFrame& conditioned) const noexcept;
@@ -81,7 +84,8 @@ class Conditioner {
 
   ArrayDescription array_;
   SupplyBounds supply_bounds_;
-  std::optional<AdcCorrection> adc_;  // empty: it is ideal
+  std::optional<AdcCorrection> adc_;              // empty: it is ideal
+  std::optional<TemperatureField> temperatures_;  // empty: frames have one temperature
   float full_scale_counts_;
   float least_counts_;
   float highest_counts_;  // readings above it are saturated

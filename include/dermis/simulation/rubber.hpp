@@ -89,6 +89,8 @@ class ConductiveRubber {
 
   /// Conductance of every taxel now [S], [rows, cols], at the temperature of the whole array.
   void read(double temperature_celsius, std::span<double> siemens);
+  /// The same where each taxel has a temperature of its own [taxels].
+  void read(std::span<const double> taxel_celsius, std::span<double> siemens);
 
   /// The law alone, memory and noise excluded [S], for the force on this taxel (after mechanical_spread).
   [[nodiscard]] double conductance_from_force(std::size_t taxel, double force_n, double temperature_celsius) const;

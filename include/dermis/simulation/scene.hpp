@@ -22,8 +22,10 @@ namespace dermis::simulation {
 struct EnvironmentOptions {
   double supply_variation = 0.10;          ///< The supply is nominal times 1 +- this, uniform, 0 ... 0.5.
   double temperature_noise_celsius = 0.3;  ///< Sd of the reported temperature [C], 0 ... 20. A digital sensor.
-  double supply_noise = 0.001;             ///< Relative sd of the reported supply, 0 ... 0.1.
-  double adc_noise_lsb = 1.0;              ///< Sd of the ADC before rounding [counts], 0 ... 1000.
+  /// Opposite edges of the sheet differ by so much [C], 0 ... 50. The warm edge goes round once in ten minutes.
+  double gradient_celsius = 0.0;
+  double supply_noise = 0.001;  ///< Relative sd of the reported supply, 0 ... 0.1.
+  double adc_noise_lsb = 1.0;   ///< Sd of the ADC before rounding [counts], 0 ... 1000.
 
   /// Names the first field that is out of its range, as "environment.supply_noise: ...".
   [[nodiscard]] Status validate() const;
@@ -53,7 +55,7 @@ struct AppliedContact {
 struct SceneFrame {
   double rest_s = 0.0;               ///< Time unloaded before [s]; 0: the load changes at once.
   double hold_s = 0.0;               ///< Time under force_n after that [s].
-  double temperature_celsius = 0.0;  ///< True temperature of the whole array [C].
+  double temperature_celsius = 0.0;  ///< True mean temperature of the array [C].
   double supply_v = 0.0;             ///< True supply [V].
   std::vector<double> force_n;       ///< True force applied to each taxel [N], [rows, cols].
   /// The labels of loads.csv; at least one, except in the frames of two_weights in which a hand moves.

@@ -67,6 +67,10 @@ class Simulator final : public FrameSource {
   [[nodiscard]] const ConductiveRubber& rubber() const noexcept { return rubber_; }
 
  private:
+  [[nodiscard]] double celsius_at(const TemperatureSensor& place) const;
+  [[nodiscard]] std::vector<double> taxel_celsius() const;
+  void measure_temperature(RawFrame& frame);
+
   Simulator(ArrayDescription array, Scene scene, ConductiveRubber rubber, ReadoutCircuit circuit,
             std::optional<FaultyCircuit> faulty, const EnvironmentOptions& environment, std::uint64_t seed);
 

@@ -33,6 +33,8 @@ class FrameMean {
   [[nodiscard]] RawFrame frame() const;
 
  private:
+  void add_sensors(const RawFrame& raw);
+
   std::size_t count_ = 0;
   Nanos begin_{};
   Nanos end_{};
@@ -40,6 +42,8 @@ class FrameMean {
   std::vector<double> ratio_;
   std::vector<double> last_ratio_;
   std::vector<double> squared_steps_;
+  std::vector<double> sensors_;  // of temperature
+  std::vector<std::size_t> sensor_readings_;
   double temperature_ = 0.0;
   double supply_ = 0.0;
   std::size_t temperatures_ = 0;

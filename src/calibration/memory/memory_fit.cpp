@@ -158,6 +158,8 @@ MaterialHistory material_history(const SiemensHistory& history, const fusion::Fo
       const std::span<const float> siemens = history.siemens_of(k);
       conductance.siemens.assign(siemens.begin(), siemens.end());
       conductance.temperature_celsius = history.temperature_celsius[k];
+      const std::span<const float> celsius = history.taxel_celsius_of(k);
+      conductance.taxel_celsius.assign(celsius.begin(), celsius.end());
       fusion.process(conductance, force);
       std::copy(force.newtons.begin(), force.newtons.end(),
                 material.newtons.begin() + static_cast<std::ptrdiff_t>(k * history.taxels));

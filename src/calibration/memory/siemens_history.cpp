@@ -40,6 +40,9 @@ Result<SiemensHistory> read_history(const SampleDatabase& database, std::span<co
     history.time.push_back(frames[frame].time);
     history.temperature_celsius.push_back(frames[frame].temperature_celsius);
   }
+  if (!database.array.temperature_sensors.empty()) {
+    history.taxel_celsius.assign(history.frame.size() * history.taxels, std::numeric_limits<float>::quiet_NaN());
+  }
   history.siemens.assign(history.frame.size() * history.taxels, std::numeric_limits<float>::quiet_NaN());
   parallel_for((history.frame.size() + kFramesPerTask - 1) / kFramesPerTask, [&](std::size_t task) {
     Result<compensation::Compensator> solver = compensation::Compensator::create(database.array);
@@ -49,6 +52,11 @@ Result<SiemensHistory> read_history(const SampleDatabase& database, std::span<co
     const std::size_t end = std::min(history.frame.size(), (task + 1) * kFramesPerTask);
     for (std::size_t k = task * kFramesPerTask; k < end; ++k) {
       conditioner.process(frames[history.frame[k]], conditioned);
+      if (!conditioned.taxel_celsius.empty()) {
+        std::copy(conditioned.taxel_celsius.begin(), conditioned.taxel_celsius.end(),
+                  history.taxel_celsius.begin() + static_cast<std::ptrdiff_t>(k * history.taxels));
+        history.temperature_celsius[k] = conditioned.temperature_celsius;
+      }
       solver->process(conditioned, conductance);
       const FrameStatus status = conductance.status;
       if (has(status, FrameStatus::rejected) || has(status, FrameStatus::not_converged)) continue;

@@ -19,10 +19,14 @@ struct SiemensHistory {
   std::vector<std::size_t> frame;                          ///< Numbers in the recording, rising [frames].
   std::vector<Nanos> time;                                 ///< [frames]
   std::vector<std::optional<double>> temperature_celsius;  ///< [frames]
-  std::vector<float> siemens;  ///< [frames, taxels]; NaN where a taxel or a frame has no reading.
+  std::vector<float> taxel_celsius;  ///< [frames, taxels]; empty where frames have one temperature.
+  std::vector<float> siemens;        ///< [frames, taxels]; NaN where a taxel or a frame has no reading.
 
   [[nodiscard]] std::span<const float> siemens_of(std::size_t place) const {
     return std::span(siemens).subspan(place * taxels, taxels);
+  }
+  [[nodiscard]] std::span<const float> taxel_celsius_of(std::size_t place) const {
+    return taxel_celsius.empty() ? std::span<const float>() : std::span(taxel_celsius).subspan(place * taxels, taxels);
   }
 };
 

@@ -96,6 +96,7 @@ Sample make_sample(const ArrayDescription& array, std::size_t frame, std::span<c
   Sample sample;
   sample.frame = frame;
   sample.temperature_celsius = conductance.temperature_celsius;
+  sample.taxel_celsius = conductance.taxel_celsius;
   sample.ratio.assign(conditioned.ratio.begin(), conditioned.ratio.end());
   sample.sigma_ratio = conditioned.sigma_ratio;
   sample.siemens.assign(conductance.siemens.begin(), conductance.siemens.end());

@@ -17,6 +17,7 @@ SampleTemperatures sample_temperatures(const SampleDatabase& database) {
   for (const Sample& sample : database.samples) {
     if (!sample.temperature_celsius) return {};
     celsius.push_back(*sample.temperature_celsius);
+    celsius.insert(celsius.end(), sample.taxel_celsius.begin(), sample.taxel_celsius.end());
   }
   std::sort(celsius.begin(), celsius.end());
   const auto glitches = static_cast<std::size_t>(kGlitches * static_cast<double>(celsius.size()));

@@ -20,7 +20,7 @@ std::vector<Point> unloaded_points(const SampleDatabase& database, std::size_t t
   std::vector<Point> points;
   for (const Sample& sample : database.samples) {
     if (!sample.unloaded || sample.known_newtons[taxel] != 0.0F) continue;
-    points.push_back({temperature_offset(sample, temperatures), sample.siemens[taxel]});
+    points.push_back({temperature_offset(sample, taxel, temperatures), sample.siemens[taxel]});
   }
   return points;
 }
@@ -39,8 +39,14 @@ double temperature_offset(const Sample& sample, const SampleTemperatures& temper
   return temperatures.is_input ? temperatures.span.offset(*sample.temperature_celsius) : 0.0;
 }
 
-double normalised_temperature(const Sample& sample, const SampleTemperatures& temperatures) {
-  return temperatures.is_input ? temperature_offset(sample, temperatures) / temperatures.span.half_span_celsius : 0.0;
+double temperature_offset(const Sample& sample, std::size_t taxel, const SampleTemperatures& temperatures) {
+  if (sample.taxel_celsius.empty() || !temperatures.is_input) return temperature_offset(sample, temperatures);
+  return temperatures.span.offset(static_cast<double>(sample.taxel_celsius[taxel]));
+}
+
+double normalised_temperature(const Sample& sample, std::size_t taxel, const SampleTemperatures& temperatures) {
+  if (!temperatures.is_input) return 0.0;
+  return temperature_offset(sample, taxel, temperatures) / temperatures.span.half_span_celsius;
 }
 
 UnloadedFit fit_unloaded(const SampleDatabase& database, const SampleTemperatures& temperatures) {

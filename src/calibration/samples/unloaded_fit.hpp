@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "dermis/calibration/sample_database.hpp"
@@ -10,11 +11,15 @@
 
 namespace dermis::calibration {
 
-/// Sample temperature from the centre [C], clamped to the span; 0 where temperature is not an input.
+/// Temperature of the sheet in a sample, from the centre [C], clamped to the span; 0 where temperature is not an input.
 [[nodiscard]] double temperature_offset(const Sample& sample, const SampleTemperatures& temperatures);
+/// The same of one taxel.
+[[nodiscard]] double temperature_offset(const Sample& sample, std::size_t taxel,
+                                        const SampleTemperatures& temperatures);
 
 /// The same as an input of a network, in [-1, 1].
-[[nodiscard]] double normalised_temperature(const Sample& sample, const SampleTemperatures& temperatures);
+[[nodiscard]] double normalised_temperature(const Sample& sample, std::size_t taxel,
+                                            const SampleTemperatures& temperatures);
 
 /// Unloaded conductance of every taxel and the noise of one frame about it.
 struct UnloadedFit {
@@ -30,7 +35,7 @@ struct UnloadedFit {
 /// Conductance of a taxel above its unloaded value [S].
 [[nodiscard]] inline double excess_siemens(const Sample& sample, std::size_t taxel, const UnloadedFit& unloaded,
                                            const SampleTemperatures& temperatures) {
-  return unloaded.law.excess(taxel, sample.siemens[taxel], temperature_offset(sample, temperatures));
+  return unloaded.law.excess(taxel, sample.siemens[taxel], temperature_offset(sample, taxel, temperatures));
 }
 
 }  // namespace dermis::calibration

@@ -71,8 +71,8 @@ std::vector<TaxelPoint> pressed_points(const SampleDatabase& database, std::size
     double noise = evidence.unloaded.noise_siemens[taxel];
     if (unloaded_sigma > 0.0) noise *= static_cast<double>(sample.sigma_siemens[taxel]) / unloaded_sigma;
     points.push_back({excess_siemens(sample, taxel, evidence.unloaded, evidence.temperatures), noise,
-                      normalised_temperature(sample, evidence.temperatures), share * load_newtons, load_newtons, k,
-                      press, touch});
+                      normalised_temperature(sample, taxel, evidence.temperatures), share * load_newtons, load_newtons,
+                      k, press, touch});
   }
   return points;
 }

@@ -36,6 +36,7 @@ void GhostWatch::watch(const fusion::ForceNetworks& networks, std::vector<Compar
   for (const std::size_t k : even_choice(unloaded.size(), kMostUnloaded)) {
     const Sample& sample = *unloaded[k];
     conductance.temperature_celsius = sample.temperature_celsius;
+    conductance.taxel_celsius = sample.taxel_celsius;
     conductance.siemens.assign(sample.siemens.begin(), sample.siemens.end());
     conductance.sigma_siemens.assign(sample.siemens.size(), 0.0);
     conductance.taxels.assign(sample.siemens.size(), TaxelStatus::ok);
@@ -54,7 +55,7 @@ bool GhostWatch::follows_a_press(std::size_t taxel, const Sample& sample) const 
 }
 
 float GhostWatch::of_table(const fusion::ForceNetworks& networks, std::size_t taxel, const Sample& sample) const {
-  const double offset = temperature_offset(sample, temperatures_);
+  const double offset = temperature_offset(sample, taxel, temperatures_);
   const auto excess = static_cast<float>(networks.unloaded.excess(taxel, sample.siemens[taxel], offset));
   if (excess <= 0.0F) return 0.0F;
   return std::exp(tables_[taxel].at(0, excess, static_cast<float>(offset)).log_newtons);

@@ -50,6 +50,14 @@ void SharedLoads::add_presses() {
   }
 }
 
+/// As an input of a network.
+double SharedLoads::mean_temperature(const Sample& sample, const std::vector<std::size_t>& taxels) const {
+  if (sample.taxel_celsius.empty()) return normalised_temperature(sample, taxels.front(), temperatures_);
+  double sum = 0.0;
+  for (const std::size_t taxel : taxels) sum += normalised_temperature(sample, taxel, temperatures_);
+  return sum / static_cast<double>(taxels.size());
+}
+
 void SharedLoads::add(const Press& press, const std::vector<std::size_t>& taxels, double material_share) {
   if (std::isnan(material_share)) return;
   const Sample& sample = database_.samples[press.sample];
@@ -58,7 +66,7 @@ void SharedLoads::add(const Press& press, const std::vector<std::size_t>& taxels
   load.newtons = material_share * press.newtons;
   load.load_newtons = press.newtons;
   load.touch = press.touch;
-  load.temperature = normalised_temperature(sample, temperatures_);
+  load.temperature = mean_temperature(sample, taxels);
   bool is_measurable = false;
   for (const std::size_t taxel : taxels) {
     if (dead_[taxel]) continue;

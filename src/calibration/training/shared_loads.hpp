@@ -43,6 +43,7 @@ class SharedLoads {
 
   void add_presses();
   void add(const Press& press, const std::vector<std::size_t>& taxels, double material_share);
+  [[nodiscard]] double mean_temperature(const Sample& sample, const std::vector<std::size_t>& taxels) const;
 
   const SampleDatabase& database_;
   const SampleTemperatures& temperatures_;

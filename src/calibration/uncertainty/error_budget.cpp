@@ -40,6 +40,7 @@ class ErrorBudget {
     conditioned_.ratio.assign(sample.ratio.begin(), sample.ratio.end());
     conditioned_.sigma_ratio = sigma_ratio;
     conditioned_.temperature_celsius = sample.temperature_celsius;
+    conditioned_.taxel_celsius = sample.taxel_celsius;
     conditioned_.taxels = sample.taxels;
     compensator_.forget();
     compensator_.process(conditioned_, conductance_);

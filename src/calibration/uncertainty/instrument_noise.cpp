@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "calibration/even_choice.hpp"
 #include "calibration/mean.hpp"
 #include "dermis/calibration/uncertainty.hpp"
 #include "dermis/core/quantile.hpp"
@@ -131,11 +132,9 @@ std::optional<double> measure_adc_noise(const SampleDatabase& database) {
   return std::sqrt(std::max(mean_of(of_taxel), 1.0 / 12.0));
 }
 
-double measure_temperature_noise(const SampleDatabase& database) {
-  std::vector<double> celsius;
-  for (const Sample& sample : database.samples) {
-    if (sample.temperature_celsius) celsius.push_back(*sample.temperature_celsius);
-  }
+namespace {
+
+double temperature_noise(const std::vector<double>& celsius) {
   if (celsius.size() < kLeastTemperatures) return 0.0;
   std::vector<double> differences;
   for (std::size_t k = 1; k + 1 < celsius.size(); ++k) {
@@ -143,6 +142,27 @@ double measure_temperature_noise(const SampleDatabase& database) {
   }
   const double sigma = quantile(std::move(differences), kOneSigmaShare) / std::sqrt(6.0);  // 1 + 4 + 1 variances
   return sigma <= kMostTemperatureNoise ? sigma : 0.0;
+}
+
+}  // namespace
+
+double measure_temperature_noise(const SampleDatabase& database) {
+  constexpr std::size_t kMostTaxels = 16;
+  const bool is_map = !database.samples.empty() && !database.samples.front().taxel_celsius.empty();
+  double squares = 0.0;
+  const std::vector<std::size_t> taxels = even_choice(is_map ? database.array.taxel_count() : 1, kMostTaxels);
+  for (const std::size_t taxel : taxels) {
+    std::vector<double> celsius;
+    for (const Sample& sample : database.samples) {
+      if (!sample.taxel_celsius.empty()) {
+        celsius.push_back(static_cast<double>(sample.taxel_celsius[taxel]));
+      } else if (sample.temperature_celsius) {
+        celsius.push_back(*sample.temperature_celsius);
+      }
+    }
+    squares += std::pow(temperature_noise(celsius), 2) / static_cast<double>(taxels.size());
+  }
+  return std::sqrt(squares);
 }
 
 }  // namespace dermis::calibration

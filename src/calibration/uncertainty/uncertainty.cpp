@@ -15,6 +15,7 @@
 #include "calibration/uncertainty/error_budget.hpp"
 #include "calibration/uncertainty/relative_sigma_fit.hpp"
 #include "dermis/fusion/force_fusion.hpp"
+#include "dermis/preprocessing/temperature_field.hpp"
 
 namespace dermis::calibration {
 namespace {
@@ -251,7 +252,8 @@ Result<UncertaintyReport> fit_uncertainty(const SampleDatabase& database, const 
   UncertaintyReport report;
   report.adc_noise_counts = measure_adc_noise(database);
   if (report.adc_noise_counts) model.array.readout.adc_noise_counts = *report.adc_noise_counts;
-  report.temperature_sigma_celsius = measure_temperature_noise(database);
+  report.temperature_sigma_celsius =
+      std::hypot(measure_temperature_noise(database), preprocessing::TemperatureField(model.array).sigma_celsius());
   model.networks.temperature_sigma_celsius = report.temperature_sigma_celsius;
 
   place_knots(training, model.networks);

@@ -20,6 +20,7 @@ bool is_older(Nanos time, Nanos than, Nanos by) {
 void fill(RawFrame& frame, std::vector<std::uint16_t>& whole, const RawFrame& from, bool is_whole) {
   frame.time = from.time;
   frame.temperature_celsius = from.temperature_celsius;
+  frame.sensor_celsius = from.sensor_celsius;
   frame.supply_v = from.supply_v;
   frame.acquisition = from.acquisition;
   frame.counts.clear();
