@@ -41,6 +41,10 @@ void Bus::deliver(std::size_t array, const FrameShape& shape, const Arrival& arr
   frame.time = begin_.utc + (arrival.steady - begin_.steady);
   frame.acquisition.arrival_steady = arrival.steady;
   frame.acquisition.arrival_utc = arrival.utc;
+  deliver_timed(array, shape, frame);
+}
+
+void Bus::deliver_timed(std::size_t array, const FrameShape& shape, const RawFrame& frame) {
   for (const std::shared_ptr<ArrayFeed>& reader : readers(array)) reader->push(shape, frame);
 }
 

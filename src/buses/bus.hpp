@@ -53,6 +53,8 @@ class Bus {
 
   /// Gives a frame its times, by the host's clock, and its readers the frame.
   void deliver(std::size_t array, const FrameShape& shape, const Arrival& arrival, RawFrame& frame);
+  /// The same of a frame that has its times.
+  void deliver_timed(std::size_t array, const FrameShape& shape, const RawFrame& frame);
 
  private:
   const Arrival begin_;

@@ -13,6 +13,7 @@
 #include "buses/register_bus.hpp"
 #include "buses/topic_bus.hpp"
 #include "dermis/core/nearest_name.hpp"
+#include "dermis/messages/touch_messages.hpp"
 
 namespace dermis::buses {
 namespace {
@@ -135,6 +136,13 @@ Result<std::size_t> find_array(const Bus& bus, const BusAddress& address) {
 }
 
 }  // namespace
+
+bool sends_turned_frames(const BusAddress& address) {
+  const auto* const topic = std::get_if<TopicPlace>(&address.place);
+  if (topic == nullptr) return false;
+  const Result<const messages::TouchType*> type = messages::find_touch_type(topic->type);
+  return type && (*type)->is_raw_frame;
+}
 
 Result<std::unique_ptr<FrameSource>> open_bus(const BusAddress& address, const BusOptions& options) {
   static Buses buses;

@@ -23,7 +23,7 @@ Result<std::shared_ptr<Bus>> TopicBus::open(const BusAddress& address) {
   const auto& place = std::get<TopicPlace>(address.place);
   const Result<const messages::TouchType*> type = messages::find_touch_type(place.type);
   if (!type) return bad_input("'" + address.text + "': " + type.error().message);
-  std::shared_ptr<TopicBus> bus(new TopicBus(**type, place.topic));
+  auto bus = std::make_shared<TopicBus>(**type, place.topic);
   const auto hear = [bus = bus.get()](const dds::Sample& sample) { bus->hear(sample); };
   Result<std::unique_ptr<dds::Subscriber>> subscriber = dds::Subscriber::create(
       {.domain = place.domain, .loopback_only = place.loopback_only}, {place.topic, (*type)->dds_name, hear});
@@ -43,6 +43,7 @@ void TopicBus::hear(const dds::Sample& sample) {
   const Status decoded = type_.decode(sample.message, readings_);
   if (!decoded) return count_damaged(decoded.error());
   has_come_ = true;
+  if (type_.is_raw_frame) return pass_on(readings_.front(), arrival, lost);
   for (std::size_t k = 0; k < readings_.size(); ++k) {
     messages::TouchReading& reading = readings_[k];
     if (reading.shape == FrameShape{}) continue;
@@ -52,6 +53,13 @@ void TopicBus::hear(const dds::Sample& sample) {
     if (!acquisition.device_time) acquisition.device_time = sample.source_time;
     deliver(k, reading.shape, arrival, reading.frame);
   }
+}
+
+/// A frame of another dermis stays as it was sent. Its time on the way counts from here.
+void TopicBus::pass_on(messages::TouchReading& reading, const Arrival& arrival, std::uint32_t lost) {
+  reading.frame.acquisition.arrival_steady = arrival.steady;
+  reading.frame.acquisition.lost_before += lost;
+  deliver_timed(0, reading.shape, reading.frame);
 }
 
 /// Gaps in the numbers of its writer.

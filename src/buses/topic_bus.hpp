@@ -21,11 +21,15 @@ class TopicBus final : public Bus {
   /// Fails on an unknown type, and where DDS is not there.
   [[nodiscard]] static Result<std::shared_ptr<Bus>> open(const BusAddress& address);
 
+  /// Hears nothing but what it is told. `type` must outlive it.
+  TopicBus(const messages::TouchType& type, std::string topic);
+
   [[nodiscard]] std::string name() const override { return "'" + topic_ + "' of type " + type_.dds_name; }
+  /// By one thread at a time.
+  void hear(const dds::Sample& sample);
 
  private:
-  TopicBus(const messages::TouchType& type, std::string topic);
-  void hear(const dds::Sample& sample);
+  void pass_on(messages::TouchReading& reading, const Arrival& arrival, std::uint32_t lost);
   [[nodiscard]] std::uint32_t lost_before(const dds::Sample& sample);
   void count_damaged(const Error& why);
 

@@ -48,6 +48,13 @@ class CdrWriter {
     return {append(count), count};
   }
 
+  /// A sequence<float32>.
+  void write_floats(std::span<const float> values) {
+    write(static_cast<std::uint32_t>(values.size()));
+    const std::span<const std::byte> bytes = std::as_bytes(values);
+    std::copy_n(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), append(bytes.size()));
+  }
+
  private:
   /// Appends zeros and returns their place.
   std::uint8_t* append(std::size_t count);
@@ -86,6 +93,14 @@ class CdrReader {
 
   /// A sequence<uint8>.
   [[nodiscard]] std::span<const std::uint8_t> read_bytes() { return consume(read<std::uint32_t>()); }
+
+  /// A sequence<float32>.
+  void read_floats(std::vector<float>& values) {
+    const std::size_t count = read<std::uint32_t>();
+    const std::span<const std::uint8_t> bytes = consume(count * sizeof(float));
+    values.resize(bytes.size() / sizeof(float));
+    std::copy(bytes.begin(), bytes.end(), reinterpret_cast<std::uint8_t*>(values.data()));
+  }
 
  private:
   std::span<const std::uint8_t> consume(std::size_t count) {

@@ -18,6 +18,7 @@ FUNCTIONS = {
     "grid_type": "foxglove_msgs/Grid",
     "acquisition_type": "dermis_msgs/Acquisition",
     "frame_status_type": "dermis_msgs/FrameStatus",
+    "raw_frame_type": "dermis_msgs/RawFrame",
     "point_cloud_type": "sensor_msgs/PointCloud2",
     "contacts_type": "dermis_msgs/Contacts",
     "statistics_type": "dermis_msgs/Statistics",

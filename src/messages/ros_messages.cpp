@@ -87,6 +87,32 @@ Nanos read_nanos(CdrReader& reader) {
   return Nanos(reader.read<std::int64_t>());
 }
 
+void write_acquisition(CdrWriter& writer, const RawFrame& frame) {
+  const Acquisition& acquisition = frame.acquisition;
+  writer.write(frame.time.count());
+  write_optional(writer, acquisition.sequence);
+  writer.write(static_cast<std::uint8_t>(acquisition.device_time ? 1 : 0));
+  writer.write(acquisition.device_time.value_or(Nanos{}).count());
+  writer.write(acquisition.arrival_steady.count());
+  writer.write(acquisition.arrival_utc.count());
+  writer.write(acquisition.lost_before);
+  writer.write(acquisition.held_taxels);
+  write_optional(writer, frame.supply_v);
+}
+
+void read_acquisition(CdrReader& reader, RawFrame& frame) {
+  Acquisition& acquisition = frame.acquisition;
+  frame.time = read_nanos(reader);
+  acquisition.sequence = read_optional<std::uint64_t>(reader);
+  const std::optional<std::int64_t> device_time = read_optional<std::int64_t>(reader);
+  acquisition.device_time = device_time ? std::optional<Nanos>(*device_time) : std::nullopt;
+  acquisition.arrival_steady = read_nanos(reader);
+  acquisition.arrival_utc = read_nanos(reader);
+  acquisition.lost_before = reader.read<std::uint32_t>();
+  acquisition.held_taxels = reader.read<std::uint32_t>();
+  frame.supply_v = read_optional<double>(reader);
+}
+
 }  // namespace
 
 void encode_image(const RawFrame& frame, const FrameShape& shape, std::string_view frame_id,
@@ -171,33 +197,43 @@ Result<double> decode_temperature(std::span<const std::uint8_t> message) {
 }
 
 void encode_acquisition(const RawFrame& frame, std::vector<std::uint8_t>& message) {
-  const Acquisition& acquisition = frame.acquisition;
   CdrWriter writer(message);
-  writer.write(frame.time.count());
-  write_optional(writer, acquisition.sequence);
-  writer.write(static_cast<std::uint8_t>(acquisition.device_time ? 1 : 0));
-  writer.write(acquisition.device_time.value_or(Nanos{}).count());
-  writer.write(acquisition.arrival_steady.count());
-  writer.write(acquisition.arrival_utc.count());
-  writer.write(acquisition.lost_before);
-  writer.write(acquisition.held_taxels);
-  write_optional(writer, frame.supply_v);
+  write_acquisition(writer, frame);
 }
 
 Status decode_acquisition(std::span<const std::uint8_t> message, RawFrame& frame) {
-  Acquisition& acquisition = frame.acquisition;
   CdrReader reader(message);
-  frame.time = read_nanos(reader);
-  acquisition.sequence = read_optional<std::uint64_t>(reader);
-  const std::optional<std::int64_t> device_time = read_optional<std::int64_t>(reader);
-  acquisition.device_time = device_time ? std::optional<Nanos>(*device_time) : std::nullopt;
-  acquisition.arrival_steady = read_nanos(reader);
-  acquisition.arrival_utc = read_nanos(reader);
-  acquisition.lost_before = reader.read<std::uint32_t>();
-  acquisition.held_taxels = reader.read<std::uint32_t>();
-  frame.supply_v = read_optional<double>(reader);
+  read_acquisition(reader, frame);
   if (!reader.good()) return not_whole(acquisition_type());
   return Done{};
+}
+
+void encode_raw_frame(const RawFrame& frame, const FrameShape& shape, std::string_view frame_id,
+                      std::vector<std::uint8_t>& message) {
+  assert(frame.counts.size() == shape.taxel_count());
+  CdrWriter writer(message);
+  write_header(writer, frame.time, frame_id);
+  write_acquisition(writer, frame);
+  write_optional(writer, frame.temperature_celsius);
+  writer.write_floats({});
+  writer.write(static_cast<std::uint32_t>(shape.rows));
+  writer.write(static_cast<std::uint32_t>(shape.cols));
+  writer.write_floats(frame.counts);
+}
+
+Result<FrameShape> decode_raw_frame(std::span<const std::uint8_t> message, RawFrame& frame) {
+  CdrReader reader(message);
+  static_cast<void>(read_header(reader));
+  read_acquisition(reader, frame);
+  frame.temperature_celsius = read_optional<double>(reader);
+  reader.read_floats(frame.counts);  // of temperature sensors, until frames have several
+  const std::size_t rows = reader.read<std::uint32_t>();
+  const std::size_t cols = reader.read<std::uint32_t>();
+  reader.read_floats(frame.counts);
+  if (!reader.good()) return not_whole(raw_frame_type());
+  if (is_possible(rows, cols) && frame.counts.size() == rows * cols) return FrameShape{rows, cols};
+  return bad_input("the message has " + std::to_string(frame.counts.size()) + " counts of " + std::to_string(rows) +
+                   "x" + std::to_string(cols) + " taxels; all of 1x1 to 1024x1024 can be read");
 }
 
 void encode_grid(const ForceFrame& frame, const FrameShape& shape, const Pitch& pitch, std::string_view frame_id,

@@ -138,6 +138,13 @@ Status decode_image_reading(Message message, std::span<TouchReading> readings) {
   return Done{};
 }
 
+Status decode_frame_reading(Message message, std::span<TouchReading> readings) {
+  const Result<FrameShape> shape = decode_raw_frame(message, readings.front().frame);
+  if (!shape) return shape.error();
+  readings.front().shape = *shape;
+  return Done{};
+}
+
 /// The shape of rows and columns behind dimensions of size 1. Values without dimensions are one row.
 Result<FrameShape> shape_of(std::span<const std::size_t> sizes, std::size_t values) {
   FrameShape shape{1, values};
@@ -187,6 +194,7 @@ const std::vector<TouchType>& touch_types() {
   static const std::vector<TouchType> kTypes = {
       {"unitree_hg/msg/HandState", "unitree_hg::msg::dds_::HandState_", dex3_modules(), decode_hand_state},
       {"inspire/inspire_hand_touch", "inspire::inspire_hand_touch", inspire_regions(), decode_inspire_touch},
+      {"dermis_msgs/msg/RawFrame", "dermis_msgs::msg::dds_::RawFrame_", {TouchArray{}}, decode_frame_reading, true},
       {"sensor_msgs/msg/Image", "sensor_msgs::msg::dds_::Image_", {TouchArray{}}, decode_image_reading},
       {"std_msgs/msg/Float32MultiArray",
        "std_msgs::msg::dds_::Float32MultiArray_",

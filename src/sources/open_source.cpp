@@ -88,14 +88,15 @@ Result<std::unique_ptr<FrameSource>> open_device(const acquisition::SourceUri& u
   return turned_source(*std::move(device), order, uri.text);
 }
 
-/// Its frames are turned as the array's description says.
+/// Its frames are turned as the array's description says, unless another dermis has done so.
 Result<std::unique_ptr<FrameSource>> open_bus(const buses::BusAddress& address, const SourceOptions& options) {
   buses::BusOptions bus_options{{}, options.stop, options.notice};
   if (options.array == nullptr) return buses::open_bus(address, bus_options);
-  bus_options.shape = options.array->order.sent(*shape_of(options.array));
+  const LineOrder order = buses::sends_turned_frames(address) ? LineOrder{} : options.array->order;
+  bus_options.shape = order.sent(*shape_of(options.array));
   Result<std::unique_ptr<FrameSource>> bus = buses::open_bus(address, bus_options);
   if (!bus) return bus.error();
-  return turned_source(*std::move(bus), options.array->order, address.text);
+  return turned_source(*std::move(bus), order, address.text);
 }
 
 /// Its frames were turned before they were published.

@@ -143,6 +143,14 @@ TEST(OpenBusFails, where_nobody_answers_or_nothing_is_known) {
   EXPECT_NE(away.find("127.0.0.1:1 does not answer: Connection refused; check the address"), std::string::npos) << away;
 }
 
+TEST(OpenBusOfTopics, frames_of_another_dermis_alone_are_turned_already) {
+  const auto is_turned = [](const std::string& text) { return sends_turned_frames(*parse_bus_address(text)); };
+  EXPECT_TRUE(is_turned("dds://0/rt/chest/frame?type=dermis_msgs/RawFrame"));
+  EXPECT_FALSE(is_turned("dds://0/rt/chest/raw?type=sensor_msgs/Image"));
+  EXPECT_FALSE(is_turned("dds://0/rt/chest/raw?type=unknown"));
+  EXPECT_FALSE(is_turned("modbus-tcp://127.0.0.1?map=inspire-rh56"));
+}
+
 TEST(OpenBusOfTopics, frames_count_the_messages_of_the_topic) {
   const auto domain = static_cast<std::uint32_t>(100 + ::getpid() % 100);
   const std::string place = "dds://" + std::to_string(domain) + "/rt/chest/raw?type=sensor_msgs/msg/Image&loopback=1";

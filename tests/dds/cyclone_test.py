@@ -46,6 +46,7 @@ TOPICS = {
 }
 for array in ("left", "right"):
     TOPICS |= {
+        f"/{array}/frame": "dermis_msgs/RawFrame",
         f"/{array}/raw": "sensor_msgs/Image",
         f"/{array}/force": "sensor_msgs/Image",
         f"/{array}/force_sigma": "sensor_msgs/Image",
@@ -142,7 +143,7 @@ class Cyclone(SmallArray):
 
     def test_no_frame_is_missing_between_the_first_and_the_last(self):
         for array in ("left", "right"):
-            for name in ("raw", "force", "force_sigma", "wrench"):
+            for name in ("frame", "raw", "force", "force_sigma", "wrench"):
                 times = np.array([time_of(message) for message in self.of(f"/{array}/{name}")]) * 1e-9
                 recorded = self.tables[array]["out"].times
                 between = recorded[(recorded > times[0] - 1e-3) & (recorded < times[-1] + 1e-3)]
@@ -164,6 +165,15 @@ class Cyclone(SmallArray):
                 self.assertEqual(
                     image, {"height": ROWS, "width": COLS, "encoding": "16UC1", "is_bigendian": 0, "step": 2 * COLS}
                 )
+
+            for message in self.of(f"/{array}/frame"):
+                [k] = np.flatnonzero(np.abs(times - time_of(message) * 1e-9) < 1e-3)
+                np.testing.assert_array_equal(np.array(message["counts"], "f4"), taxels(frames[k]))
+                self.assertEqual((message["rows"], message["cols"], message["has_temperature"]), (ROWS, COLS, True))
+                self.assertAlmostEqual(
+                    message["temperature_celsius"], float(frames[k]["temperature_celsius"]), places=5
+                )
+                self.assertAlmostEqual(message["acquisition"]["supply_v"], float(frames[k]["supply_v"]), places=5)
 
     def test_forces_and_their_sigmas_have_the_bits_of_the_command_line(self):
         for array in ("left", "right"):

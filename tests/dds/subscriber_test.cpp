@@ -14,7 +14,7 @@
 namespace dermis::dds {
 namespace {
 
-// tests/dds/hands_test.py shows what writers of another vendor send.
+// tests/buses/hands_test.py shows what writers of another vendor send.
 
 const PublisherOptions kHere{.domain = static_cast<std::uint32_t>(100 + ::getpid() % 100), .loopback_only = true};
 

@@ -58,6 +58,7 @@ class DefinitionReader {
     if (type == "uint32") return reader.read<std::uint32_t>();
     if (type == "int64") return reader.read<std::int64_t>();
     if (type == "uint64") return reader.read<std::uint64_t>();
+    if (type == "float32") return reader.read<float>();
     if (type == "float64") return reader.read<double>();
     if (type == "string") return std::string(reader.read_text());
     nlohmann::json value = nlohmann::json::object();

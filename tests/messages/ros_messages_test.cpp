@@ -157,18 +157,27 @@ TEST(Temperature, reads_back) {
   EXPECT_FALSE(decode_temperature(Bytes{0, 1, 0, 0}));
 }
 
+RawFrame random_frame(std::size_t taxels, Random& random) {
+  RawFrame frame;
+  frame.time = Nanos(static_cast<std::int64_t>(random.bits()));
+  if (random.below(2) == 0) frame.acquisition.sequence = random.bits();
+  if (random.below(2) == 0) frame.acquisition.device_time = Nanos(static_cast<std::int64_t>(random.bits()));
+  frame.acquisition.arrival_steady = Nanos(static_cast<std::int64_t>(random.bits()));
+  frame.acquisition.arrival_utc = Nanos(static_cast<std::int64_t>(random.bits()));
+  frame.acquisition.lost_before = static_cast<std::uint32_t>(random.bits());
+  frame.acquisition.held_taxels = static_cast<std::uint32_t>(random.bits());
+  if (random.below(2) == 0) frame.supply_v = random.normal();
+  if (random.below(2) == 0) frame.temperature_celsius = random.normal();
+  for (std::size_t i = 0; i < taxels; ++i) {
+    frame.counts.push_back(std::bit_cast<float>(static_cast<std::uint32_t>(random.bits())));
+  }
+  return frame;
+}
+
 TEST(AcquisitionMessage, every_field_reads_back) {
   Random random(2);
   for (int i = 0; i < 1000; ++i) {
-    RawFrame frame;
-    frame.time = Nanos(static_cast<std::int64_t>(random.bits()));
-    if (random.below(2) == 0) frame.acquisition.sequence = random.bits();
-    if (random.below(2) == 0) frame.acquisition.device_time = Nanos(static_cast<std::int64_t>(random.bits()));
-    frame.acquisition.arrival_steady = Nanos(static_cast<std::int64_t>(random.bits()));
-    frame.acquisition.arrival_utc = Nanos(static_cast<std::int64_t>(random.bits()));
-    frame.acquisition.lost_before = static_cast<std::uint32_t>(random.bits());
-    frame.acquisition.held_taxels = static_cast<std::uint32_t>(random.bits());
-    if (random.below(2) == 0) frame.supply_v = random.normal();
+    const RawFrame frame = random_frame(0, random);
     Bytes message;
     encode_acquisition(frame, message);
     RawFrame again;
@@ -180,6 +189,36 @@ TEST(AcquisitionMessage, every_field_reads_back) {
     EXPECT_EQ(again.time, frame.time);
     EXPECT_EQ(again.supply_v, frame.supply_v);
   }
+}
+
+TEST(RawFrameMessage, every_field_reads_back_with_its_bits) {
+  Random random(3);
+  for (std::size_t i = 0; i < 300; ++i) {
+    const FrameShape shape{1 + i % 7, 1 + i % 13};
+    const RawFrame frame = random_frame(shape.taxel_count(), random);
+    Bytes message;
+    encode_raw_frame(frame, shape, "chest", message);
+    RawFrame again = random_frame(3, random);
+    EXPECT_EQ(decode_raw_frame(message, again).value(), shape);
+    EXPECT_TRUE(has_same_bits(again.counts, frame.counts));
+    EXPECT_EQ(again.time, frame.time);
+    EXPECT_EQ(again.acquisition, frame.acquisition);
+    EXPECT_EQ(again.supply_v, frame.supply_v);
+    EXPECT_EQ(again.temperature_celsius, frame.temperature_celsius);
+  }
+}
+
+TEST(RawFrameMessage, one_whose_counts_are_not_its_taxels_is_refused) {
+  Bytes message;
+  encode_raw_frame(frame_of({1, 2, 3, 4, 5, 6}), {2, 3}, "chest", message);
+  RawFrame frame;
+  for (std::size_t size = 0; size < message.size(); ++size) {
+    EXPECT_FALSE(decode_raw_frame(std::span(message).first(size), frame)) << size;
+  }
+  constexpr std::size_t kBehindRows = 4 + 4 + 6 * 4;  // columns, number of counts, counts
+  message[message.size() - kBehindRows - 4] = 3;
+  EXPECT_EQ(decode_raw_frame(message, frame).error().message,
+            "the message has 6 counts of 3x3 taxels; all of 1x1 to 1024x1024 can be read");
 }
 
 ForceFrame random_forces(std::size_t taxel_count, std::uint64_t seed) {
@@ -230,10 +269,11 @@ TEST(Grid, holds_forces_with_their_bits) {
 
 TEST(Messages, any_damage_is_a_value_or_an_error) {
   RawFrame raw = frame_of({1, 2, 3, 4, 5, 6});
-  std::vector<Bytes> messages(3);
+  std::vector<Bytes> messages(4);
   encode_image(raw, {2, 3}, "array", messages[0]);
   encode_acquisition(raw, messages[1]);
   encode_temperature(20.0, Nanos(1), "array", messages[2]);
+  encode_raw_frame(raw, {2, 3}, "array", messages[3]);
   Random random(5);
   RawFrame frame;
   for (int i = 0; i < 20000; ++i) {
@@ -241,6 +281,9 @@ TEST(Messages, any_damage_is_a_value_or_an_error) {
     for (int k = 0; k < 3; ++k) message[random.below(message.size())] = static_cast<std::uint8_t>(random.bits());
     message.resize(random.below(message.size() + 1));
     if (const auto shape = decode_image(message, frame)) {
+      ASSERT_EQ(frame.counts.size(), shape->taxel_count());
+    }
+    if (const auto shape = decode_raw_frame(message, frame)) {
       ASSERT_EQ(frame.counts.size(), shape->taxel_count());
     }
     static_cast<void>(decode_acquisition(message, frame));
@@ -261,6 +304,8 @@ TEST(Messages, a_warm_buffer_is_reused) {
     encode_grid(forces, shape, {}, "array", message);
     encode_image(raw, shape, "array", message);
     EXPECT_TRUE(decode_image(message, again));
+    encode_raw_frame(raw, shape, "array", message);
+    EXPECT_TRUE(decode_raw_frame(message, again));
   };
   use_all();
   const support::AllocationGuard guard;
@@ -269,8 +314,8 @@ TEST(Messages, a_warm_buffer_is_reused) {
 }
 
 TEST(MessageTypes, definitions_name_every_type_that_they_use) {
-  for (const MessageType* type :
-       {&image_type(), &temperature_type(), &grid_type(), &acquisition_type(), &frame_status_type()}) {
+  for (const MessageType* type : {&image_type(), &temperature_type(), &grid_type(), &acquisition_type(),
+                                  &frame_status_type(), &raw_frame_type()}) {
     std::size_t begin = 0;
     while (begin < type->definition.size()) {
       const std::size_t end = type->definition.find('\n', begin);

@@ -27,7 +27,7 @@ class Package(unittest.TestCase):
     def test_every_message_is_read_as_it_was_written(self):
         lines = "".join(f"{message['type']} {message['cdr']}\n" for message in self.written)
         read = subprocess.run([self.reader], input=lines, check=True, capture_output=True, text=True).stdout
-        self.assertEqual(len({message["type"] for message in self.written}), 14)
+        self.assertEqual(len({message["type"] for message in self.written}), 15)
         for message, line in zip(self.written, read.splitlines(), strict=True):
             self.assertEqual(json.loads(line), message["fields"], message["type"])
 

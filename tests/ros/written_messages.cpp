@@ -39,6 +39,7 @@ RawFrame raw_frame() {
   RawFrame frame;
   frame.time = kTime;
   frame.counts = {1, 2, 258, 4, 5, 65535};
+  frame.temperature_celsius = 31.5;
   frame.supply_v = 5.02;
   frame.acquisition.sequence = 1ULL << 40U;
   frame.acquisition.device_time = Nanos(-7);
@@ -67,6 +68,8 @@ void print_frames(Bytes& message) {
   print(temperature_type(), message);
   encode_acquisition(raw, message);
   print(acquisition_type(), message);
+  encode_raw_frame(raw, kShape, "chest", message);
+  print(raw_frame_type(), message);
   encode_grid(force_frame(), kShape, {0.01, 0.02}, "chest", message);
   print(grid_type(), message);
   encode_frame_status(force_frame(), message);

@@ -31,6 +31,7 @@ struct MessageType {
 [[nodiscard]] const MessageType& grid_type();
 [[nodiscard]] const MessageType& acquisition_type();
 [[nodiscard]] const MessageType& frame_status_type();
+[[nodiscard]] const MessageType& raw_frame_type();
 
 /// sensor_msgs/msg/Image of frame.counts, stamped with frame.time: "16UC1" if all counts are whole numbers of 0 ...
 /// 65535, else "32FC1". Reads back with the same bits.
@@ -56,6 +57,12 @@ void encode_temperature(double celsius, Nanos time, std::string_view frame_id, s
 void encode_acquisition(const RawFrame& frame, std::vector<std::uint8_t>& message);
 /// Sets those fields.
 [[nodiscard]] Status decode_acquisition(std::span<const std::uint8_t> message, RawFrame& frame);
+
+/// dermis_msgs/msg/RawFrame: all of a frame, without loss.
+void encode_raw_frame(const RawFrame& frame, const FrameShape& shape, std::string_view frame_id,
+                      std::vector<std::uint8_t>& message);
+/// Sets all of the frame. Accepts 1x1 ... 1024x1024 taxels.
+[[nodiscard]] Result<FrameShape> decode_raw_frame(std::span<const std::uint8_t> message, RawFrame& frame);
 
 /// Distance between neighbouring taxels [m].
 struct Pitch {

@@ -24,7 +24,7 @@ struct TouchArray {
 /// The readings of one array in one message.
 struct TouchReading {
   FrameShape shape{};  ///< 0x0: the message does not hold the array.
-  RawFrame frame{};    ///< Counts, temperature and, where the message has it, device_time.
+  RawFrame frame{};    ///< Counts, temperature and, where the message has it, device_time. All where it is a RawFrame.
 };
 
 /// A type of such messages.
@@ -34,9 +34,11 @@ struct TouchType {
   std::vector<TouchArray> arrays;
   /// Reads any bytes as a message in CDR. `readings`: one for each array. Errors name the problem, but no place.
   Status (*decode)(std::span<const std::uint8_t> message, std::span<TouchReading> readings);
+  bool is_raw_frame = false;  ///< Messages are frames of another dermis, with their times and numbers.
 };
 
-/// unitree_hg/msg/HandState, inspire/inspire_hand_touch, sensor_msgs/msg/Image and std_msgs/msg/Float32MultiArray.
+/// unitree_hg/msg/HandState, inspire/inspire_hand_touch, dermis_msgs/msg/RawFrame, sensor_msgs/msg/Image and
+/// std_msgs/msg/Float32MultiArray.
 [[nodiscard]] const std::vector<TouchType>& touch_types();
 
 /// By its name, also without "/msg", or by its name in DDS. Fails on others, with the names that are known.

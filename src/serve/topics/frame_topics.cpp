@@ -79,7 +79,8 @@ Status FrameTopics::add_topics_of(Array& array) {
     TopicNames names;
     const messages::MessageType& type;
   };
-  for (const Wanted& wanted : {Wanted{array.raw, {prefix + "/raw", prefix + "/raw"}, image},
+  for (const Wanted& wanted : {Wanted{array.frame, {.dds = prefix + "/frame"}, messages::raw_frame_type()},
+                               Wanted{array.raw, {prefix + "/raw", prefix + "/raw"}, image},
                                Wanted{array.conductance, {.stream = prefix + "/conductance"}, grid},
                                Wanted{array.force_grid, {.stream = prefix + "/force"}, grid},
                                Wanted{array.force, {.dds = prefix + "/force"}, image},
@@ -99,6 +100,13 @@ std::vector<LiveParameter> FrameTopics::parameters() {
     return Done{};
   };
   return {{.name = "/stream/rate_hz", .value = [this] { return rate_hz_.load(); }, .set_number = set}};
+}
+
+void FrameTopics::keep(std::size_t index, const RawFrame& frame) {
+  Array& array = arrays_[index];
+  if (!array.frame.is_wanted() || frame.counts.size() != array.shape.taxel_count()) return;
+  messages::encode_raw_frame(frame, array.shape, array.served.name, array.message);
+  array.frame.publish(frame.time, array.message);
 }
 
 void FrameTopics::hear(const live::ArrayResult& result) {

@@ -30,6 +30,7 @@ class FrameTopics final : public Part {
   [[nodiscard]] static Result<std::unique_ptr<FrameTopics>> create(const ServedSuit& suit, Topics& topics);
 
   [[nodiscard]] std::vector<LiveParameter> parameters() override;
+  void keep(std::size_t array, const RawFrame& frame) override;
   void hear(const live::ArrayResult& result) override;
   /// The taxels of the whole suit as they were in the last frames that were published, and what presses on it.
   void tick(std::int64_t tick) override;
@@ -54,6 +55,7 @@ class FrameTopics final : public Part {
     FrameShape shape;
     messages::Pitch pitch;
     ContactsInSuit contacts;
+    Topic frame{};
     Topic raw{};
     Topic conductance{};
     Topic force_grid{};

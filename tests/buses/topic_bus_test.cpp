@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "buses/topic_bus.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "dermis/messages/ros_messages.hpp"
+
+namespace dermis::buses {
+namespace {
+
+constexpr FrameShape kShape{2, 3};
+
+RawFrame sent_frame() {
+  RawFrame frame;
+  frame.time = Nanos(1'700'000'000'123'456'789);
+  frame.temperature_celsius = 31.5;
+  frame.supply_v = 5.02;
+  frame.counts = {1, 2, 3, 4, 5, 6.5F};
+  frame.acquisition = {1000, Nanos(-7), Nanos(11), Nanos(13), 2, 1};
+  return frame;
+}
+
+/// A topic that is told its messages here, and the reader of its only array.
+class Topic {
+ public:
+  explicit Topic(const std::string& type) : bus_(**messages::find_touch_type(type), "rt/chest") { bus_.add(0, feed_); }
+
+  RawFrame hear(std::uint64_t sequence, std::uint8_t writer = 1) {
+    RawFrame frame;
+    bus_.hear({message, sequence, Nanos(17), {writer}});
+    EXPECT_EQ(*feed_->take(frame), Polled::frame);
+    return frame;
+  }
+
+  std::vector<std::uint8_t> message;
+
+ private:
+  std::shared_ptr<ArrayFeed> feed_ = std::make_shared<ArrayFeed>(nullptr);
+  TopicBus bus_;
+};
+
+TEST(TopicBus, frames_of_another_dermis_stay_as_they_were_sent_but_for_the_steady_clock) {
+  Topic topic("dermis_msgs/RawFrame");
+  const RawFrame sent = sent_frame();
+  messages::encode_raw_frame(sent, kShape, "chest", topic.message);
+  RawFrame frame = topic.hear(1);
+  EXPECT_EQ(frame.counts, sent.counts);
+  EXPECT_EQ(frame.time, sent.time);
+  EXPECT_EQ(frame.temperature_celsius, sent.temperature_celsius);
+  EXPECT_EQ(frame.supply_v, sent.supply_v);
+  EXPECT_GT(frame.acquisition.arrival_steady, Nanos(11));
+  frame.acquisition.arrival_steady = Nanos(11);
+  EXPECT_EQ(frame.acquisition, sent.acquisition);
+}
+
+TEST(TopicBus, messages_that_the_network_lost_are_counted_with_those_that_the_device_lost) {
+  Topic topic("dermis_msgs/RawFrame");
+  messages::encode_raw_frame(sent_frame(), kShape, "chest", topic.message);
+  EXPECT_EQ(topic.hear(5).acquisition.lost_before, 2U);
+  EXPECT_EQ(topic.hear(9).acquisition.lost_before, 3U + 2U);
+  EXPECT_EQ(topic.hear(1, 2).acquisition.lost_before, 2U) << "another writer has numbers of its own";
+  EXPECT_EQ(topic.hear(10).acquisition.lost_before, 2U);
+}
+
+TEST(TopicBus, messages_of_others_are_counted_and_stamped_here) {
+  Topic topic("sensor_msgs/Image");
+  messages::encode_image(sent_frame(), kShape, "chest", topic.message);
+  const RawFrame first = topic.hear(5);
+  const RawFrame second = topic.hear(9);
+  EXPECT_EQ(first.acquisition.device_time, sent_frame().time);
+  EXPECT_GT(first.time, sent_frame().time);
+  EXPECT_EQ(second.acquisition.lost_before, 3U);
+  EXPECT_EQ(*second.acquisition.sequence, *first.acquisition.sequence + 4);
+}
+
+}  // namespace
+}  // namespace dermis::buses
