@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "acquisition/chunk_stamps.hpp"
-#include "acquisition/clock_mapping.hpp"
 #include "dermis/core/arrival_meter.hpp"
+#include "dermis/core/clock_mapping.hpp"
 #include "dermis/core/frame_source.hpp"
 #include "dermis/core/frames.hpp"
 

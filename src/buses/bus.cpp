@@ -38,7 +38,7 @@ std::vector<std::shared_ptr<ArrayFeed>> Bus::all_readers() {
 }
 
 void Bus::deliver(std::size_t array, const FrameShape& shape, const Arrival& arrival, RawFrame& frame) {
-  frame.time = begin_.utc + (arrival.steady - begin_.steady);
+  frame.time = begin_.utc + (arrival.taken - begin_.steady);
   frame.acquisition.arrival_steady = arrival.steady;
   frame.acquisition.arrival_utc = arrival.utc;
   deliver_timed(array, shape, frame);

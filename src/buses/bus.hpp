@@ -23,10 +23,11 @@ struct BusArray {
   FrameShape shape{};  ///< 0x0: its frames tell it.
 };
 
-/// When something came.
+/// When something came, and when it was taken.
 struct Arrival {
   Nanos steady = std::chrono::steady_clock::now().time_since_epoch();
   Nanos utc = std::chrono::system_clock::now().time_since_epoch();
+  Nanos taken = steady;  ///< By the steady clock.
 };
 
 /// One connection that brings the frames of several arrays. Thread-safe.

@@ -36,7 +36,7 @@ TopicBus::TopicBus(const messages::TouchType& type, std::string topic)
     : Bus(arrays_of(type)), type_(type), topic_(std::move(topic)), readings_(type.arrays.size()) {}
 
 void TopicBus::hear(const dds::Sample& sample) {
-  const Arrival arrival;
+  Arrival arrival;
   const std::uint32_t lost = lost_before(sample);
   sequence_ = has_come_ ? sequence_ + 1 + lost : sample.sequence;
   for (messages::TouchReading& reading : readings_) reading.frame.acquisition = {};
@@ -44,15 +44,24 @@ void TopicBus::hear(const dds::Sample& sample) {
   if (!decoded) return count_damaged(decoded.error());
   has_come_ = true;
   if (type_.is_raw_frame) return pass_on(readings_.front(), arrival, lost);
+  const Nanos device_time = readings_.front().frame.acquisition.device_time.value_or(sample.source_time);
+  arrival.taken = taken_at(device_time, sample.writer, arrival.steady);
   for (std::size_t k = 0; k < readings_.size(); ++k) {
     messages::TouchReading& reading = readings_[k];
     if (reading.shape == FrameShape{}) continue;
     Acquisition& acquisition = reading.frame.acquisition;
     acquisition.sequence = sequence_;
     acquisition.lost_before = lost;
-    if (!acquisition.device_time) acquisition.device_time = sample.source_time;
+    acquisition.device_time = device_time;
     deliver(k, reading.shape, arrival, reading.frame);
   }
+}
+
+/// By the steady clock of this machine, rising. Another writer has another clock.
+Nanos TopicBus::taken_at(Nanos device_time, const dds::Sample::Writer& writer, Nanos arrival) {
+  if (std::exchange(writer_, writer) != writer) clock_.restart();
+  last_taken_ = std::max(clock_.map(device_time, arrival), last_taken_ + Nanos(1));
+  return last_taken_;
 }
 
 /// A frame of another dermis stays as it was sent. Its time on the way counts from here.

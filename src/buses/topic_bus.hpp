@@ -10,6 +10,7 @@
 
 #include "buses/bus.hpp"
 #include "dermis/buses/bus_address.hpp"
+#include "dermis/core/clock_mapping.hpp"
 #include "dermis/dds/subscriber.hpp"
 #include "dermis/messages/touch_messages.hpp"
 
@@ -29,6 +30,7 @@ class TopicBus final : public Bus {
   void hear(const dds::Sample& sample);
 
  private:
+  [[nodiscard]] Nanos taken_at(Nanos device_time, const dds::Sample::Writer& writer, Nanos arrival);
   void pass_on(messages::TouchReading& reading, const Arrival& arrival, std::uint32_t lost);
   [[nodiscard]] std::uint32_t lost_before(const dds::Sample& sample);
   void count_damaged(const Error& why);
@@ -38,6 +40,9 @@ class TopicBus final : public Bus {
   std::vector<messages::TouchReading> readings_;
   std::map<dds::Sample::Writer, std::uint64_t> last_;  // sequence
   std::uint64_t sequence_ = 0;
+  ClockMapping clock_;            // of writer_, or of what stamps its messages
+  dds::Sample::Writer writer_{};  // of the last message
+  Nanos last_taken_{};
   bool has_come_ = false;                        // a message that could be read
   std::unique_ptr<dds::Subscriber> subscriber_;  // the first to go
 };

@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "dermis/messages/ros_messages.hpp"
@@ -30,9 +32,9 @@ class Topic {
  public:
   explicit Topic(const std::string& type) : bus_(**messages::find_touch_type(type), "rt/chest") { bus_.add(0, feed_); }
 
-  RawFrame hear(std::uint64_t sequence, std::uint8_t writer = 1) {
+  RawFrame hear(std::uint64_t sequence, std::uint8_t writer = 1, Nanos source_time = Nanos(17)) {
     RawFrame frame;
-    bus_.hear({message, sequence, Nanos(17), {writer}});
+    bus_.hear({message, sequence, source_time, {writer}});
     EXPECT_EQ(*feed_->take(frame), Polled::frame);
     return frame;
   }
@@ -73,9 +75,31 @@ TEST(TopicBus, messages_of_others_are_counted_and_stamped_here) {
   const RawFrame first = topic.hear(5);
   const RawFrame second = topic.hear(9);
   EXPECT_EQ(first.acquisition.device_time, sent_frame().time);
-  EXPECT_GT(first.time, sent_frame().time);
   EXPECT_EQ(second.acquisition.lost_before, 3U);
   EXPECT_EQ(*second.acquisition.sequence, *first.acquisition.sequence + 4);
+}
+
+TEST(TopicBus, a_message_that_was_late_on_its_way_is_not_late_in_time) {
+  Topic topic("std_msgs/Float32MultiArray");
+  topic.message = {0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0x80, 0x3F};
+  const Nanos began = std::chrono::steady_clock::now().time_since_epoch();
+  const RawFrame first = topic.hear(1, 1, Nanos(0));
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  const RawFrame second = topic.hear(2, 1, std::chrono::milliseconds(10));
+  const Nanos late = second.acquisition.arrival_steady - began;
+  EXPECT_GE(late, std::chrono::milliseconds(30));
+  EXPECT_GT(second.time, first.time);
+  EXPECT_LE(second.time - first.time, std::chrono::milliseconds(11)) << "10 ms, and 2 % of a drift";
+  EXPECT_EQ(second.acquisition.device_time, Nanos(std::chrono::milliseconds(10)));
+}
+
+TEST(TopicBus, another_writer_has_another_clock) {
+  Topic topic("std_msgs/Float32MultiArray");
+  topic.message = {0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0x80, 0x3F};
+  const RawFrame first = topic.hear(1, 1, Nanos(0));
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  const RawFrame second = topic.hear(1, 2, Nanos(1));
+  EXPECT_GE(second.time - first.time, std::chrono::milliseconds(30));
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ struct DeviceOptions {
 };
 
 /// Opens a device as a source of frames. Each frame carries when its last byte had come;
-/// the device's clock, where it has one, is mapped to the host's (clock_mapping.hpp).
+/// the device's clock, where it has one, is mapped to the host's (core/clock_mapping.hpp).
 ///
 /// The source waits for a serial device that is unplugged and for a TCP connection that ends (reconnect_s, 10 s by
 /// default). It is an error if a serial device does not come back. A TCP peer that closed in an orderly way ends the

@@ -24,9 +24,10 @@ struct BusOptions {
 [[nodiscard]] bool sends_turned_frames(const BusAddress& address);
 
 /// The frames of one array of a device or a topic. All arrays of one connection in this process share it. A frame of
-/// registers has the time when its last word had come. A frame of a topic has the time when the message came. Its
-/// device time is that of the message. Its sequence counts the messages of the topic, lost ones included. A frame of
-/// another dermis (dermis_msgs/msg/RawFrame) has all that it was sent with, but for arrival_steady.
+/// registers has the time when its last word had come. A frame of a topic has the time of its message, mapped to the
+/// clock of this machine. Its device time is that of the message. Its sequence counts the messages of the topic, lost
+/// ones included. A frame of another dermis (dermis_msgs/msg/RawFrame) has all that it was sent with, but for
+/// arrival_steady.
 ///
 /// Fails where the plugin of the bus is not there, and on a device that cannot be reached. Also fails where the address
 /// names no array of several. A topic is waited for. A device that goes is waited for, too (reconnect_s).

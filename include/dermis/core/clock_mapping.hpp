@@ -8,7 +8,7 @@
 
 #include "dermis/core/frames.hpp"
 
-namespace dermis::acquisition {
+namespace dermis {
 
 /// A device's clock -> the host's steady clock, from pairs of device time and arrival:
 ///   arrival = offset + (1 + drift) * device time + delay, delay >= 0.
@@ -69,4 +69,4 @@ class ClockMapping {
   double offset_ns_ = 0.0;
 };
 
-}  // namespace dermis::acquisition
+}  // namespace dermis

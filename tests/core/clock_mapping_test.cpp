@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "acquisition/clock_mapping.hpp"
+#include "dermis/core/clock_mapping.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "dermis/core/random.hpp"
 #include "support/allocation_guard.hpp"
 
-namespace dermis::acquisition {
+namespace dermis {
 namespace {
 
 constexpr double kMedianOfExponential = 0.6931471805599453;
@@ -161,4 +161,4 @@ TEST(ClockMapping, bears_any_device_time_and_allocates_nothing) {
 }
 
 }  // namespace
-}  // namespace dermis::acquisition
+}  // namespace dermis

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "acquisition/clock_mapping.hpp"
+#include "dermis/core/clock_mapping.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-namespace dermis::acquisition {
+namespace dermis {
 namespace {
 
 constexpr double kWindowNs = 30e9;
@@ -111,4 +111,4 @@ std::optional<double> ClockMapping::drift_ppm() const noexcept {
   return -1e6 * slope_ / (1.0 + slope_);
 }
 
-}  // namespace dermis::acquisition
+}  // namespace dermis
