@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <utility>
+#include <variant>
 
 #include "dermis/recordings/frame_files.hpp"
 #include "dermis/recordings/recording.hpp"
@@ -76,6 +77,11 @@ bool SourceName::needs_rate() const noexcept {
 
 bool SourceName::has_times_of_its_own() const noexcept {
   return uri && uri->transport == Transport::file && (uri->rate_hz || uri->protocol.has_layout());
+}
+
+bool SourceName::hears(std::uint32_t domain, std::string_view topic) const {
+  const auto* const place = bus ? std::get_if<buses::TopicPlace>(&bus->place) : nullptr;
+  return place != nullptr && place->domain == domain && place->topic == topic;
 }
 
 }  // namespace dermis::sources

@@ -335,6 +335,20 @@ TEST(Session, refuses_a_port_that_is_taken_and_an_address_that_needs_a_token) {
   EXPECT_FALSE(Session::create(small_suit({"chest"}, never), options));
 }
 
+TEST(Session, refuses_an_array_that_would_hear_what_it_publishes) {
+  const std::atomic<bool> never = false;
+  SessionOptions options = options_with();
+  options.dds = {.domain = 7, .loopback_only = true};
+  ServedSuit suit = small_suit({"chest"}, never);
+  suit.arrays[0].from = "dds://7/rt/chest/frame?type=dermis_msgs/RawFrame";
+  const auto echo = Session::create(std::move(suit), options);
+  ASSERT_FALSE(echo);
+  EXPECT_TRUE(
+      echo.error().message.starts_with("array 'chest': comes from 'rt/chest/frame' of domain 7, where it "
+                                       "would be published again; give it another name"))
+      << echo.error().message;
+}
+
 TEST(Session, refuses_arrays_that_cannot_work_and_recordings_that_cannot_be_written) {
   const std::atomic<bool> never = false;
   ServedSuit suit = small_suit({"chest"}, never);

@@ -63,6 +63,14 @@ TEST(SourceName, times_of_a_file_with_a_rate_are_its_own) {
   EXPECT_FALSE(name_of("sim:idle?rate=50").has_times_of_its_own());
 }
 
+TEST(SourceName, a_topic_is_heard_in_its_domain) {
+  const SourceName topic = name_of("dds://7/rt/chest/raw?type=sensor_msgs/Image");
+  EXPECT_TRUE(topic.hears(7, "rt/chest/raw"));
+  EXPECT_FALSE(topic.hears(0, "rt/chest/raw"));
+  EXPECT_FALSE(topic.hears(7, "rt/chest/frame"));
+  EXPECT_FALSE(name_of("sim:idle").hears(7, "rt/chest/raw"));
+}
+
 TEST(SourceName, refuses_a_uri_that_is_wrong) {
   EXPECT_FALSE(SourceName::parse("sim:idle?speed=3"));
   EXPECT_FALSE(SourceName::parse("http://x"));

@@ -37,6 +37,7 @@ struct ServedArray {
   std::string model_path{};      ///< Path of the model or its array.toml: a calibration saves into that folder.
   std::optional<recognition::Classes> classes{};  ///< Names for its touches; learned from newtons.
   std::string simulation{};                       ///< As recordings::FrameNotes::simulation.
+  std::string from{};                             ///< Name of a live source; empty: not known, or a recording.
 };
 
 /// The suit to be served.

@@ -2,8 +2,10 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "dermis/acquisition/source_uri.hpp"
 #include "dermis/buses/bus_address.hpp"
@@ -41,6 +43,8 @@ struct SourceName {
   [[nodiscard]] bool needs_rate() const noexcept;
   /// Times begin at 0 and follow from the rate in the name: they are not those of the readings.
   [[nodiscard]] bool has_times_of_its_own() const noexcept;
+  /// It is a topic of DDS, as DDS names it: "rt/chest/frame".
+  [[nodiscard]] bool hears(std::uint32_t domain, std::string_view topic) const;
 };
 
 }  // namespace dermis::sources

@@ -259,6 +259,7 @@ Status open_together(const SuitDescription& described, const sources::SourceOpti
     }
     suit.arrays[k].simulation = sources::notes_of_source(**source, described.arrays[k].from).simulation;
     suit.arrays[k].source = *std::move(source);
+    suit.arrays[k].from = described.arrays[k].from;
   }
   return all;
 }

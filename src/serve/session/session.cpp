@@ -17,6 +17,25 @@
 #include "serve/topics/topics.hpp"
 
 namespace dermis::serve {
+namespace {
+
+/// An array that publishes what it hears would hear each frame again, without an end.
+Status check_topics(const ServedSuit& suit, std::uint32_t domain) {
+  for (const ServedArray& array : suit.arrays) {
+    const Result<sources::SourceName> from = sources::SourceName::parse(array.from);
+    for (const char* const kind : {"frame", "raw"}) {
+      const std::string topic = fmt::format("rt/{}/{}", array.name, kind);
+      if (!from || !from->hears(domain, topic)) continue;
+      return bad_input(
+          fmt::format("array '{}': comes from '{}' of domain {}, where it would be published again; "
+                      "give it another name, or serve it in another domain",
+                      array.name, topic, domain));
+    }
+  }
+  return Done{};
+}
+
+}  // namespace
 
 /// Makes the parts of a server and their common objects, and is their clock.
 class Session::Implementation {
@@ -48,6 +67,9 @@ class Session::Implementation {
 };
 
 Status Session::Implementation::make(const SessionOptions& options) {
+  if (options.dds) {
+    if (Status checked = check_topics(suit_, options.dds->domain); !checked) return checked;
+  }
   Result<std::unique_ptr<live::LiveSuit>> live = make_live(suit_, parts_, options);
   if (!live) return live.error();
   live_ = *std::move(live);
