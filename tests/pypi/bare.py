@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 The dermis authors
+"""A wheel in a virtual environment that has nothing else but numpy, and no compiler in its path."""
+
+import subprocess
+from pathlib import Path
+
+import numpy
+from support import SmallArray, dermis
+
+# Libraries of glibc and the compiler, which every machine has.
+EVERYWHERE = ("ld-linux", "libc.", "libm.", "libgcc_s.", "libstdc++.", "libpthread.", "libdl.", "librt.", "libresolv.")
+PROGRAM = """
+import bisect, bz2, lzma, random, zlib  # parts of Python with libraries of their own
+import sys
+import numpy
+before = {line.split()[-1] for line in open("/proc/self/maps") if ".so" in line}
+import dermis
+pipeline = dermis.Pipeline(dermis.read_model(sys.argv[1]))
+newtons = pipeline.run(dermis.Recording.read(sys.argv[2])).newtons
+numpy.save(sys.argv[3], newtons)
+force = pipeline.process(dermis.Recording.read(sys.argv[2])[5])
+assert len(force._repr_png_()) > 1000 and "<svg" in force._repr_html_()
+after = {line.split()[-1] for line in open("/proc/self/maps") if ".so" in line}
+print("\\n".join(sorted(after - before)))
+"""
+
+
+def run(*command):
+    done = subprocess.run(list(map(str, command)), env={}, capture_output=True, text=True, cwd="/")
+    if done.returncode:
+        raise AssertionError(f"{command}:\n{done.stdout}{done.stderr}")
+    return done.stdout
+
+
+def environment(python, numpy_version, folder):
+    """Its Python. numpy is put there once."""
+    installed = folder / "numpy.txt"
+    if not installed.exists() or installed.read_text() != numpy_version:
+        subprocess.run([python, "-m", "venv", "--clear", folder], check=True)
+        subprocess.run([folder / "bin/pip", "install", "--quiet", f"numpy=={numpy_version}"], check=True)
+        installed.write_text(numpy_version)
+    return folder / "bin/python"
+
+
+def install(python, wheel):
+    run(python, "-m", "pip", "install", "--quiet", "--no-index", "--force-reinstall", "--no-deps", wheel)
+
+
+class BareTest(SmallArray):
+    def assert_gives_the_bits_of_the_command(self, python):
+        """With its own libraries."""
+        frames, out = self.contacts / "frames.csv", self.work / "newtons.npy"
+        loaded = run(python, "-c", PROGRAM, self.model, frames, out).splitlines()
+        others = [path for path in loaded if not path.startswith(str(python.parents[1]))]
+        self.assertGreater(len(loaded) - len(others), 10)
+        self.assertEqual([path for path in others if not Path(path).name.startswith(EVERYWHERE)], [])
+        expected = self.work / "expected.csv"
+        self.assertEqual(dermis("run", "--model", self.model, "--in", frames, "--out", expected).returncode, 0)
+        table = numpy.genfromtxt(expected, delimiter=",", skip_header=1)[:, 2:].astype("f4")  # behind time and status
+        newtons = numpy.load(out)
+        self.assertEqual(newtons.reshape(table.shape).tobytes(), table.tobytes())
