@@ -6,6 +6,7 @@ the package is zipped. CMAKE_ARGS has further options of cmake."""
 import base64
 import gzip
 import hashlib
+import importlib.util
 import io
 import os
 import re
@@ -48,8 +49,18 @@ def configure(*options):
         sys.exit("dermis cannot be built: cmake, a compiler or a library is missing; scripts/setup build installs them")
 
 
+def headers_of_pybind11():
+    """Those of this Python where it has them, else Debian's."""
+    if not importlib.util.find_spec("pybind11"):
+        return []
+    import pybind11
+
+    return [f"-Dpybind11_DIR={pybind11.get_cmake_dir()}"]
+
+
 def build_package():
     configure(
+        *headers_of_pybind11(),
         "-DCMAKE_BUILD_TYPE=Release",
         "-DDERMIS_UNITY_BUILD=ON",
         "-DDERMIS_BUILD_PYTHON=ON",
@@ -66,6 +77,12 @@ def build_package():
 def record_line(name, content):
     digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
     return f"{name},sha256={digest},{len(content)}\n"
+
+
+def get_requires_for_build_wheel(config_settings=None):
+    """Debian's pybind11 knows Python 3.11 and what came before."""
+    tools = (ROOT / "packaging/wheels/requirements.txt").read_text()
+    return re.findall(r"^pybind11==\S+", tools, re.MULTILINE) if sys.version_info >= (3, 12) else []
 
 
 def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):

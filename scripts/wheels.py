@@ -94,9 +94,7 @@ def make_wheel(python, tools):
     raw = WHEELS / "raw"
     shutil.rmtree(raw, ignore_errors=True)
     raw.mkdir(parents=True)
-    headers = subprocess.run(
-        [tools / "bin/python", "-m", "pybind11", "--cmakedir"], check=True, capture_output=True, text=True
-    ).stdout.strip()
+    (packages,) = tools.glob("lib/python3*/site-packages")
     launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
     build = (
         "import build_backend, wheels; package = build_backend.build_package(); "
@@ -104,8 +102,8 @@ def make_wheel(python, tools):
     )
     environment = {
         **os.environ,
-        "CMAKE_ARGS": " ".join([f"-Dpybind11_DIR={headers}", *launcher]),
-        "PYTHONPATH": f"{ROOT / 'python'}:{ROOT / 'scripts'}",
+        "CMAKE_ARGS": " ".join(launcher),
+        "PYTHONPATH": f"{ROOT / 'python'}:{ROOT / 'scripts'}:{packages}",
     }
     subprocess.run([python, "-c", build], cwd=ROOT, env=environment, check=True, stdout=sys.stderr)
     (wheel,) = raw.glob("*.whl")

@@ -7,14 +7,14 @@ Usage: wheels_test.py DERMIS FOLDER, which has the wheels"""
 import sys
 from pathlib import Path
 
-TESTS = Path(__file__).resolve().parents[1]
-sys.path.append(str(TESTS / "command_line"))
-sys.path.append(str(TESTS.parent / "python"))
-sys.path.append(str(TESTS.parent / "scripts"))
+sys.path.append(str(Path(__file__).resolve().parents[1] / "command_line"))
+sys.path.append(str(Path(__file__).resolve().parents[2] / "python"))
+sys.path.append(str(Path(__file__).resolve().parents[2] / "scripts"))
 import bare
 import support
 import wheels
 
+TESTS = Path(__file__).resolve().parents[1]
 FOLDER = Path(sys.argv.pop(2)).resolve()
 NUMPYS = {"3.11": ("1.26.4", "2.4.6"), "3.12": ("1.26.4", "2.4.6"), "3.13": ("2.4.6",)}  # 1.26 has no wheel for 3.13
 # Threads, and how frames show themselves.
