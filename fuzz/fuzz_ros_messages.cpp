@@ -20,6 +20,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   static_cast<void>(messages::decode_acquisition(message, frame));
   static_cast<void>(messages::decode_temperature(message));
+  if (messages::JointNumbers joints; messages::decode_joint_state(message, joints)) {
+    if (joints.names.size() != joints.numbers.size()) std::abort();
+  }
   for (const messages::TouchType& type : messages::touch_types()) {
     std::vector<messages::TouchReading> readings(type.arrays.size());
     if (!type.decode(message, readings)) continue;

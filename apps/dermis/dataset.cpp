@@ -68,7 +68,7 @@ void add_dataset(Command& command) {
   command.input_file("--model", options->episodes.model,
                      "Model file of the array, or suit.toml of several; without one there are no forces");
   command.input("--state", options->episodes.states,
-                "CSV with time_s for each recording: the state of the robot, such as joint angles");
+                "The state of the robot: a topic of its joints, or a CSV with time_s for each recording");
   command.input("--action", options->episodes.actions, "The same of the actions of the robot");
   command.option("--fps", options->episodes.fps, "Steps a second [Hz]").shows_default();
   command.option("--window", options->window, "Each step has this many of the last frames").shows_default();

@@ -375,8 +375,8 @@ class Dataset:
     They are made when the first is asked for, and kept then.
 
     model: of the array, or the suit.toml of several; without one there are no forces. window: each step has so many of
-    the last frames. columns: only these quantities. state, action: a CSV with time_s for each
-    recording. times_ns: the times of the steps of each recording, such as those of its images, in place of fps.
+    the last frames. columns: only these quantities. state, action: a topic of joints in the recordings, or a CSV with
+    time_s for each. times_ns: the times of the steps of each recording, such as those of its images, in place of fps.
     """
 
     def __init__(

@@ -15,7 +15,7 @@
 #include "datasets/array_steps.hpp"
 #include "datasets/in_parallel.hpp"
 #include "datasets/recorded_arrays.hpp"
-#include "datasets/sampled_series.hpp"
+#include "datasets/robot_series.hpp"
 #include "dermis/datasets/step_plan.hpp"
 #include "dermis/files/text.hpp"
 
@@ -31,24 +31,13 @@ constexpr std::size_t kMostStepsOfBlock = 256;
 constexpr std::size_t kMostBytesOfStep = std::size_t{256} << 20U;
 constexpr const char* kTimeNs = "time_ns";
 
-/// "state" of a step, and the file for each recording.
-struct Series {
-  const char* quantity;
-  const std::vector<std::string>& files;
-  std::optional<SampledSeries> now{};
-};
-
 /// Makes episodes of one recording after the other.
 ///
 /// Many members: a batch and a block keep their buffers from one to the next.
 class Maker {
  public:
-  Maker(const EpisodeOptions& options, ArrayModels models, EpisodeSink& sink)
-      : options_(options), models_(std::move(models)), sink_(sink) {
-    for (const auto& [quantity, files] : {std::pair("state", &options.states), std::pair("action", &options.actions)}) {
-      if (!files->empty()) series_.push_back({quantity, *files});
-    }
-  }
+  Maker(const EpisodeOptions& options, ArrayModels models, std::vector<RobotSeries> series, EpisodeSink& sink)
+      : options_(options), models_(std::move(models)), series_(std::move(series)), sink_(sink) {}
 
   [[nodiscard]] Status add(const std::string& from, std::size_t number);
   [[nodiscard]] EpisodeTally tally() const { return tally_; }
@@ -62,7 +51,6 @@ class Maker {
   [[nodiscard]] Status begin_episode(const std::string& from, std::size_t number);
   [[nodiscard]] Status check_arrays(const std::string& from) const;
   [[nodiscard]] Status decide_columns();
-  [[nodiscard]] Status read_series(std::size_t number);
   [[nodiscard]] Result<bool> read_batch();
   [[nodiscard]] Status take(const std::string& from);
   [[nodiscard]] Status end_episode();
@@ -72,8 +60,8 @@ class Maker {
 
   const EpisodeOptions& options_;
   ArrayModels models_;
+  std::vector<RobotSeries> series_;
   EpisodeSink& sink_;
-  std::vector<Series> series_;
   std::optional<RecordedArrays> recorded_;
   std::vector<RecordedArrays::Array> arrays_;
   std::vector<Column> columns_;
@@ -110,10 +98,7 @@ Status Maker::decide_columns() {
     if (batch_[k].frame.supply_v) seen.supply_v = batch_[k].frame.supply_v;
   }
   columns_ = {{"", kTimeNs, ColumnType::int64, {1}, {"ns"}}};
-  for (const Series& series : series_) {
-    const std::vector<std::string>& names = series.now->names();
-    columns_.push_back({"", series.quantity, ColumnType::float32, {names.size()}, names});
-  }
+  for (const RobotSeries& series : series_) columns_.push_back(series.column());
   for (std::size_t k = 0; k < arrays_.size(); ++k) {
     const std::vector<Column> of_array = columns_of(arrays_[k], first[k], options_);
     columns_.insert(columns_.end(), of_array.begin(), of_array.end());
@@ -142,19 +127,6 @@ Status Maker::begin_episode(const std::string& from, std::size_t number) {
     plan_.emplace(arrays_.size(), options_.window, options_.fps);
   } else {
     plan_.emplace(arrays_.size(), options_.times[number]);
-  }
-  return Done{};
-}
-
-Status Maker::read_series(std::size_t number) {
-  for (Series& series : series_) {
-    const std::string& path = series.files[number];
-    Result<SampledSeries> read = SampledSeries::read(path);
-    if (!read) return read.error();
-    if (series.now && series.now->names() != read->names()) {
-      return bad_input(path + ": has other columns than " + series.files.front());
-    }
-    series.now = *std::move(read);
   }
   return Done{};
 }
@@ -200,12 +172,9 @@ Status Maker::write_steps(std::span<const Nanos> times) {
   const auto* const first = reinterpret_cast<const std::byte*>(times.data());
   block_.values[0].assign(first, first + times.size_bytes());
   std::size_t begin = 1;
-  for (const Series& series : series_) {
+  for (const RobotSeries& series : series_) {
     std::vector<std::byte>& values = block_.values[begin++];
-    for (const Nanos time : times) {
-      const auto row = std::as_bytes(std::span(series.now->at(time)));
-      values.insert(values.end(), row.begin(), row.end());
-    }
+    for (const Nanos time : times) series.append(time, values);
   }
   std::vector<std::size_t> begins;
   for (const RecordedArrays::Array& array : arrays_) {
@@ -259,7 +228,9 @@ Status Maker::add(const std::string& from, std::size_t number) {
   const bool is_first = arrays_.empty();
   if (is_first) arrays_ = recorded_->arrays();
   if (Status same = check_arrays(from); !same) return same;
-  if (Status read = read_series(number); !read) return read;
+  for (RobotSeries& series : series_) {
+    if (Status read = series.read(from, number); !read) return read;
+  }
   Result<bool> more = read_batch();
   if (more && batch_count_ == 0) return bad_input(from + ": has no frame");
   if (!more) return more.error();
@@ -303,14 +274,11 @@ Result<EpisodeTally> make_episodes(const std::vector<std::string>& recordings, c
                                    EpisodeSink& sink) {
   if (Status valid = options.validate(); !valid) return valid.error();
   if (recordings.empty()) return bad_input("name a recording");
-  for (const auto& [field, files] : {std::pair("state", &options.states), std::pair("action", &options.actions)}) {
-    if (!files->empty() && files->size() != recordings.size()) {
-      return bad_field(field, fmt::format("has {} files for {} recordings", files->size(), recordings.size()));
-    }
-  }
+  Result<std::vector<RobotSeries>> series = RobotSeries::choose(recordings, options);
+  if (!series) return series.error();
   Result<ArrayModels> models = ArrayModels::read(options.model);
   if (!models) return models.error();
-  Maker maker(options, *std::move(models), sink);
+  Maker maker(options, *std::move(models), *std::move(series), sink);
   for (std::size_t k = 0; k < recordings.size(); ++k) {
     if (Status added = maker.add(recordings[k], k); !added) return added.error();
   }

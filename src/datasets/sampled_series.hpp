@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -10,20 +11,27 @@
 
 namespace dermis::datasets {
 
-/// Numbers that were sampled beside the frames, such as joint angles: a CSV with time_s, whose times rise.
+/// Numbers that were sampled beside the frames, such as joint angles, each by its name.
 class SampledSeries {
  public:
-  [[nodiscard]] static Result<SampledSeries> read(const std::string& path);
+  /// A CSV with time_s, whose times rise; the other columns are the numbers.
+  [[nodiscard]] static Result<SampledSeries> read(const std::string& csv);
+  /// The joints of a topic of a recording. A message may have only some; one that is no number is not there.
+  [[nodiscard]] static Result<SampledSeries> read_topic(const std::string& recording, const std::string& topic);
 
-  /// The other columns.
-  [[nodiscard]] const std::vector<std::string>& names() const noexcept { return names_; }
-  /// The newest row of that time or earlier, or the first one.
-  [[nodiscard]] const std::vector<float>& at(Nanos time) const;
+  [[nodiscard]] std::vector<std::string> names() const;
+  /// Puts the numbers into the order of these names. False where there are others.
+  [[nodiscard]] bool reorder(const std::vector<std::string>& names);
+  /// Appends, of each name, the newest number of that time or earlier, or else its first one.
+  void append(Nanos time, std::vector<std::byte>& row) const;
 
  private:
-  std::vector<std::string> names_;
-  std::vector<Nanos> times_;
-  std::vector<std::vector<float>> rows_;
+  struct Numbers {
+    std::string name;
+    std::vector<Nanos> times{};
+    std::vector<float> values{};
+  };
+  std::vector<Numbers> numbers_;
 };
 
 }  // namespace dermis::datasets

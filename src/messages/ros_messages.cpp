@@ -180,6 +180,28 @@ Result<FrameShape> decode_tactile_state(std::span<const std::uint8_t> message, R
                    " values; 1x1 to 1024x1024 can be read");
 }
 
+Status decode_joint_state(std::span<const std::uint8_t> message, JointNumbers& joints) {
+  constexpr int kQuantities = 3;  // position, velocity, effort
+  CdrReader reader(message);
+  static_cast<void>(read_header(reader));
+  joints.names.clear();
+  joints.numbers.clear();
+  const std::size_t names = reader.read<std::uint32_t>();
+  for (std::size_t k = 0; k < names && reader.good(); ++k) joints.names.emplace_back(reader.read_text());
+  for (int quantity = 0; quantity < kQuantities; ++quantity) {
+    const std::size_t count = reader.read<std::uint32_t>();
+    const bool is_taken = joints.numbers.empty();
+    for (std::size_t k = 0; k < count && reader.good(); ++k) {
+      const auto number = reader.read<double>();
+      if (is_taken) joints.numbers.push_back(number);
+    }
+  }
+  if (!reader.good()) return not_whole(kJointState);
+  if (joints.numbers.size() == joints.names.size()) return Done{};
+  return bad_input("the message names " + std::to_string(joints.names.size()) + " joints and has numbers of " +
+                   std::to_string(joints.numbers.size()));
+}
+
 void encode_temperature(double celsius, Nanos time, std::string_view frame_id, std::vector<std::uint8_t>& message) {
   CdrWriter writer(message);
   write_header(writer, time, frame_id);

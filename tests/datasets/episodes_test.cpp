@@ -6,8 +6,11 @@
 
 #include <cstring>
 #include <fstream>
+#include <limits>
 
+#include "dermis/messages/ros_messages.hpp"
 #include "dermis/recordings/suit_recording.hpp"
+#include "support/joint_messages.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace dermis::datasets {
@@ -50,6 +53,12 @@ class Kept final : public EpisodeSink {
     }
     return values;
   }
+  [[nodiscard]] std::vector<std::string> axes(const std::string& name) const {
+    for (const Column& column : columns_) {
+      if (column.name() == name) return column.axes;
+    }
+    return {};
+  }
   [[nodiscard]] std::vector<std::string> names() const {
     std::vector<std::string> names;
     for (const Column& column : columns_) names.push_back(column.name());
@@ -78,6 +87,32 @@ void write_recording(const std::string& path, const std::vector<Nanos>& times, s
     ASSERT_TRUE((*writer)->write(0, frame));
     const bool is_tenth = k % 10 == 0;
     ASSERT_TRUE(!is_tenth || (*writer)->write(1, frame).has_value());
+  }
+  ASSERT_TRUE((*writer)->commit());
+}
+
+struct JointSample {
+  std::string topic;
+  Nanos time;
+  std::vector<std::pair<std::string, double>> positions;
+};
+
+/// An array of 1x1 whose frames are 10 ms apart, beside joints.
+void write_robot(const std::string& path, const std::vector<JointSample>& samples) {
+  messages::MessageType joints = messages::temperature_type();
+  joints.name = messages::kJointState;
+  const auto writer = recordings::SuitRecordingWriter::create(path, {{.name = "tip", .shape = {1, 1}}});
+  ASSERT_TRUE(writer) << writer.error().message;
+  RawFrame frame;
+  frame.counts = {1.0F};
+  for (int k = 0; k < 50; ++k) {
+    frame.time = milliseconds(10 * k);
+    ASSERT_TRUE((*writer)->write(0, frame));
+    for (const JointSample& sample : samples) {
+      if (sample.time != frame.time) continue;
+      const std::vector<std::uint8_t> message = support::joint_message(sample.positions);
+      ASSERT_TRUE((*writer)->write({sample.topic, joints, sample.time, message}));
+    }
   }
   ASSERT_TRUE((*writer)->commit());
 }
@@ -157,6 +192,55 @@ TEST_F(Episodes, have_steps_at_given_times_and_the_state_of_the_robot) {
   ASSERT_TRUE(make_episodes({path_}, options, kept));
   EXPECT_EQ(kept.column<float>("state"), (std::vector<float>{1, 1, 2}));
   EXPECT_EQ(kept.names(), (std::vector<std::string>{"time_ns", "state", "left_hand_fresh", "chest_fresh"}));
+}
+
+TEST_F(Episodes, have_the_joints_that_the_recordings_hold_as_state) {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  write_robot(folder_.file("1.mcap"), {{"/joint_states", milliseconds(100), {{"elbow", 1}, {"wrist", none}}},
+                                       {"/joint_states", milliseconds(200), {{"gripper", 5}}},
+                                       {"/joint_states", milliseconds(300), {{"elbow", 2}, {"wrist", 7}}}});
+  write_robot(folder_.file("2.mcap"),
+              {{"/joint_states", milliseconds(100), {{"wrist", 3}, {"gripper", 2}, {"elbow", 1}}}});
+  Kept kept;
+  EpisodeOptions options{.quantities = {"fresh"}};
+  options.times = {{milliseconds(50), milliseconds(299), milliseconds(300)}, {milliseconds(400)}};
+  const Result<EpisodeTally> made = make_episodes({folder_.file("1.mcap"), folder_.file("2.mcap")}, options, kept);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_EQ(kept.names(), (std::vector<std::string>{"time_ns", "state", "tip_fresh"}));
+  EXPECT_EQ(kept.axes("state"), (std::vector<std::string>{"elbow", "gripper", "wrist"}));
+  EXPECT_EQ(kept.column<float>("state"), (std::vector<float>{1, 5, 7, 1, 5, 7, 2, 5, 7, 1, 2, 3}));
+}
+
+TEST_F(Episodes, take_topics_by_their_names_and_ask_which_of_several_is_the_state) {
+  const std::string path = folder_.file("two.mcap");
+  write_robot(path,
+              {{"/commands", milliseconds(100), {{"elbow", 2}}}, {"/joint_states", milliseconds(100), {{"elbow", 1}}}});
+  EpisodeOptions options{.fps = 1.0, .quantities = {"fresh"}};
+  std::vector<std::string> notices;
+  options.notice = [&](const std::string& line) { notices.push_back(line); };
+  Kept unnamed;
+  ASSERT_TRUE(make_episodes({path}, options, unnamed));
+  EXPECT_EQ(unnamed.names(), (std::vector<std::string>{"time_ns", "tip_fresh"}));
+  ASSERT_EQ(notices.size(), 1U);
+  EXPECT_NE(notices.front().find("/commands, /joint_states"), std::string::npos);
+  options.actions = {"/commands"};
+  Kept named;
+  ASSERT_TRUE(make_episodes({path, path}, options, named));
+  EXPECT_EQ(named.names(), (std::vector<std::string>{"time_ns", "state", "action", "tip_fresh"}));
+  EXPECT_EQ(named.column<float>("state").front(), 1.0F);
+  EXPECT_EQ(named.column<float>("action").front(), 2.0F);
+}
+
+TEST_F(Episodes, name_topics_and_joints_that_are_not_there) {
+  const std::string path = folder_.file("robot.mcap");
+  write_robot(path, {{"/joint_states", milliseconds(100), {{"elbow", 1}}}});
+  EXPECT_EQ(error_of({path}, {.states = {"/joints"}}),
+            path + ": has no topic '/joints' of joints; it has /joint_states");
+  EXPECT_EQ(error_of({path_}, {.states = {"/joints"}}), path_ + ": has no topic '/joints' of joints; it has none");
+  const std::string other = folder_.file("other.mcap");
+  write_robot(other, {{"/joint_states", milliseconds(100), {{"knee", 1}}}});
+  EXPECT_EQ(error_of({path, other}, {}),
+            "/joint_states of " + other + ": has other columns than that of the first recording, which has elbow");
 }
 
 TEST_F(Episodes, name_what_is_wrong) {

@@ -16,6 +16,9 @@ import numpy
 import pandas
 import pyarrow.parquet
 import zarr
+from rosbags.highlevel import AnyReader
+from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.typesys import Stores, get_typestore
 
 import datasets
 
@@ -187,6 +190,42 @@ class Datasets(CalibratedArray):
                 got = numpy.asarray(stats[name][key]).reshape(numpy.shape(expected))
                 numpy.testing.assert_allclose(got, expected, rtol=1e-6, atol=1e-7, err_msg=f"{name}, {key}")
             self.assertEqual(stats[name]["count"], [len(values)])
+
+    def bag_with_joints(self, recording, times_ns, angles):
+        """The frames of a recording beside joints, as ROS 2 records them."""
+        store = get_typestore(Stores.ROS2_JAZZY)
+        types = store.types
+        stamp = types["builtin_interfaces/msg/Time"](sec=1, nanosec=2)
+        header = types["std_msgs/msg/Header"](stamp=stamp, frame_id="base")
+        joint_state, none = types["sensor_msgs/msg/JointState"], numpy.zeros(0)
+        messages = []
+        folder = self.folder / f"{self.id()}-{recording.stem}"
+        with AnyReader([recording]) as reader, Writer(folder, version=9, storage_plugin=StoragePlugin.MCAP) as bag:
+            topics = {
+                connection.id: bag.add_connection(connection.topic, connection.msgtype, typestore=reader.typestore)
+                for connection in reader.connections
+            }
+            joints = bag.add_connection("/joint_states", joint_state.__msgtype__, typestore=store)
+            messages = [(stamp, topics[connection.id], content) for connection, stamp, content in reader.messages()]
+            for time, row in zip(times_ns, angles, strict=True):
+                message = joint_state(header, ["elbow", "wrist"], row, none, none)
+                messages.append((int(time), joints, store.serialize_cdr(message, joint_state.__msgtype__)))
+            for stamp, topic, content in sorted(messages, key=lambda message: message[0]):
+                bag.write(topic, stamp, content)
+        (written,) = folder.glob("*.mcap")
+        return written
+
+    def test_joints_of_a_bag_are_the_state(self):
+        times = self.episodes[0][0][0] + numpy.arange(100) * 10**7
+        angles = numpy.random.default_rng(1).normal(size=(100, 2))
+        bag = self.bag_with_joints(self.recordings[0], times, angles)
+        out = self.folder / self.id()
+        dermis("dataset", bag, "--out", out, "--fps", FPS, "--window", WINDOW)
+        info, loaded = self.load(out)
+        self.assertEqual(info["features"]["observation.state"]["names"], ["elbow", "wrist"])
+        columns = loaded.with_format("numpy")[:]
+        newest = numpy.maximum(numpy.searchsorted(times, columns["time_ns"], side="right") - 1, 0)
+        numpy.testing.assert_array_equal(columns["observation.state"], angles[newest].astype(numpy.float32))
 
     def test_batches_in_any_order_have_one_shape(self):
         _, loaded = self.load(self.make("lerobot", "--flat"))

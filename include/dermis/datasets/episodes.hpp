@@ -29,8 +29,9 @@ struct EpisodeOptions {
   /// Path as for pipeline::read_model(); of recordings of several arrays, of the suit.toml that names theirs. Empty:
   /// there are no forces.
   std::string model{};
-  /// CSV files of the robot's state, such as joint angles, and of its actions: one for each recording, or none. They
-  /// have time_s on the clock of the frames. Each step has the newest row.
+  /// The robot's state, such as joint angles, and its actions: a topic of sensor_msgs/msg/JointState that all
+  /// recordings have ("/joint_states"), or a CSV for each, with time_s on the clock of the frames. Each step has the
+  /// newest numbers. Without states, the only topic of joints that all recordings have is the state.
   std::vector<std::string> states{};
   std::vector<std::string> actions{};
   /// Times of the steps of each recording, which rise, in place of `fps`. Empty: those of a clock.

@@ -49,6 +49,15 @@ void encode_value_image(std::span<const float> values, Nanos time, const FrameSh
 inline constexpr const char* kTactileState = "tactile_msgs/msg/TactileState";
 [[nodiscard]] Result<FrameShape> decode_tactile_state(std::span<const std::uint8_t> message, RawFrame& frame);
 
+/// sensor_msgs/msg/JointState, as other robots have it: a number for each joint. They are the positions of the joints
+/// or, where the message has none, their velocities or efforts.
+inline constexpr const char* kJointState = "sensor_msgs/msg/JointState";
+struct JointNumbers {
+  std::vector<std::string> names;
+  std::vector<double> numbers;  ///< Of each name.
+};
+[[nodiscard]] Status decode_joint_state(std::span<const std::uint8_t> message, JointNumbers& joints);
+
 /// sensor_msgs/msg/Temperature [C]; the variance is given as 0, unknown.
 void encode_temperature(double celsius, Nanos time, std::string_view frame_id, std::vector<std::uint8_t>& message);
 [[nodiscard]] Result<double> decode_temperature(std::span<const std::uint8_t> message);
