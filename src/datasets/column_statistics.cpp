@@ -53,6 +53,21 @@ void ColumnStatistics::add(std::span<const std::byte> values) {
   }
 }
 
+void ColumnStatistics::add(const ColumnStatistics& others) {
+  if (is_first_) {
+    *this = others;
+    return;
+  }
+  for (std::size_t k = 0; k < elements(); ++k) {
+    const double shift = others.first_[k] - first_[k];
+    squares_[k] += others.squares_[k] + shift * (2.0 * others.sum_[k] + others.count_[k] * shift);
+    sum_[k] += others.sum_[k] + others.count_[k] * shift;
+    count_[k] += others.count_[k];
+    lowest_[k] = std::min(lowest_[k], others.lowest_[k]);
+    highest_[k] = std::max(highest_[k], others.highest_[k]);
+  }
+}
+
 double ColumnStatistics::lowest(std::size_t k) const {
   return count_[k] > 0.0 ? lowest_[k] : 0.0;
 }

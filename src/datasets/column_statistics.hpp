@@ -19,6 +19,9 @@ class ColumnStatistics {
 
   /// Rows of the column.
   void add(std::span<const std::byte> values);
+  /// Other rows of it.
+  void add(const ColumnStatistics& others);
+  [[nodiscard]] std::size_t elements() const noexcept { return first_.size(); }
 
   /// Those of element `k`; 0 where no value counts.
   [[nodiscard]] double lowest(std::size_t k) const;

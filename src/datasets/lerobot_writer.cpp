@@ -12,6 +12,7 @@
 
 #include "datasets/column_statistics.hpp"
 #include "datasets/dataset_writers.hpp"
+#include "datasets/episode_table.hpp"
 #include "datasets/in_parallel.hpp"
 #include "datasets/parquet_file.hpp"
 
@@ -77,20 +78,6 @@ std::span<const std::byte> bytes_of_text(const std::string& text) {
   return std::as_bytes(std::span(text));
 }
 
-/// Rows of meta/episodes.
-struct EpisodeTable {
-  static constexpr std::array kNames = {
-      "episode_index",      "length",           "data/chunk_index",          "data/file_index",
-      "dataset_from_index", "dataset_to_index", "meta/episodes/chunk_index", "meta/episodes/file_index"};
-  std::array<std::vector<std::int64_t>, kNames.size()> numbers;
-  std::string tasks;
-
-  void add(const std::array<std::int64_t, kNames.size()>& row, const std::string& task) {
-    for (std::size_t k = 0; k < row.size(); ++k) numbers.at(k).push_back(row.at(k));
-    tasks += plain_text(task);
-  }
-};
-
 class LeRobotWriter final : public EpisodeSink {
  public:
   LeRobotWriter(std::unique_ptr<OutputFolder> folder, DatasetOptions options)
@@ -100,7 +87,15 @@ class LeRobotWriter final : public EpisodeSink {
     columns_ = columns;
     const std::vector<Column> own = own_columns();
     columns_.insert(columns_.end(), own.begin(), own.end());
-    for (const Column& column : columns_) statistics_.emplace_back(column);
+    std::vector<EpisodeTable::Feature> features;
+    for (const Column& column : columns_) {
+      statistics_.emplace_back(column);
+      features.push_back({feature_of(column), column.shape});
+    }
+    of_episode_ = statistics_;
+    auto episodes = EpisodeTable::create(folder_->place("meta/episodes/chunk-000/file-000.parquet"), features);
+    if (!episodes) return episodes.error();
+    episodes_ = *std::move(episodes);
     return Done{};
   }
 
@@ -112,7 +107,7 @@ class LeRobotWriter final : public EpisodeSink {
     std::vector<std::span<const std::byte>> values(block.values.begin(), block.values.end());
     values.insert(values.end(), own.begin(), own.end());
     file_->write(block.steps, values);
-    in_parallel(columns_.size(), [&](std::size_t k) { statistics_[k].add(values[k]); });
+    in_parallel(columns_.size(), [&](std::size_t k) { of_episode_[k].add(values[k]); });
     steps_of_episode_ += block.steps;
     return file_->waiting_bytes() > kMostWaitingBytes ? file_->end_row_group() : Status(Done{});
   }
@@ -121,10 +116,15 @@ class LeRobotWriter final : public EpisodeSink {
     const auto from = static_cast<std::int64_t>(steps_);
     steps_ += steps_of_episode_;
     const auto length = static_cast<std::int64_t>(std::exchange(steps_of_episode_, 0));
-    episodes_.add(
+    const Status added = episodes_->add(
         {static_cast<std::int64_t>(episode_++), length, static_cast<std::int64_t>(file_index_ / kFilesOfChunk),
          static_cast<std::int64_t>(file_index_ % kFilesOfChunk), from, static_cast<std::int64_t>(steps_), 0, 0},
-        options_.task);
+        options_.task, of_episode_);
+    if (!added) return added;
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      statistics_[k].add(of_episode_[k]);
+      of_episode_[k] = ColumnStatistics(columns_[k]);
+    }
     if (Status ended = file_->end_row_group(); !ended) return ended;
     return file_->bytes() > kBytesOfFile ? close_file() : Status(Done{});
   }
@@ -132,7 +132,7 @@ class LeRobotWriter final : public EpisodeSink {
   Status commit() override {
     Status done = file_ == nullptr ? Status(Done{}) : close_file();
     if (done) done = write_tasks();
-    if (done) done = write_episodes();
+    if (done) done = episodes_->finish();
     if (done) done = folder_->write("meta/stats.json", stats().dump(1));
     if (done) done = folder_->write("meta/info.json", info().dump(4));
     return done ? folder_->commit() : done;
@@ -195,21 +195,6 @@ class LeRobotWriter final : public EpisodeSink {
     return (*file)->finish({{"pandas", pandas.dump()}});
   }
 
-  Status write_episodes() const {
-    std::vector<ParquetColumn> columns;
-    std::vector<std::span<const std::byte>> values;
-    for (std::size_t k = 0; k < episodes_.numbers.size(); ++k) {
-      columns.push_back({EpisodeTable::kNames.at(k), ParquetType::int64});
-      values.push_back(std::as_bytes(std::span(episodes_.numbers.at(k))));
-    }
-    columns.push_back({"tasks", ParquetType::text, {1}});
-    values.push_back(bytes_of_text(episodes_.tasks));
-    auto file = ParquetFile::create(folder_->place("meta/episodes/chunk-000/file-000.parquet"), std::move(columns));
-    if (!file) return file.error();
-    (*file)->write(episode_, values);
-    return (*file)->finish();
-  }
-
   [[nodiscard]] Json stats() const {
     Json all = Json::object();
     for (std::size_t k = 0; k < columns_.size(); ++k) {
@@ -251,11 +236,12 @@ class LeRobotWriter final : public EpisodeSink {
 
   std::unique_ptr<OutputFolder> folder_;
   DatasetOptions options_;
-  std::vector<Column> columns_;  ///< Those of LeRobot at the end.
-  std::vector<ColumnStatistics> statistics_;
+  std::vector<Column> columns_;               ///< Those of LeRobot at the end.
+  std::vector<ColumnStatistics> statistics_;  ///< Of the episodes that have ended.
+  std::vector<ColumnStatistics> of_episode_;
   std::unique_ptr<ParquetFile> file_;
   std::size_t file_index_ = 0;
-  EpisodeTable episodes_;
+  std::unique_ptr<EpisodeTable> episodes_;
   std::size_t episode_ = 0;
   std::size_t steps_ = 0;  ///< Of the episodes that have ended.
   std::size_t steps_of_episode_ = 0;

@@ -35,6 +35,7 @@ std::int32_t number_of(ParquetType type) {
     case ParquetType::boolean: return 0;
     case ParquetType::int64: return 2;
     case ParquetType::float32: return 4;
+    case ParquetType::float64: return 5;
     case ParquetType::text: break;
   }
   return 6;

@@ -16,7 +16,7 @@
 
 namespace dermis::datasets {
 
-enum class ParquetType : std::uint8_t { boolean, int64, float32, text };
+enum class ParquetType : std::uint8_t { boolean, int64, float32, float64, text };
 
 struct ParquetColumn {
   std::string name;

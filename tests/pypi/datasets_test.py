@@ -172,6 +172,11 @@ class Datasets(CalibratedArray):
             numpy.testing.assert_allclose(columns["timestamp"][rows], numpy.arange(row["length"]) / FPS, rtol=1e-6)
             tactile = {name.removeprefix("observation.tactile."): values[rows] for name, values in columns.items()}
             self.check_episode(row["episode_index"], tactile)
+            stats = {name: {} for name in columns}
+            for name, value in row.items():
+                if name.startswith("stats/"):
+                    stats[name.removeprefix("stats/").rsplit("/", 1)[0]][name.rsplit("/", 1)[1]] = value
+            self.check_statistics(stats, {name: values[rows] for name, values in columns.items()})
         tasks = pandas.read_parquet(out / "meta/tasks.parquet")
         self.assertEqual((list(tasks.index), list(tasks["task_index"])), (["pick the cube"], [0]))
         self.check_statistics(json.loads((out / "meta/stats.json").read_text()), columns)
