@@ -54,15 +54,20 @@ class EpisodesInMemory final : public datasets::EpisodeSink {
   bool is_new_ = true;
 };
 
+/// By its type in C++: pybind11 of Debian reads the size of a dtype where numpy 2 no longer has it.
+template <typename T>
+py::array array_of(const std::vector<py::ssize_t>& shape, const std::vector<std::byte>& bytes) {
+  py::array_t<T> values(shape);
+  if (!bytes.empty()) std::memcpy(values.mutable_data(), bytes.data(), bytes.size());
+  return values;
+}
+
 py::array column_array(const Column& column, std::size_t steps, const std::vector<std::byte>& bytes) {
   std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(steps)};
   if (column.shape != std::vector<std::size_t>{1}) shape.insert(shape.end(), column.shape.begin(), column.shape.end());
-  const py::dtype type = column.type == ColumnType::float32 ? py::dtype::of<float>()
-                         : column.type == ColumnType::int64 ? py::dtype::of<std::int64_t>()
-                                                            : py::dtype::of<bool>();
-  py::array values(type, shape);
-  if (!bytes.empty()) std::memcpy(values.mutable_data(), bytes.data(), bytes.size());
-  return values;
+  if (column.type == ColumnType::float32) return array_of<float>(shape, bytes);
+  if (column.type == ColumnType::int64) return array_of<std::int64_t>(shape, bytes);
+  return array_of<bool>(shape, bytes);
 }
 
 /// Recordings as episodes, which are made when somebody asks for one.
