@@ -112,6 +112,13 @@ def evaluate(model, frames, loads):
     return json.loads(_evaluate_json(model, frames, loads))
 
 
+def extend_lerobot(old, new, recordings, *, model=None, window=1, columns=None, flat=False, starts_ns=None):
+    """A copy of a dataset of LeRobot v3 with tactile columns at the times of its steps."""
+    from dermis._lerobot import extend
+
+    extend(old, new, recordings, model=model, window=window, columns=columns, flat=flat, starts_ns=starts_ns)
+
+
 __all__ = [
     "ArrayDescription",
     "BadInput",
@@ -142,6 +149,7 @@ __all__ = [
     "calibrate",
     "circuit",
     "evaluate",
+    "extend_lerobot",
     "open",
     "read_array",
     "read_loads",

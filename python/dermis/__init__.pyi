@@ -398,6 +398,21 @@ class Dataset:
     def write(self, folder: _Path, *, format: str = "lerobot", task: str = "touch") -> None:
         """A dataset in a new folder, as "lerobot", "hdf5" (ACT), "robomimic" or "zarr"; memory stays the same."""
 
+def extend_lerobot(
+    old: _Path,
+    new: _Path,
+    recordings: _Path | Sequence[_Path],
+    *,
+    model: _Path | None = None,
+    window: int = 1,
+    columns: Sequence[str] | None = None,
+    flat: bool = False,
+    starts_ns: Sequence[int] | None = None,
+) -> None:
+    """A copy of a dataset of LeRobot v3 with tactile columns at the times of its steps; needs pyarrow. `old` stays as
+    it is. recordings: one for each episode, or one for all. starts_ns: when each episode begins, on the clock of its
+    recording; without them with its first frame. The others: as of Dataset."""
+
 class Load:
     """A load that was known while a frame was taken: newtons over all taxels of `where`, or pascals on each of them.
 

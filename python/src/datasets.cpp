@@ -169,6 +169,10 @@ std::unique_ptr<Dataset> make_dataset(const py::object& recordings, const py::ob
 }  // namespace
 
 void bind_datasets(py::module_& module) {
+  module.def(
+      "_first_time_ns",
+      [](const py::object& recording) { return value_or_raise(datasets::first_time(path_of(recording))).count(); },
+      py::arg("recording"));
   py::class_<Dataset>(module, "Dataset")
       .def(py::init(&make_dataset), py::arg("recordings"), py::kw_only(), py::arg("model") = py::none(),
            py::arg("fps") = 30.0, py::arg("window") = 1, py::arg("columns") = py::none(), py::arg("flat") = false,

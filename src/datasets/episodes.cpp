@@ -286,4 +286,15 @@ Result<EpisodeTally> make_episodes(const std::vector<std::string>& recordings, c
   return maker.tally();
 }
 
+Result<Nanos> first_time(const std::string& recording) {
+  Result<RecordedArrays> opened = RecordedArrays::open(recording, {}, {});
+  if (!opened) return opened.error();
+  std::size_t array = 0;
+  RawFrame frame;
+  const Result<bool> more = opened->next(array, frame);
+  if (!more) return more.error();
+  if (!*more) return bad_input(recording + ": has no frame");
+  return frame.time;
+}
+
 }  // namespace dermis::datasets

@@ -243,6 +243,12 @@ TEST_F(Episodes, name_topics_and_joints_that_are_not_there) {
             "/joint_states of " + other + ": has other columns than that of the first recording, which has elbow");
 }
 
+TEST_F(Episodes, tell_when_a_recording_begins) {
+  write_recording(folder_.file("later.mcap"), even_times(3, milliseconds(1234)));
+  EXPECT_EQ(first_time(folder_.file("later.mcap")).value(), milliseconds(1234));
+  EXPECT_FALSE(first_time(folder_.file("none.mcap")));
+}
+
 TEST_F(Episodes, name_what_is_wrong) {
   EXPECT_NE(error_of({path_}, {.fps = 0.0}).find("fps: must be"), std::string::npos);
   EXPECT_NE(error_of({path_}, {.window = 0}).find("window: must be"), std::string::npos);

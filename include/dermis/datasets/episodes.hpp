@@ -67,4 +67,7 @@ inline constexpr Nanos kLongestGap = std::chrono::seconds(10);
 [[nodiscard]] Result<EpisodeTally> make_episodes(const std::vector<std::string>& recordings,
                                                  const EpisodeOptions& options, EpisodeSink& sink);
 
+/// The time of the first frame of a recording, of whatever array.
+[[nodiscard]] Result<Nanos> first_time(const std::string& recording);
+
 }  // namespace dermis::datasets

@@ -1,0 +1,217 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 The dermis authors
+"""A dataset of LeRobot v3 gets tactile columns, as pyarrow and datasets read it.
+Usage: extend_lerobot_test.py DERMIS"""
+
+import hashlib
+import json
+import sys
+import unittest.mock
+from pathlib import Path
+
+import numpy
+import pandas
+import pyarrow
+import pyarrow.parquet
+
+import datasets
+
+sys.path.append(str(Path(__file__).resolve().parents[1] / "python"))
+import workspace
+
+import dermis
+
+FPS = 20
+STEPS = (25, 30, 18)  # of each episode
+FILES = ((0, 1), (2,))  # the episodes of each file of data
+WINDOW = 3
+START = 1_760_000_000_000_000_000
+OWN = ("timestamp", "frame_index", "episode_index", "index", "task_index")
+
+
+def digest(folder):
+    return {
+        str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+    }
+
+
+def data_of(folder):
+    files = sorted((folder / "data").glob("*/*.parquet"))
+    return pyarrow.concat_tables([pyarrow.parquet.read_table(file) for file in files])
+
+
+def values_of(table, name):
+    return numpy.asarray(table[name].to_pylist())
+
+
+def statistics(values):
+    values = values.astype(numpy.float64)
+    values = numpy.where(numpy.isfinite(values), values, numpy.nan)
+    return {
+        "min": numpy.nanmin(values, 0),
+        "max": numpy.nanmax(values, 0),
+        "mean": numpy.nanmean(values, 0),
+        "std": numpy.nanstd(values, 0),
+    }
+
+
+class ExtendedDatasets(workspace.CalibratedArray):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        frames = dermis.Recording.read(cls.frames)
+        cls.recordings = []
+        for episode in range(len(STEPS)):
+            recording = cls.folder / f"touch{episode}.mcap"
+            times = START + episode * 60 * 10**9 + numpy.arange(len(frames)) * 10**9 // 35
+            dermis.Recording(frames.counts[:, ::-1], time_ns=times, array=cls.array).write(recording)
+            cls.recordings.append(recording)
+        cls.old = cls.folder / "old"
+        cls.write_old()
+        cls.before = digest(cls.old)
+
+    @classmethod
+    def write_old(cls):
+        """As LeRobot writes it: by `datasets`, with statistics of its own and a video."""
+        random = numpy.random.default_rng(1)
+        features = datasets.Features(
+            {
+                "action": datasets.Sequence(datasets.Value("float32"), length=2),
+                "timestamp": datasets.Value("float32"),
+                **{name: datasets.Value("int64") for name in OWN[1:]},
+            }
+        )
+        rows = []
+        for episode, steps in enumerate(STEPS):
+            for step in range(steps):
+                own = (numpy.float32(step / FPS), step, episode, len(rows), 0)
+                rows.append({"action": random.normal(size=2).astype("float32"), **dict(zip(OWN, own, strict=True))})
+        (cls.old / "meta/episodes/chunk-000").mkdir(parents=True)
+        for file, episodes in enumerate(FILES):
+            table = datasets.Dataset.from_list(
+                [row for row in rows if row["episode_index"] in episodes], features=features
+            )
+            (cls.old / "data/chunk-000").mkdir(parents=True, exist_ok=True)
+            table.to_parquet(cls.old / f"data/chunk-000/file-{file:03}.parquet", batch_size=20)
+        episodes = {"episode_index": list(range(len(STEPS))), "length": list(STEPS)}
+        episodes["stats/action/q01"] = [[0.0, 0.1]] * len(STEPS)
+        pyarrow.parquet.write_table(pyarrow.table(episodes), cls.old / "meta/episodes/chunk-000/file-000.parquet")
+        pandas.DataFrame({"task_index": [0]}, index=["push"]).to_parquet(cls.old / "meta/tasks.parquet")
+        (cls.old / "meta/stats.json").write_text(json.dumps({"action": {"q01": [0.0, 0.1]}}))
+        shapes = {"action": ("float32", [2]), "timestamp": ("float32", [1]), **dict.fromkeys(OWN[1:], ("int64", [1]))}
+        info = {"codebase_version": "v3.0", "fps": FPS, "total_frames": len(rows), "robot_type": "so101"}
+        info["features"] = {
+            name: {"dtype": dtype, "shape": shape, "names": None} for name, (dtype, shape) in shapes.items()
+        }
+        (cls.old / "meta/info.json").write_text(json.dumps(info))
+        video = cls.old / "videos/front/chunk-000/file-000.mp4"
+        video.parent.mkdir(parents=True)
+        video.write_bytes(b"no real pictures")
+
+    def extend(self, recordings, **options):
+        new = self.folder / f"new-{self.id()}"
+        dermis.extend_lerobot(self.old, new, recordings, model=self.model, window=WINDOW, **options)
+        self.assertEqual(digest(self.old), self.before)
+        self.assertFalse(list(self.folder.glob(f".{new.name}*")))
+        return new
+
+    def expected(self, recordings, starts):
+        """The same columns of a dataset that is made at these times."""
+        times = [
+            start + numpy.round(numpy.float32(numpy.arange(steps) / FPS).astype(float) * 1e9).astype(numpy.int64)
+            for start, steps in zip(starts, STEPS, strict=True)
+        ]
+        made = dermis.Dataset(recordings, model=self.model, window=WINDOW, times_ns=times)
+        episodes = [made[episode] for episode in range(len(made))]
+        return {
+            f"observation.tactile.{name}": [episode[name] for episode in episodes]
+            for name in episodes[0]
+            if name.startswith("pad")
+        }
+
+    def check(self, new, expected):
+        old, table = data_of(self.old), data_of(new)
+        self.assertEqual(table.column_names, [*old.column_names, *expected])
+        for name in old.column_names:
+            self.assertTrue(table[name].equals(old[name]), name)
+        stats = json.loads((new / "meta/stats.json").read_text())
+        episodes = pyarrow.parquet.read_table(new / "meta/episodes/chunk-000/file-000.parquet")
+        self.assertEqual(episodes["stats/action/q01"].to_pylist(), [[0.0, 0.1]] * len(STEPS))
+        self.assertEqual(stats["action"], {"q01": [0.0, 0.1]})
+        for name, of_episodes in expected.items():
+            numpy.testing.assert_array_equal(values_of(table, name), numpy.concatenate(of_episodes), name)
+            self.expect_statistics(stats[name], numpy.concatenate(of_episodes), name)
+            for row, values in enumerate(of_episodes):
+                keys = ("min", "max", "mean", "std", "count")
+                got = {key: episodes[f"stats/{name}/{key}"][row].as_py() for key in keys}
+                self.expect_statistics(got, values, name)
+
+    def expect_statistics(self, got, values, name):
+        self.assertEqual(got["count"], [len(values)])
+        for key, value in statistics(values).items():
+            numpy.testing.assert_allclose(
+                numpy.asarray(got[key]).reshape(value.shape), value, rtol=1e-6, atol=1e-7, err_msg=f"{name} {key}"
+            )
+
+    def test_columns_have_the_times_of_the_steps_from_the_first_frame_on(self):
+        new = self.extend(self.recordings)
+        self.check(new, self.expected(self.recordings, [START + k * 60 * 10**9 for k in range(len(STEPS))]))
+        video = Path("videos/front/chunk-000/file-000.mp4")
+        self.assertTrue((new / video).samefile(self.old / video))
+        self.assertEqual((new / "meta/tasks.parquet").read_bytes(), (self.old / "meta/tasks.parquet").read_bytes())
+
+    def test_one_recording_has_all_episodes_where_they_begin(self):
+        starts = [START + 10**8, START + 3 * 10**8, START + 10**9]
+        new = self.extend(self.recordings[0], starts_ns=starts)
+        self.check(new, self.expected([self.recordings[0]] * len(STEPS), starts))
+
+    def test_datasets_loads_the_features_of_info(self):
+        new = self.extend(self.recordings, columns=["forces", "age"])
+        info = json.loads((new / "meta/info.json").read_text())
+        self.assertEqual(info["robot_type"], "so101")
+        forces = info["features"]["observation.tactile.pad"]
+        self.assertEqual(forces, {"dtype": "float32", "shape": [WINDOW, 5, 4], "names": ["window", "rows", "cols"]})
+        paths = [str(path) for path in sorted((new / "data").glob("*/*.parquet"))]
+        features = datasets.Features(
+            {
+                "action": datasets.Sequence(datasets.Value("float32"), length=2),
+                "timestamp": datasets.Value("float32"),
+                **{name: datasets.Value("int64") for name in OWN[1:]},
+                "observation.tactile.pad": datasets.Array3D((WINDOW, 5, 4), "float32"),
+                "observation.tactile.pad_age": datasets.Sequence(datasets.Value("float32"), length=WINDOW),
+            }
+        )
+        for how in ({"features": features}, {}):
+            cache = self.folder / f"cache{len(how)}"
+            loaded = datasets.Dataset.from_parquet(paths, cache_dir=str(cache), keep_in_memory=True, **how)
+            batch = loaded.with_format("numpy")[:7]["observation.tactile.pad"]
+            self.assertEqual(numpy.asarray(batch).shape, (7, WINDOW, 5, 4))
+
+    def refuse(self, part, old, recordings, **options):
+        new = self.folder / "refused"
+        with self.assertRaises(dermis.BadInput) as raised:
+            dermis.extend_lerobot(old, new, recordings, model=self.model, **options)
+        self.assertIn(part, str(raised.exception))
+        self.assertFalse(new.exists())
+        self.assertFalse(list(self.folder.glob(f".{new.name}*")))
+
+    def test_what_cannot_be_is_refused(self):
+        self.refuse("has 3 episodes, and there are 2 recordings", self.old, self.recordings[:2])
+        self.refuse("no JSON of LeRobot", self.folder, self.recordings)
+        self.refuse("has 2 times for 3 episodes", self.old, self.recordings, starts_ns=[0, 1])
+        self.refuse("episode 0: ends before the first frame", self.old, self.recordings, starts_ns=[0, START, START])
+        twice = self.extend(self.recordings)
+        self.refuse("has observation.tactile.pad already", twice, self.recordings)
+        with self.assertRaisesRegex(dermis.BadInput, "exists; name a new folder"):
+            dermis.extend_lerobot(self.old, twice, self.recordings)
+
+    def test_a_machine_without_pyarrow_is_told_so(self):
+        without = unittest.mock.patch.dict(sys.modules, {"pyarrow.parquet": None})
+        with without, self.assertRaisesRegex(dermis.Failed, "pip install pyarrow"):
+            dermis.extend_lerobot(self.old, self.folder / "none", self.recordings)
+
+
+if __name__ == "__main__":
+    workspace.main()
