@@ -31,7 +31,7 @@ def batches_of_zarr(folder: Path, array: str) -> Iterator[NDArray[Any]]:
 
     buffer = zarr.open(str(folder), mode="r")
     forces = buffer["data"][f"tactile_{array}"][:]
-    order = np.random.default_rng(1).permutation(buffer["meta/episode_ends"][-1])
+    order = np.random.default_rng(1).permutation(int(buffer["meta/episode_ends"][-1]))
     for first in range(0, len(order), BATCH):
         yield forces[order[first : first + BATCH]]
 

@@ -7,6 +7,7 @@ of the packages that it is made of, `datasets` and `pyarrow`."""
 
 import importlib.util
 import json
+import subprocess
 import sys
 import unittest
 from pathlib import Path
@@ -135,6 +136,16 @@ class Datasets(CalibratedArray):
         for episode, (begin, end) in enumerate(zip([0, *ends[:-1]], ends, strict=True)):
             self.check_episode(episode, {name: values[begin:end] for name, values in columns.items()})
 
+    def run_loading_example(self, out):
+        example = Path(__file__).resolve().parents[2] / "examples/python/load_dataset.py"
+        run = subprocess.run([sys.executable, example, out, "pad"], capture_output=True, text=True)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return run.stdout
+
+    def test_the_example_iterates_over_the_replay_buffer(self):
+        said = self.run_loading_example(self.make("zarr"))
+        self.assertRegex(said, r"^93 steps, the last batch of the shape \(13, 5, 5, 4\)$")
+
     def features_of(self, info):
         """As lerobot.datasets makes them of info.json."""
         kinds = {2: datasets.Array2D, 3: datasets.Array3D}
@@ -247,6 +258,7 @@ class Datasets(CalibratedArray):
         from lerobot.datasets.lerobot_dataset import LeRobotDataset
 
         out = self.make("lerobot")
+        self.assertRegex(self.run_loading_example(out), r"^93 steps")
         dataset = LeRobotDataset("dermis/test", root=out)
         self.assertEqual((dataset.num_episodes, dataset.num_frames), (EPISODES, len(dataset)))
         _, loaded = self.load(out)

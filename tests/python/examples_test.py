@@ -3,6 +3,7 @@
 """Every example of examples/python does what it says."""
 
 import os
+import re
 import subprocess
 import sys
 
@@ -41,6 +42,12 @@ class Examples(workspace.CalibratedArray):
 
     def test_robot_sensor(self):
         self.assertRegex(self.run_example("robot_sensor.py", self.uri(), self.model), r"\(5, 4\)} \d+\.\d\d N")
+
+    def test_grasp(self):
+        said = self.run_example("grasp.py", self.model)
+        closed, held = map(float, re.match(r"closed to ([\d.]+) mm; held ([\d.]+) N", said).groups())
+        self.assertAlmostEqual(held, 2.0, delta=0.2)
+        self.assertAlmostEqual(40 - closed, 2.0 / 0.8, delta=1.0)  # by the stiffness of the object
 
     def test_train_on_touch(self):
         said = self.run_example("train_on_touch.py", self.model, self.frames, self.frames, "--seconds", 0.5)
