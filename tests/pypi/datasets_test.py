@@ -188,6 +188,11 @@ class Datasets(CalibratedArray):
                 if name.startswith("stats/"):
                     stats[name.removeprefix("stats/").rsplit("/", 1)[0]][name.rsplit("/", 1)[1]] = value
             self.check_statistics(stats, {name: values[rows] for name, values in columns.items()})
+        # LeRobot's loader of this table infers the features, statistics included.
+        table = datasets.Dataset.from_parquet(
+            str(out / "meta/episodes/chunk-000/file-000.parquet"), cache_dir=str(self.folder / "cache")
+        )
+        self.assertEqual(list(table["length"]), [row["length"] for row in episodes])
         tasks = pandas.read_parquet(out / "meta/tasks.parquet")
         self.assertEqual((list(tasks.index), list(tasks["task_index"])), (["pick the cube"], [0]))
         self.check_statistics(json.loads((out / "meta/stats.json").read_text()), columns)
