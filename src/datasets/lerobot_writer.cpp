@@ -116,7 +116,7 @@ class LeRobotWriter final : public EpisodeSink {
     const auto from = static_cast<std::int64_t>(steps_);
     steps_ += steps_of_episode_;
     const auto length = static_cast<std::int64_t>(std::exchange(steps_of_episode_, 0));
-    const Status added = episodes_->add(
+    Status added = episodes_->add(
         {static_cast<std::int64_t>(episode_++), length, static_cast<std::int64_t>(file_index_ / kFilesOfChunk),
          static_cast<std::int64_t>(file_index_ % kFilesOfChunk), from, static_cast<std::int64_t>(steps_), 0, 0},
         options_.task, of_episode_);

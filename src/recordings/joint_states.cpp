@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/recordings/joint_states.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -48,8 +50,7 @@ Status read_joint_states(const std::string& path, const std::string& topic,
     const McapChannel& channel = (*mcap)->channels().at(message.channel);
     if (channel.topic != topic || !has_joints(channel)) continue;
     if (Status decoded = messages::decode_joint_state(message.data, joints); !decoded) {
-      return bad_input(path + ": message " + std::to_string(message.sequence) + " of " + topic + ": " +
-                       decoded.error().message);
+      return bad_input(fmt::format("{}: message {} of {}: {}", path, message.sequence, topic, decoded.error().message));
     }
     const std::uint64_t longest = std::numeric_limits<std::int64_t>::max();
     take(Nanos(static_cast<std::int64_t>(std::min(message.log_time, longest))), joints);
