@@ -4,6 +4,7 @@
 Usage: extend_lerobot_test.py DERMIS"""
 
 import hashlib
+import importlib.util
 import json
 import sys
 import unittest.mock
@@ -188,6 +189,49 @@ class ExtendedDatasets(workspace.CalibratedArray):
             loaded = datasets.Dataset.from_parquet(paths, cache_dir=str(cache), keep_in_memory=True, **how)
             batch = loaded.with_format("numpy")[:7]["observation.tactile.pad"]
             self.assertEqual(numpy.asarray(batch).shape, (7, WINDOW, 5, 4))
+
+    def lerobot_dataset(self):
+        from lerobot.datasets.lerobot_dataset import LeRobotDataset
+
+        features = {
+            "action": {"dtype": "float32", "shape": (2,), "names": ["elbow", "wrist"]},
+            "observation.images.front": {
+                "dtype": "image",
+                "shape": (8, 8, 3),
+                "names": ["height", "width", "channels"],
+            },
+        }
+        old = LeRobotDataset.create("dermis/old", FPS, features, root=self.folder / "lerobot", use_videos=False)
+        random = numpy.random.default_rng(1)
+        for steps in STEPS:
+            for _ in range(steps):
+                picture = random.integers(0, 255, (8, 8, 3), dtype=numpy.uint8)
+                action = random.normal(size=2).astype(numpy.float32)
+                old.add_frame({"action": action, "observation.images.front": picture, "task": "push"})
+            old.save_episode()
+        old.finalize()
+        return LeRobotDataset("dermis/old", root=old.root)
+
+    @unittest.skipUnless(
+        importlib.util.find_spec("lerobot"), "lerobot is not installed: torch is too large for the gate"
+    )
+    def test_lerobot_itself_loads_and_splits_its_own_dataset_with_touch(self):
+        from lerobot.datasets.dataset_tools import delete_episodes
+        from lerobot.datasets.lerobot_dataset import LeRobotDataset
+
+        old, new = self.lerobot_dataset(), self.folder / "lerobot_touch"
+        dermis.extend_lerobot(old.root, new, self.recordings, model=self.model, window=WINDOW, flat=True)
+        extended = LeRobotDataset("dermis/new", root=new)
+        self.assertEqual((len(extended), extended.num_episodes), (sum(STEPS), len(STEPS)))
+        forces = []
+        for before, after in zip(old, extended, strict=True):
+            for name, value in before.items():
+                self.assertEqual(repr(value), repr(after[name]), name)
+            forces.append(after["observation.tactile.pad"].numpy())
+        less = delete_episodes(extended, [1], output_dir=self.folder / "less", repo_id="dermis/less")
+        left = numpy.array(forces[: STEPS[0]] + forces[-STEPS[2] :])
+        self.assertEqual(len(less), len(left))
+        self.expect_statistics(less.meta.stats["observation.tactile.pad"], left, "observation.tactile.pad")
 
     def refuse(self, part, old, recordings, **options):
         new = self.folder / "refused"
