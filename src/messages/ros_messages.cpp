@@ -237,7 +237,7 @@ void encode_raw_frame(const RawFrame& frame, const FrameShape& shape, std::strin
   write_header(writer, frame.time, frame_id);
   write_acquisition(writer, frame);
   write_optional(writer, frame.temperature_celsius);
-  writer.write_floats({});
+  writer.write_floats(frame.sensor_celsius);
   writer.write(static_cast<std::uint32_t>(shape.rows));
   writer.write(static_cast<std::uint32_t>(shape.cols));
   writer.write_floats(frame.counts);
@@ -248,7 +248,7 @@ Result<FrameShape> decode_raw_frame(std::span<const std::uint8_t> message, RawFr
   static_cast<void>(read_header(reader));
   read_acquisition(reader, frame);
   frame.temperature_celsius = read_optional<double>(reader);
-  reader.read_floats(frame.counts);  // of temperature sensors, until frames have several
+  reader.read_floats(frame.sensor_celsius);
   const std::size_t rows = reader.read<std::uint32_t>();
   const std::size_t cols = reader.read<std::uint32_t>();
   reader.read_floats(frame.counts);

@@ -11,13 +11,13 @@ FIRST = dict(zip((name for name, _, _ in REGIONS), np.cumsum([0] + [r * c for _,
 
 
 def table_of(path):
-    """Readings and temperatures of a frames.csv, a line a frame; temperatures are None where there are none."""
+    """Readings and temperatures of sensors in a frames.csv, a line a frame."""
     with open(path) as file:
         names = file.readline().strip().split(",")
     values = np.genfromtxt(path, delimiter=",", skip_header=1, ndmin=2)
     taxels = [k for k, name in enumerate(names) if name[0] == "r" and name[1].isdigit()]
-    celsius = values[:, names.index("temperature_celsius")] if "temperature_celsius" in names else None
-    return values[:, taxels], celsius
+    sensors = [k for k, name in enumerate(names) if name.startswith("sensor")]
+    return values[:, taxels], values[:, sensors]
 
 
 def module_sent(k, m, messages):
@@ -27,9 +27,8 @@ def module_sent(k, m, messages):
     pressures = (100000 + 1000 * k + 100 * m + t + 16 * (n % 5000)).astype(float)
     sensors = 20 + k + m / 2 + t / 16 + (n % 64) / 8
     if m == 8:
-        pressures[:, 11] = np.nan
-        sensors = sensors[:, :11]
-    return pressures, sensors.mean(axis=1)
+        pressures[:, 11] = sensors[:, 11] = np.nan
+    return pressures, sensors
 
 
 def touch_sent(seed, first, taxels, answers):

@@ -168,6 +168,7 @@ RawFrame random_frame(std::size_t taxels, Random& random) {
   frame.acquisition.held_taxels = static_cast<std::uint32_t>(random.bits());
   if (random.below(2) == 0) frame.supply_v = random.normal();
   if (random.below(2) == 0) frame.temperature_celsius = random.normal();
+  for (std::size_t k = random.below(4); k > 0; --k) frame.sensor_celsius.push_back(static_cast<float>(random.normal()));
   for (std::size_t i = 0; i < taxels; ++i) {
     frame.counts.push_back(std::bit_cast<float>(static_cast<std::uint32_t>(random.bits())));
   }
@@ -205,6 +206,7 @@ TEST(RawFrameMessage, every_field_reads_back_with_its_bits) {
     EXPECT_EQ(again.acquisition, frame.acquisition);
     EXPECT_EQ(again.supply_v, frame.supply_v);
     EXPECT_EQ(again.temperature_celsius, frame.temperature_celsius);
+    EXPECT_EQ(again.sensor_celsius, frame.sensor_celsius);
   }
 }
 

@@ -40,6 +40,7 @@ RawFrame raw_frame() {
   frame.time = kTime;
   frame.counts = {1, 2, 258, 4, 5, 65535};
   frame.temperature_celsius = 31.5;
+  frame.sensor_celsius = {30.5F, 32.5F};
   frame.supply_v = 5.02;
   frame.acquisition.sequence = 1ULL << 40U;
   frame.acquisition.device_time = Nanos(-7);
