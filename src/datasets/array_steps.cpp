@@ -68,7 +68,10 @@ std::vector<Column> columns_of(const RecordedArrays::Array& array, const RawFram
     add("contacts",
         {array.name, "", ColumnType::float32, {kContactsOfStep, kNumbersOfContact}, {"contacts", "quantities"}});
   }
-  if (first.temperature_celsius) add("temperature", {array.name, "", ColumnType::float32, {1}, {"celsius"}});
+  const std::size_t sensors = std::max<std::size_t>(1, first.sensor_celsius.size());
+  if (first.temperature_celsius || !first.sensor_celsius.empty()) {
+    add("temperature", {array.name, "", ColumnType::float32, {sensors}, {sensors > 1 ? "sensors" : "celsius"}});
+  }
   if (first.supply_v) add("supply", {array.name, "", ColumnType::float32, {1}, {"volts"}});
   return columns;
 }
@@ -81,6 +84,9 @@ Result<ArraySteps> ArraySteps::create(const RecordedArrays::Array& array, std::s
   Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(*array.model);
   if (!pipeline) return pipeline.error();
   steps.pipeline_.emplace(*std::move(pipeline));
+  for (const Column& column : steps.columns_) {
+    if (column.quantity == "temperature") steps.last_.celsius.resize(column.elements());
+  }
   const auto is_contacts = [](const Column& column) { return column.quantity == "contacts"; };
   if (std::any_of(steps.columns_.begin(), steps.columns_.end(), is_contacts)) {
     steps.tracker_.emplace(array.model->array, contacts::ContactOptions{}, array.model->strip);
@@ -120,6 +126,17 @@ void ArraySteps::keep_contacts(Values& values) {
   }
 }
 
+/// Where a sensor has no reading, it has its last one.
+void ArraySteps::keep_temperatures(const RawFrame& raw) {
+  std::vector<float>& celsius = last_.celsius;
+  if (raw.sensor_celsius.empty() && raw.temperature_celsius && std::isfinite(*raw.temperature_celsius)) {
+    std::fill(celsius.begin(), celsius.end(), static_cast<float>(*raw.temperature_celsius));
+  }
+  for (std::size_t k = 0; k < std::min(celsius.size(), raw.sensor_celsius.size()); ++k) {
+    if (std::isfinite(raw.sensor_celsius[k])) celsius[k] = raw.sensor_celsius[k];
+  }
+}
+
 void ArraySteps::process(const RawFrame& raw) {
   ++tally_.frames;
   if (pipeline_) pipeline_->process(raw, force_);
@@ -141,9 +158,9 @@ void ArraySteps::process(const RawFrame& raw) {
     keep_forces(values);
   }
   if (tracker_) keep_contacts(values);
-  if (raw.temperature_celsius) last_.temperature_celsius = static_cast<float>(*raw.temperature_celsius);
-  if (raw.supply_v) last_.supply_v = static_cast<float>(*raw.supply_v);
-  values.temperature_celsius = last_.temperature_celsius;
+  keep_temperatures(raw);
+  if (raw.supply_v) last_.supply_v.assign(1, static_cast<float>(*raw.supply_v));
+  values.celsius = last_.celsius;
   values.supply_v = last_.supply_v;
 }
 
@@ -165,10 +182,15 @@ void ArraySteps::append_ages(Nanos step, std::vector<std::byte>& bytes) const {
   }
 }
 
-void ArraySteps::append_newest(float Values::*member, std::vector<std::byte>& bytes) const {
+/// Zeros where there is no frame yet.
+void ArraySteps::append_newest(std::vector<float> Values::*member, std::size_t elements,
+                               std::vector<std::byte>& bytes) const {
   const auto& held = window_.held();
-  const float value = held.empty() ? 0.0F : slots_[held.back().slot].*member;
-  append(&value, 1, bytes);
+  if (held.empty()) {
+    bytes.resize(bytes.size() + elements * sizeof(float));
+  } else {
+    append((slots_[held.back().slot].*member).data(), elements, bytes);
+  }
 }
 
 void ArraySteps::append_row(const Column& column, Nanos step, std::vector<std::byte>& bytes) const {
@@ -179,19 +201,12 @@ void ArraySteps::append_row(const Column& column, Nanos step, std::vector<std::b
   if (quantity == "raw") append_window(&Values::counts, taxels, bytes);
   if (quantity == "valid") append_window(&Values::valid, taxels, bytes);
   if (quantity == "age") append_ages(step, bytes);
-  if (quantity == "temperature") append_newest(&Values::temperature_celsius, bytes);
-  if (quantity == "supply") append_newest(&Values::supply_v, bytes);
+  if (quantity == "temperature") append_newest(&Values::celsius, column.elements(), bytes);
+  if (quantity == "supply") append_newest(&Values::supply_v, 1, bytes);
+  if (quantity == "contacts") append_newest(&Values::contacts, column.elements(), bytes);
   if (quantity == "fresh") {
     const auto fresh = static_cast<std::int64_t>(window_.fresh());
     append(&fresh, 1, bytes);
-  }
-  if (quantity == "contacts") {
-    const auto& held = window_.held();
-    if (held.empty()) {
-      bytes.resize(bytes.size() + column.row_bytes());
-    } else {
-      append(slots_[held.back().slot].contacts.data(), column.elements(), bytes);
-    }
   }
 }
 

@@ -41,8 +41,8 @@ class ArraySteps {
     std::vector<float> counts;
     std::vector<std::uint8_t> valid;
     std::vector<float> contacts;
-    float temperature_celsius = 0.0F;
-    float supply_v = 0.0F;
+    std::vector<float> celsius;         // of each sensor
+    std::vector<float> supply_v{0.0F};  // one
   };
 
   ArraySteps(const RecordedArrays::Array& array, std::size_t window, std::vector<Column> columns)
@@ -50,11 +50,12 @@ class ArraySteps {
   void process(const RawFrame& raw);
   void keep_forces(Values& values);
   void keep_contacts(Values& values);
+  void keep_temperatures(const RawFrame& raw);
   void append_row(const Column& column, Nanos step, std::vector<std::byte>& bytes) const;
   template <typename T>
   void append_window(std::vector<T> Values::*member, std::size_t elements, std::vector<std::byte>& bytes) const;
   void append_ages(Nanos step, std::vector<std::byte>& bytes) const;
-  void append_newest(float Values::*member, std::vector<std::byte>& bytes) const;
+  void append_newest(std::vector<float> Values::*member, std::size_t elements, std::vector<std::byte>& bytes) const;
 
   RecordedArrays::Array array_;
   FrameWindow window_;

@@ -95,6 +95,7 @@ Status Maker::decide_columns() {
   for (std::size_t k = batch_count_; k-- > 0;) {
     RawFrame& seen = first[batch_[k].array];
     if (batch_[k].frame.temperature_celsius) seen.temperature_celsius = batch_[k].frame.temperature_celsius;
+    if (!batch_[k].frame.sensor_celsius.empty()) seen.sensor_celsius = batch_[k].frame.sensor_celsius;
     if (batch_[k].frame.supply_v) seen.supply_v = batch_[k].frame.supply_v;
   }
   columns_ = {{"", kTimeNs, ColumnType::int64, {1}, {"ns"}}};

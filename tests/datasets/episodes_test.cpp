@@ -164,6 +164,26 @@ TEST_F(Episodes, have_the_windows_and_ages_of_all_arrays) {
   EXPECT_EQ(tally->arrays[0].missed + tally->arrays[1].missed, 0U);
 }
 
+TEST_F(Episodes, have_the_temperature_of_each_sensor) {
+  const std::string path = folder_.file("sensors.mcap");
+  const auto writer = recordings::SuitRecordingWriter::create(path, {{.name = "tip", .shape = {1, 1}}});
+  ASSERT_TRUE(writer) << writer.error().message;
+  RawFrame frame;
+  frame.counts = {1.0F};
+  for (int k = 0; k < 50; ++k) {
+    frame.time = milliseconds(10 * k);
+    frame.sensor_celsius = {20.0F, k == 0 ? 30.0F : std::numeric_limits<float>::quiet_NaN()};
+    ASSERT_TRUE((*writer)->write(0, frame));
+  }
+  ASSERT_TRUE((*writer)->commit());
+  Kept kept;
+  ASSERT_TRUE(make_episodes({path}, {.fps = 20.0}, kept));
+  EXPECT_EQ(kept.axes("tip_temperature"), (std::vector<std::string>{"sensors"}));
+  const std::vector<float> celsius = kept.column<float>("tip_temperature");
+  ASSERT_GT(celsius.size(), 2U);
+  for (std::size_t k = 0; k < celsius.size(); ++k) EXPECT_EQ(celsius[k], k % 2 == 0 ? 20.0F : 30.0F) << "the last one";
+}
+
 TEST_F(Episodes, count_what_too_short_a_window_misses_and_say_how_long_it_must_be) {
   Kept kept;
   const Result<EpisodeTally> tally = make_episodes({path_}, {.fps = 20.0, .window = 2}, kept);
