@@ -150,14 +150,13 @@ def extend(old, new, recordings, *, model, window, columns, flat, starts_ns):
         raise BadInput(f"{old}: is no dataset of LeRobot v3")
     numbers, stamps = steps_of_episodes(parquet, old)
     recordings = [recordings] if isinstance(recordings, (str, os.PathLike)) else list(recordings)
-    if len(recordings) == 1 and starts_ns is not None:
-        recordings *= len(stamps)
-    if len(recordings) != len(stamps):
+    is_one = len(recordings) == 1 and starts_ns is not None
+    if len(recordings) != len(stamps) and not is_one:
         raise BadInput(
             f"{old}: has {len(stamps)} episodes, and there are {len(recordings)} recordings; give one for "
             "each, or one for all with starts_ns"
         )
-    times = times_of_steps(recordings, numbers, stamps, starts_ns)
+    times = times_of_steps(recordings * len(stamps) if is_one else recordings, numbers, stamps, starts_ns)
     new.absolute().parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=f".{new.name}.", dir=new.absolute().parent) as work:
         made, tactile = Path(work) / "made", Path(work) / "tactile"

@@ -159,10 +159,6 @@ std::unique_ptr<Dataset> make_dataset(const py::object& recordings, const py::ob
   options.states = paths_of(state);
   options.actions = paths_of(action);
   options.times = times_of(times_ns);
-  if (!options.times.empty() && options.times.size() != paths.size()) {
-    throw py::value_error("times_ns: has " + std::to_string(options.times.size()) + " arrays for " +
-                          std::to_string(paths.size()) + " recordings");
-  }
   return std::make_unique<Dataset>(std::move(paths), std::move(options));
 }
 

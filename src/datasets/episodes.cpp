@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <span>
 #include <utility>
@@ -31,13 +32,20 @@ constexpr std::size_t kMostStepsOfBlock = 256;
 constexpr std::size_t kMostBytesOfStep = std::size_t{256} << 20U;
 constexpr const char* kTimeNs = "time_ns";
 
+std::vector<Nanos> joined(const std::vector<std::vector<Nanos>>& times) {
+  std::vector<Nanos> all;
+  for (const std::vector<Nanos>& some : times) all.insert(all.end(), some.begin(), some.end());
+  return all;
+}
+
 /// Makes episodes of one recording after the other.
 ///
 /// Many members: a batch and a block keep their buffers from one to the next.
 class Maker {
  public:
-  Maker(const EpisodeOptions& options, ArrayModels models, std::vector<RobotSeries> series, EpisodeSink& sink)
-      : options_(options), models_(std::move(models)), series_(std::move(series)), sink_(sink) {}
+  Maker(const EpisodeOptions& options, ArrayModels models, std::vector<RobotSeries> series, EpisodeSink& sink,
+        bool is_split)
+      : options_(options), models_(std::move(models)), series_(std::move(series)), sink_(sink), is_split_(is_split) {}
 
   [[nodiscard]] Status add(const std::string& from, std::size_t number);
   [[nodiscard]] EpisodeTally tally() const { return tally_; }
@@ -56,12 +64,15 @@ class Maker {
   [[nodiscard]] Status end_episode();
   [[nodiscard]] Status write_steps(bool is_over);
   [[nodiscard]] Status write_steps(std::span<const Nanos> times);
+  [[nodiscard]] Status end_split_episode();
+  [[nodiscard]] std::size_t most_steps() const;
   [[nodiscard]] bool is_gap(Nanos time) const;
 
   const EpisodeOptions& options_;
   ArrayModels models_;
   std::vector<RobotSeries> series_;
   EpisodeSink& sink_;
+  bool is_split_;  ///< Each of the times is an episode of the only recording.
   std::optional<RecordedArrays> recorded_;
   std::vector<RecordedArrays::Array> arrays_;
   std::vector<Column> columns_;
@@ -127,7 +138,7 @@ Status Maker::begin_episode(const std::string& from, std::size_t number) {
   if (options_.times.empty()) {
     plan_.emplace(arrays_.size(), options_.window, options_.fps);
   } else {
-    plan_.emplace(arrays_.size(), options_.times[number]);
+    plan_.emplace(arrays_.size(), is_split_ ? joined(options_.times) : options_.times[number]);
   }
   return Done{};
 }
@@ -192,14 +203,29 @@ Status Maker::write_steps(std::span<const Nanos> times) {
   return sink_.write(block_);
 }
 
+/// Steps that one block may have: those of the episode that are left.
+std::size_t Maker::most_steps() const {
+  if (!is_split_ || tally_.episodes == options_.times.size()) return steps_of_block_;
+  return std::min(steps_of_block_, options_.times[tally_.episodes].size() - steps_of_episode_);
+}
+
+/// Windows go on from one episode of a recording to the next.
+Status Maker::end_split_episode() {
+  if (!is_split_ || steps_of_episode_ == 0 || steps_of_episode_ < options_.times[tally_.episodes].size()) return Done{};
+  steps_of_episode_ = 0;
+  ++tally_.episodes;
+  return sink_.end_episode();
+}
+
 Status Maker::write_steps(bool is_over) {
   const std::vector<Nanos> due = plan_->take_due(is_over);
   std::span<const Nanos> left = due;
   do {
     if (options_.stop != nullptr && options_.stop->load()) return failed("interrupted; nothing is written");
-    const std::span<const Nanos> now = left.first(std::min(left.size(), steps_of_block_));
+    const std::span<const Nanos> now = left.first(std::min(left.size(), most_steps()));
     left = left.subspan(now.size());
     if (Status written = write_steps(now); !written) return written;
+    if (Status ended = end_split_episode(); !ended) return ended;
   } while (!left.empty());
   if (options_.progressed) options_.progressed(tally_.steps);
   return Done{};
@@ -249,6 +275,24 @@ Status Maker::add(const std::string& from, std::size_t number) {
   return end_episode();
 }
 
+bool is_rising(const std::vector<Nanos>& times) {
+  return std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()) == times.end();
+}
+
+/// Times of the steps of each recording, or of each episode of the only one.
+Status check_times(const std::vector<std::vector<Nanos>>& times, std::size_t recordings) {
+  if (times.empty()) return Done{};
+  const bool is_split = recordings == 1 && times.size() > 1;
+  if (!is_split && times.size() != recordings) {
+    return bad_field("times", fmt::format("are of {} recordings in place of {}", times.size(), recordings));
+  }
+  if (std::ranges::any_of(times, [](const auto& some) { return some.empty(); })) {
+    return bad_field("times", "leave an episode without steps");
+  }
+  const bool rise = is_split ? is_rising(joined(times)) : std::ranges::all_of(times, is_rising);
+  return rise ? Status(Done{}) : bad_field("times", "must rise, also from one episode of a recording to the next");
+}
+
 /// "age, fresh, ... or valid"
 Status check_quantities(const std::vector<std::string>& quantities) {
   for (const std::string& name : quantities) {
@@ -275,11 +319,13 @@ Result<EpisodeTally> make_episodes(const std::vector<std::string>& recordings, c
                                    EpisodeSink& sink) {
   if (Status valid = options.validate(); !valid) return valid.error();
   if (recordings.empty()) return bad_input("name a recording");
+  if (Status right = check_times(options.times, recordings.size()); !right) return right.error();
   Result<std::vector<RobotSeries>> series = RobotSeries::choose(recordings, options);
   if (!series) return series.error();
   Result<ArrayModels> models = ArrayModels::read(options.model);
   if (!models) return models.error();
-  Maker maker(options, *std::move(models), *std::move(series), sink);
+  const bool is_split = recordings.size() == 1 && options.times.size() > 1;
+  Maker maker(options, *std::move(models), *std::move(series), sink, is_split);
   for (std::size_t k = 0; k < recordings.size(); ++k) {
     if (Status added = maker.add(recordings[k], k); !added) return added.error();
   }

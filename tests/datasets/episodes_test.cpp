@@ -214,6 +214,35 @@ TEST_F(Episodes, have_steps_at_given_times_and_the_state_of_the_robot) {
   EXPECT_EQ(kept.names(), (std::vector<std::string>{"time_ns", "state", "left_hand_fresh", "chest_fresh"}));
 }
 
+TEST_F(Episodes, of_given_times_are_several_of_a_recording) {
+  EpisodeOptions options{.window = 3, .quantities = {"raw", "fresh"}};
+  options.times = {
+      {milliseconds(105), milliseconds(115)}, {milliseconds(125)}, {milliseconds(505), milliseconds(2000)}};
+  Kept kept;
+  const Result<EpisodeTally> made = make_episodes({path_}, options, kept);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_EQ(made->episodes, 3U);
+  EXPECT_EQ(kept.ends(), (std::vector<std::size_t>{2, 3, 5}));
+  EXPECT_EQ(kept.column<std::int64_t>("left_hand_fresh"), (std::vector<std::int64_t>{3, 1, 1, 3, 3}));
+  const std::vector<float> raw = kept.column<float>("left_hand_raw");  // 3 frames of 2 taxels a step
+  EXPECT_EQ(raw[3 * 2 * 2], 10.0F);
+  EXPECT_EQ(raw[3 * 2 * 3], 48.0F);
+  EXPECT_EQ(raw.back(), 99.0F);
+}
+
+TEST_F(Episodes, need_times_that_rise_and_are_of_their_recordings) {
+  const auto error = [&](const std::vector<std::vector<Nanos>>& times, std::size_t recordings) {
+    EpisodeOptions options;
+    options.times = times;
+    return error_of(std::vector<std::string>(recordings, path_), options);
+  };
+  EXPECT_EQ(error({{Nanos(1)}, {Nanos(2)}, {Nanos(3)}}, 2), "times: are of 3 recordings in place of 2");
+  EXPECT_EQ(error({{Nanos(1)}, {}}, 1), "times: leave an episode without steps");
+  EXPECT_EQ(error({{Nanos(2)}, {Nanos(2)}}, 1), "times: must rise, also from one episode of a recording to the next");
+  EXPECT_EQ(error({{Nanos(2), Nanos(1)}, {Nanos(2)}}, 2),
+            "times: must rise, also from one episode of a recording to the next");
+}
+
 TEST_F(Episodes, have_the_joints_that_the_recordings_hold_as_state) {
   const double none = std::numeric_limits<double>::quiet_NaN();
   write_robot(folder_.file("1.mcap"), {{"/joint_states", milliseconds(100), {{"elbow", 1}, {"wrist", none}}},

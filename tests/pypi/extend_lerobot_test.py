@@ -164,9 +164,14 @@ class ExtendedDatasets(workspace.CalibratedArray):
         self.assertEqual((new / "meta/tasks.parquet").read_bytes(), (self.old / "meta/tasks.parquet").read_bytes())
 
     def test_one_recording_has_all_episodes_where_they_begin(self):
-        starts = [START + 10**8, START + 3 * 10**8, START + 10**9]
-        new = self.extend(self.recordings[0], starts_ns=starts)
-        self.check(new, self.expected([self.recordings[0]] * len(STEPS), starts))
+        long = self.folder / "long.mcap"
+        frames = dermis.Recording.read(self.frames)
+        times = START + numpy.arange(len(frames)) * 10**8
+        dermis.Recording(frames.counts, time_ns=times, array=self.array).write(long)
+        starts = [START + 5 * 10**8, START + 2 * 10**9, START + 45 * 10**8]
+        new = self.extend(long, starts_ns=starts)
+        self.check(new, self.expected([long] * len(STEPS), starts))
+        self.refuse("must rise", self.old, long, starts_ns=[*starts[:2], starts[1]])
 
     def test_datasets_loads_the_features_of_info(self):
         new = self.extend(self.recordings, columns=["forces", "age"])

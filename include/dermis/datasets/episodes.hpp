@@ -34,7 +34,8 @@ struct EpisodeOptions {
   /// newest numbers. Without states, the only topic of joints that all recordings have is the state.
   std::vector<std::string> states{};
   std::vector<std::string> actions{};
-  /// Times of the steps of each recording, which rise, in place of `fps`. Empty: those of a clock.
+  /// Times of the steps of each recording, which rise, in place of `fps`. Those of a single recording may be of several
+  /// episodes, one after the other. Empty: those of a clock.
   std::vector<std::vector<Nanos>> times{};
   const std::atomic<bool>* stop = nullptr;                ///< Set: ends the work, and nothing is written.
   std::function<void(const std::string&)> notice{};       ///< Receives one line on what a user should know.
