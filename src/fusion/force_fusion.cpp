@@ -170,6 +170,8 @@ void ForceFusion::find_temperatures(const ConductanceFrame& conductance, ForceFr
     temperatures_.offset[taxel] = own.offset;
     temperatures_.sigma[taxel] = static_cast<float>(own.sigma);
     temperatures_.unlearned_variance[taxel] = own.unlearned_variance();
+    temperatures_.of_array.sigma = std::max(temperatures_.of_array.sigma, own.sigma);
+    temperatures_.of_array.outside = std::max(std::abs(temperatures_.of_array.outside), std::abs(own.outside));
   }
 }
 

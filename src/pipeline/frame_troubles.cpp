@@ -27,7 +27,8 @@ FrameTroubles::FrameTroubles(const ArrayDescription& array, const std::string& f
     : prefix_(from.empty() ? "" : from + ": "),
       missing_(array),
       zero_(array.readout.quantity == Quantity::counts ? std::optional<std::size_t>(0) : std::nullopt),
-      rows_(array.rows) {}
+      rows_(array.rows),
+      sensors_(array.temperature_sensors.size()) {}
 
 void FrameTroubles::add(const RawFrame& raw, const ForceFrame& force, const Pipeline& pipeline,
                         const FrameSource* source) {
@@ -59,11 +60,15 @@ void FrameTroubles::add_doubts(const RawFrame& raw, const ForceFrame& force, con
         "with a supply outside of the calibration, the first: {:.3g} V, where {:.3g} to {:.3g} V are trusted",
         *raw.supply_v, least_v, most_v);
   }
-  const bool is_clamped = has(force.status, FrameStatus::temperature_clamped);
-  if (is_clamped && preprocessing::looks_like_kelvin(*raw.temperature_celsius) && kelvin_.frames++ == 0) {
+  const std::optional<double> kelvin = preprocessing::kelvin_in(raw);
+  if (has(force.status, FrameStatus::temperature_clamped) && kelvin && kelvin_.frames++ == 0) {
     kelvin_.what = fmt::format(
         "with a temperature that no sheet has, the first: {:.1f} C: it looks like kelvin, give degrees Celsius",
-        *raw.temperature_celsius);
+        *kelvin);
+  }
+  if (raw.sensor_celsius.size() != sensors_ && other_sensors_.frames++ == 0) {
+    other_sensors_.what = fmt::format("with temperatures of {} sensors, where array.temperature_sensors has {} places",
+                                      raw.sensor_celsius.size(), sensors_);
   }
   if (is_silent(raw, force, pipeline) && silent_.frames++ == 0) {
     silent_.what = fmt::format("with all readings 0, where untouched taxels read more: {}", kPowered);
@@ -118,7 +123,7 @@ std::vector<std::string> FrameTroubles::describe() const {
     lines.push_back(fmt::format(
         "{} of {} frames with faulty lines or taxels, which are masked: a diagnosis tells which", faulty_, frames_));
   }
-  for (const Doubt* doubt : {&supply_, &kelvin_, &silent_}) {
+  for (const Doubt* doubt : {&supply_, &kelvin_, &other_sensors_, &silent_}) {
     if (doubt->frames > 0) lines.push_back(describe(*doubt));
   }
   if (const auto line = silence()) lines.push_back(*line);

@@ -39,6 +39,10 @@ Pipeline::Pipeline(const Model& model, compensation::Compensator compensator)
       drift_({model.array.rows, model.array.cols}, unloaded(model.networks)),
       tare_judge_(std::make_unique<TareJudge>(model.networks.unloaded)),
       fusion_(model.networks) {
+  if (!model.array.temperature_sensors.empty()) {
+    conditioned_.taxel_celsius.reserve(model.array.taxel_count());
+    conductance_.taxel_celsius.reserve(model.array.taxel_count());
+  }
   if (model.memory) memory_.emplace(*model.memory, model.networks.taxel_count());
 }
 

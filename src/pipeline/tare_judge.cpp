@@ -20,6 +20,7 @@ TareJudge::TareJudge(const UnloadedLaw& unloaded) : unloaded_(unloaded) {
   pressed_.siemens.resize(taxels);
   pressed_.sigma_siemens.resize(taxels);
   pressed_.taxels.resize(taxels, TaxelStatus::ok);
+  pressed_.taxel_celsius.reserve(taxels);
 }
 
 void TareJudge::begin(TareOver over) noexcept {

@@ -163,11 +163,10 @@ Result<bool> Simulator::next(RawFrame& frame) {
   for (const std::size_t taxel : array_.absent) truth_.force_n[taxel] = 0.0;
   if (truth_.rest_s > 0.0) rubber_.press(unloaded_n_, truth_.rest_s);
   rubber_.press(truth_.force_n, truth_.hold_s);
+  time_s_ += truth_.rest_s + truth_.hold_s;
   rubber_.read(taxel_celsius(), siemens_);
   for (const std::size_t taxel : array_.absent) siemens_[taxel] = 0.0;
   is_faulty ? faulty_->ratios(siemens_, index, ratio_) : circuit_.ratios(siemens_, ratio_);
-  time_s_ += truth_.rest_s + truth_.hold_s;
-
   frame.time = Nanos(std::llround(time_s_ * 1e9));
   measure_temperature(frame);
   frame.supply_v = truth_.supply_v * (1.0 + environment_.supply_noise * instruments_.normal());

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace dermis::preprocessing {
@@ -59,9 +60,46 @@ TEST(TemperatureField, a_sensor_on_each_taxel_gives_its_reading_exactly) {
   EXPECT_EQ(TemperatureField(array).sigma_celsius(), 0.0);
 }
 
-TEST(TemperatureField, a_sensor_without_a_reading_has_the_mean_of_the_others) {
-  const ArrayDescription array = array_with({{0, 0}, {7, 5}, {3, 3}});
-  EXPECT_EQ(interpolated(array, {20.0F, kNan, 24.0F}), interpolated(array, {20.0F, 22.0F, 24.0F}));
+TEST(TemperatureField, sensors_without_a_reading_count_as_if_they_were_not_there) {
+  const std::vector<TemperatureSensor> five{{0, 0}, {0, 5}, {7, 0}, {7, 5}, {3.5, 2.0}};
+  const auto expect_same = [](const std::vector<float>& a, const std::vector<float>& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(a[k], b[k], 0.02);
+  };
+  expect_same(interpolated(array_with(five, 10.0), {20.0F, kNan, 24.0F, 28.0F, 23.0F}),
+              interpolated(array_with({five[0], five[2], five[3], five[4]}, 10.0), {20.0F, 24.0F, 28.0F, 23.0F}));
+  expect_same(interpolated(array_with(five, 10.0), {20.0F, 3e38F, 24.0F, kNan, -2000.0F}),
+              interpolated(array_with({five[0], five[2]}, 10.0), {20.0F, 24.0F}));
+}
+
+TEST(TemperatureField, a_taxel_of_a_map_without_a_reading_has_the_mean_of_its_neighbours) {
+  const ArrayDescription array = array_with(sensors_on_each_taxel(8, 6));
+  std::vector<float> sensors;
+  for (std::size_t taxel = 0; taxel < 48; ++taxel) {
+    sensors.push_back(20.0F + static_cast<float>(taxel / 6) + 0.5F * static_cast<float>(taxel % 6));
+  }
+  std::vector<float> some = sensors;
+  for (const std::size_t taxel : {7U, 20U}) some[taxel] = kNan;
+  some[0] = some[1] = some[6] = kNan;
+  const std::vector<float> taxels = interpolated(array, some);
+  EXPECT_FLOAT_EQ(taxels[20], sensors[20]);
+  EXPECT_FLOAT_EQ(taxels[7], 0.5F * (sensors[8] + sensors[13])) << "of those that read";
+  EXPECT_GT(taxels[0], 22.0F) << "none reads: the mean of the sheet";
+}
+
+TEST(TemperatureField, a_gradient_runs_from_end_to_end_of_each_axis) {
+  for (const auto& [rows, cols] : {std::pair<std::size_t, std::size_t>{4, 32}, {2, 2}, {3, 4}}) {
+    ArrayDescription array = array_with({}, 10.0);
+    array.rows = rows;
+    array.cols = cols;
+    double squares = 0.0;
+    for (const TemperatureSensor& taxel : sensors_on_each_taxel(rows, cols)) {
+      squares += std::pow(taxel.row / static_cast<double>(rows - 1) - 0.5, 2) +
+                 std::pow(taxel.col / static_cast<double>(cols - 1) - 0.5, 2);
+    }
+    const double expected = 10.0 * std::sqrt(squares / static_cast<double>(rows * cols));
+    EXPECT_NEAR(TemperatureField(array).sigma_celsius(), expected, 0.06 * expected) << rows << "x" << cols;
+  }
 }
 
 TEST(TemperatureField, sensors_without_any_reading_or_of_another_number_give_nothing) {

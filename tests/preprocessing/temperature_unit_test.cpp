@@ -17,5 +17,17 @@ TEST(TemperatureUnit, kelvin_is_what_no_sheet_has_in_degrees_celsius) {
   }
 }
 
+TEST(TemperatureUnit, kelvin_is_found_in_the_temperature_of_a_frame_and_in_its_sensors) {
+  RawFrame frame;
+  EXPECT_EQ(kelvin_in(frame), std::nullopt);
+  frame.sensor_celsius = {20.0F, 293.5F};
+  EXPECT_EQ(kelvin_in(frame), 293.5);
+  frame.temperature_celsius = 300.0;
+  EXPECT_EQ(kelvin_in(frame), 300.0);
+  frame.temperature_celsius = 20.0;
+  frame.sensor_celsius = {20.0F, std::numeric_limits<float>::quiet_NaN()};
+  EXPECT_EQ(kelvin_in(frame), std::nullopt);
+}
+
 }  // namespace
 }  // namespace dermis::preprocessing

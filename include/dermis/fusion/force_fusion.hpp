@@ -120,7 +120,7 @@ class ForceFusion {
 
     [[nodiscard]] float unlearned_variance() const noexcept;
   };
-  /// The temperature of the array, and of each taxel [taxels].
+  /// The temperature of the array, as uncertain as that of any taxel, and of each taxel [taxels].
   struct Temperatures {
     Temperature of_array{};
     std::vector<double> offset;

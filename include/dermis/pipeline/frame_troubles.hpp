@@ -80,8 +80,10 @@ class FrameTroubles {
   std::string first_rejection_;
   std::string first_unsolved_;  ///< Its place.
   std::size_t rows_;            ///< Of the array.
+  std::size_t sensors_;         ///< Of its temperature.
   Doubt supply_;
   Doubt kelvin_;
+  Doubt other_sensors_;
   Doubt silent_;
 };
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -47,21 +48,27 @@ Status check_readings(const ArrayDescription& array, std::span<const RawFrame> f
   const std::set<std::size_t> loaded = loaded_frames(loads);
   Trouble supply;
   Trouble temperature;
+  Trouble sensor_count;
   Trouble readings;
   for (const std::size_t frame : loaded) {
     const RawFrame& raw = frames[frame];
     if (raw.supply_v && supplies.is_in_millivolts(*raw.supply_v)) {
       supply.add(frame, supplies.describe_impossible(*raw.supply_v));
     }
-    if (raw.temperature_celsius && preprocessing::looks_like_kelvin(*raw.temperature_celsius)) {
-      temperature.add(frame, fmt::format("a temperature of {:.1f} C: it looks like kelvin, give degrees Celsius",
-                                         *raw.temperature_celsius));
+    if (const std::optional<double> kelvin = preprocessing::kelvin_in(raw)) {
+      temperature.add(frame,
+                      fmt::format("a temperature of {:.1f} C: it looks like kelvin, give degrees Celsius", *kelvin));
+    }
+    const std::size_t sensors = array.temperature_sensors.size();
+    if (sensors > 0 && raw.sensor_celsius.size() != sensors) {
+      sensor_count.add(frame, fmt::format("temperatures of {} sensors, where array.temperature_sensors has {} places",
+                                          raw.sensor_celsius.size(), sensors));
     }
     if (std::ranges::all_of(raw.counts, [](float count) { return count == 0.0F; })) {
       readings.add(frame, "all readings 0: is the array connected and powered?");
     }
   }
-  for (const Trouble* trouble : {&supply, &temperature, &readings}) {
+  for (const Trouble* trouble : {&supply, &temperature, &sensor_count, &readings}) {
     if (Status verdict = trouble->verdict(loaded.size()); !verdict) return verdict;
   }
   return Done{};

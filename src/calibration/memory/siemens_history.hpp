@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -19,14 +20,16 @@ struct SiemensHistory {
   std::vector<std::size_t> frame;                          ///< Numbers in the recording, rising [frames].
   std::vector<Nanos> time;                                 ///< [frames]
   std::vector<std::optional<double>> temperature_celsius;  ///< [frames]
-  std::vector<float> taxel_celsius;  ///< [frames, taxels]; empty where frames have one temperature.
+  std::vector<float> taxel_celsius;  ///< [frames, taxels]; NaN where a frame has one temperature, empty where all do.
   std::vector<float> siemens;        ///< [frames, taxels]; NaN where a taxel or a frame has no reading.
 
   [[nodiscard]] std::span<const float> siemens_of(std::size_t place) const {
     return std::span(siemens).subspan(place * taxels, taxels);
   }
+  /// Empty where the frame has one temperature.
   [[nodiscard]] std::span<const float> taxel_celsius_of(std::size_t place) const {
-    return taxel_celsius.empty() ? std::span<const float>() : std::span(taxel_celsius).subspan(place * taxels, taxels);
+    if (taxel_celsius.empty() || std::isnan(taxel_celsius[place * taxels])) return {};
+    return std::span(taxel_celsius).subspan(place * taxels, taxels);
   }
 };
 

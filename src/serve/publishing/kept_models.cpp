@@ -51,6 +51,9 @@ std::string difference(const ArrayDescription& array, const ArrayDescription& of
                                  of_model.readout.pressure_raises_reading == array.readout.pressure_raises_reading;
   if (!has_same_readings) return "it is of other readings: quantity, bits or direction differ";
   if (of_model.order != array.order) return "its lines are in another order";
+  const bool has_same_temperatures = of_model.temperature_sensors == array.temperature_sensors &&
+                                     of_model.temperature_gradient_celsius == array.temperature_gradient_celsius;
+  if (!has_same_temperatures) return "its sensors of temperature are elsewhere";
   if (of_model.absent != array.absent) return "other taxels are absent in it";
   return "";
 }
