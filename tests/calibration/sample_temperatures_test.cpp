@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <utility>
 
 namespace dermis::calibration {
 namespace {
@@ -37,6 +38,23 @@ TEST(SampleTemperatures, is_no_input_where_a_sample_has_no_temperature) {
   SampleDatabase database = rising_temperatures(20.0);
   database.samples[7].temperature_celsius.reset();
   EXPECT_FALSE(sample_temperatures(database).is_input);
+}
+
+TEST(SampleTemperatures, of_a_map_are_no_wider_than_what_one_taxel_has_seen) {
+  SampleDatabase database = rising_temperatures(1.0);
+  database.array.rows = 1;
+  database.array.cols = 2;
+  for (Sample& sample : database.samples) {
+    const auto mean = static_cast<float>(*sample.temperature_celsius);
+    sample.taxel_celsius = {mean - 5.0F, mean + 5.0F};  // a gradient that stays
+  }
+  EXPECT_FALSE(sample_temperatures(database).is_input);
+  EXPECT_LT(sample_temperatures(database).span.half_span_celsius, 0.51);
+  for (std::size_t k = 0; k < database.samples.size(); k += 2) {
+    std::swap(database.samples[k].taxel_celsius[0], database.samples[k].taxel_celsius[1]);
+  }
+  EXPECT_TRUE(sample_temperatures(database).is_input);
+  EXPECT_NEAR(sample_temperatures(database).span.half_span_celsius, 5.5, 0.1);
 }
 
 }  // namespace

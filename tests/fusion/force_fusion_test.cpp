@@ -653,6 +653,18 @@ TEST(ForceFusion, each_taxel_of_a_map_has_the_force_that_its_temperature_gives_t
   }
 }
 
+TEST(ForceFusion, a_sum_is_as_uncertain_as_the_temperature_of_any_of_its_taxels) {
+  const ForceNetworks networks = support::random_networks(4, 3, 2, 7);
+  const TemperatureSpan& calibrated = networks.unloaded.temperature;
+  ConductanceFrame frame = make_frame(std::vector<double>(4, 1e-3), calibrated.centre_celsius);
+  const double calm = fuse(networks, frame).total().sigma_newtons;
+  const auto far = static_cast<float>(calibrated.half_span_celsius) + 60.0F;
+  const auto centre = static_cast<float>(calibrated.centre_celsius);
+  frame.taxel_celsius = {centre + far, centre + far, centre - far, centre - far};
+  const ForceFrame force = fuse(networks, frame);
+  EXPECT_GT(force.total().sigma_newtons, 10.0 * calm);
+}
+
 /// As many taxels of one law: F = 10 N (e / 1 mS)^exponent, without an error of its own.
 ForceNetworks equal_laws(std::size_t taxels, float exponent) {
   ForceNetworks networks = equal_power_laws(taxels);

@@ -89,8 +89,10 @@ TEST(FrameTroubles, says_how_many_frames_have_a_supply_outside_of_the_calibratio
           "2 of 4 frames with a supply outside of the calibration, the first: 6.5 V, where 4 to 6 V are trusted"}));
 }
 
-FrameTroubles troubles_of_hand_made(const std::vector<RawFrame>& frames) {
-  const Model model = support::hand_made_model(4, 4);
+FrameTroubles troubles_of_hand_made(const std::vector<RawFrame>& frames,
+                                    const std::vector<TemperatureSensor>& sensors = {}) {
+  Model model = support::hand_made_model(4, 4);
+  model.array.temperature_sensors = sensors;
   Result<Pipeline> pipeline = Pipeline::create(model);
   EXPECT_TRUE(pipeline);
   FrameTroubles troubles(model.array, "f.csv");
@@ -110,6 +112,22 @@ TEST(FrameTroubles, fails_where_temperatures_are_in_kelvin) {
             "degrees Celsius");
   for (RawFrame& frame : frames) frame.temperature_celsius = 60.0;
   EXPECT_TRUE(troubles_of_hand_made(frames).verdict()) << "hot, but it can be";
+}
+
+TEST(FrameTroubles, fails_where_sensors_are_in_kelvin) {
+  std::vector<RawFrame> frames = frames_of(std::vector<std::vector<float>>(3, std::vector<float>(16, 20000.0F)));
+  for (RawFrame& frame : frames) frame.sensor_celsius = {298.0F, 299.0F};
+  EXPECT_FALSE(troubles_of_hand_made(frames, {{0, 0}, {3, 3}}).verdict());
+  for (RawFrame& frame : frames) frame.sensor_celsius = {60.0F, 70.0F};
+  EXPECT_TRUE(troubles_of_hand_made(frames, {{0, 0}, {3, 3}}).verdict());
+}
+
+TEST(FrameTroubles, says_where_frames_have_other_sensors_than_the_array) {
+  std::vector<RawFrame> frames = frames_of(std::vector<std::vector<float>>(2, std::vector<float>(16, 20000.0F)));
+  for (RawFrame& frame : frames) frame.sensor_celsius = {20.0F, 21.0F, 22.0F};
+  EXPECT_EQ(troubles_of_hand_made(frames, {{0, 0}, {3, 3}}).describe().back(),
+            "2 of 2 frames with temperatures of 3 sensors, where array.temperature_sensors has 2 places");
+  EXPECT_TRUE(troubles_of_hand_made(frames, {{0, 0}, {3, 3}, {0, 3}}).describe().empty());
 }
 
 TEST(FrameTroubles, fails_where_all_readings_are_0_and_untouched_taxels_read_more) {

@@ -37,19 +37,25 @@ std::unique_ptr<Pipeline> make_pipeline(const Model& model) {
 }
 
 /// What the simulated hardware gives for known forces: material, circuit, ADC without noise.
-RawFrame measure(const Model& model, const std::vector<double>& newtons, double celsius, double supply_v) {
+RawFrame measure(const Model& model, const std::vector<double>& newtons, const std::vector<double>& taxel_celsius,
+                 double supply_v) {
   std::vector<double> siemens(newtons.size());
   for (std::size_t k = 0; k < newtons.size(); ++k) {
-    siemens[k] = support::siemens_under(model, k, newtons[k], celsius);
+    siemens[k] = support::siemens_under(model, k, newtons[k], taxel_celsius[k]);
   }
   std::vector<double> ratio(newtons.size());
   simulation::ReadoutCircuit::create(model.array)->ratios(siemens, ratio);
   RawFrame raw;
-  raw.temperature_celsius = celsius;
   raw.supply_v = supply_v;
   raw.counts.resize(newtons.size());
   Random random(1);
   simulation::Adc(model.array.readout, 0.0).convert(ratio, supply_v, random, raw.counts);
+  return raw;
+}
+
+RawFrame measure(const Model& model, const std::vector<double>& newtons, double celsius, double supply_v) {
+  RawFrame raw = measure(model, newtons, std::vector<double>(newtons.size(), celsius), supply_v);
+  raw.temperature_celsius = celsius;
   return raw;
 }
 
@@ -120,6 +126,83 @@ TEST(Pipeline, a_press_in_a_large_array_leaves_no_ghosts) {
   ForceFrame force;
   make_pipeline(model)->process(measure(model, newtons, 30.0, 5.0), force);
   for (std::size_t k = 0; k < 256; ++k) EXPECT_NEAR(force.newtons[k], newtons[k], 2e-4 * newtons[k] + 2e-3) << k;
+}
+
+/// A model whose array has a sensor of temperature in each corner.
+Model model_with_sensors() {
+  Model model = hand_made_model(4, 4);
+  model.array.temperature_sensors = {{0, 0}, {0, 3}, {3, 0}, {3, 3}};
+  return model;
+}
+
+/// A sheet that is warm at one end, which turns with `angle`, and is read by its sensors.
+RawFrame measure_gradient(const Model& model, const std::vector<double>& newtons, double angle) {
+  const auto celsius = [angle](double row, double col) {
+    return 25.0 + 4.0 * ((row - 1.5) * std::sin(angle) + (col - 1.5) * std::cos(angle));
+  };
+  std::vector<double> taxels;
+  for (std::size_t k = 0; k < 16; ++k)
+    taxels.push_back(celsius(static_cast<double>(k / 4), static_cast<double>(k % 4)));
+  RawFrame raw = measure(model, newtons, taxels, 5.0);
+  for (const auto& [row, col] : model.array.temperature_sensors) {
+    raw.sensor_celsius.push_back(static_cast<float>(celsius(row, col)));
+  }
+  return raw;
+}
+
+TEST(Pipeline, sensors_of_temperature_give_the_true_forces_where_the_sheet_is_warmer_at_one_end) {
+  const Model model = model_with_sensors();
+  Model with_one = model;
+  with_one.array.temperature_sensors.clear();
+  ForceFrame force;
+  double worst_of_one = 0.0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    Random random(seed);
+    const std::vector<double> newtons = random_presses(16, random);
+    RawFrame raw = measure_gradient(model, newtons, static_cast<double>(seed));
+    make_pipeline(model)->process(raw, force);
+    for (std::size_t k = 0; k < 16; ++k) EXPECT_NEAR(force.newtons[k], newtons[k], 2e-3 * newtons[k] + 2e-2) << seed;
+    raw.temperature_celsius = 25.0;
+    make_pipeline(with_one)->process(raw, force);
+    for (std::size_t k = 0; k < 16; ++k) {
+      if (newtons[k] > 0.0) worst_of_one = std::max(worst_of_one, std::abs(force.newtons[k] / newtons[k] - 1.0));
+    }
+  }
+  EXPECT_GT(worst_of_one, 0.02) << "one temperature is not enough";
+}
+
+TEST(Pipeline, a_tare_under_a_gradient_that_turns_leaves_zero_at_zero) {
+  const Model model = model_with_sensors();
+  const auto pipeline = make_pipeline(model);
+  const std::vector<double> nothing(16, 0.0);
+  pipeline->tare(TareOver::drift);
+  ForceFrame force;
+  for (int k = 0; k < 600; ++k) {
+    RawFrame raw = measure_gradient(model, nothing, 0.01 * k);
+    raw.time = std::chrono::milliseconds(100 * k);
+    pipeline->process(raw, force);
+    for (const float newtons : force.newtons) ASSERT_NEAR(newtons, 0.0, 0.02) << "frame " << k;
+  }
+  EXPECT_EQ(pipeline->last_tare().state, Tare::State::taken);
+}
+
+TEST(Pipeline, frames_that_lose_their_sensors_and_regain_them_allocate_nothing) {
+  if (!support::kAllocationsAreCounted) GTEST_SKIP() << "a sanitizer owns malloc";
+  const Model model = model_with_sensors();
+  const auto pipeline = make_pipeline(model);
+  const std::vector<double> presses(16, 5.0);
+  const RawFrame with_sensors = measure_gradient(model, presses, 0.5);
+  const RawFrame with_one = measure(model, presses, 25.0, 5.0);
+  ForceFrame force;
+  pipeline->process(with_one, force);
+  const support::AllocationGuard guard;
+  pipeline->process(with_sensors, force);
+  EXPECT_EQ(guard.count(), 0U);
+  const float with_map = force.newtons[0];
+  pipeline->process(with_one, force);
+  EXPECT_EQ(guard.count(), 0U);
+  EXPECT_NEAR(force.newtons[0], 5.0, 2e-3) << "no temperature of the frame before is left";
+  EXPECT_NEAR(with_map, 5.0, 2e-2);
 }
 
 bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
