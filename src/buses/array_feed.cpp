@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 namespace dermis::buses {
@@ -15,17 +16,47 @@ constexpr std::size_t kMostWaiting = 4096;
 
 }  // namespace
 
-ArrayFeed::ArrayFeed(std::function<void(const std::string&)> notice)
-    : notice_(std::move(notice)), event_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {}
+std::string shape_text(const FrameShape& shape) {
+  return std::to_string(shape.rows) + "x" + std::to_string(shape.cols);
+}
+
+ArrayFeed::ArrayFeed(std::function<void(const std::string&)> notice, std::string place, std::optional<FrameShape> shape)
+    : notice_(std::move(notice)),
+      place_(std::move(place)),
+      event_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)),
+      shape_(shape) {}
 
 ArrayFeed::~ArrayFeed() {
   if (event_ >= 0) ::close(event_);
 }
 
 void ArrayFeed::push(const FrameShape& shape, const RawFrame& frame) {
-  const std::lock_guard lock(mutex_);
-  if (outcome_) return;
-  shape_ = shape;
+  assert(frame.counts.size() == shape.taxel_count());
+  std::string news;
+  {
+    const std::lock_guard lock(mutex_);
+    if (outcome_) return;
+    if (!shape_) shape_ = shape;
+    if (shape == *shape_) return add(frame);
+    news = refuse(shape);
+  }
+  if (!news.empty()) tell(news);
+}
+
+/// Gives a notice where the user has had none.
+std::string ArrayFeed::refuse(const FrameShape& shape) {
+  if (!has_come_) {
+    outcome_ = bad_input("frames are " + shape_text(shape) + ", the array is " + shape_text(*shape_));
+    signal();
+    return {};
+  }
+  ++statistics_.damaged_frames;
+  if (std::exchange(has_told_, true)) return {};
+  return place_ + ": frames that are " + shape_text(shape) + " are left out, as the array is " + shape_text(*shape_);
+}
+
+void ArrayFeed::add(const RawFrame& frame) {
+  has_come_ = true;
   statistics_.lost_frames += frame.acquisition.lost_before;
   if (count_ == kMostWaiting) {
     left_out_ += 1 + ring_[first_].acquisition.lost_before;

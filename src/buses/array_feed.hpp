@@ -18,16 +18,21 @@
 
 namespace dermis::buses {
 
-/// Frames of one array on their way from a bus to one reader. A reader that falls 4096 frames behind loses the oldest.
-/// Thread-safe.
+[[nodiscard]] std::string shape_text(const FrameShape& shape);
+
+/// Frames of one array on their way from a bus to one reader, all of one shape. A reader that falls 4096 frames behind
+/// loses the oldest. Thread-safe.
 class ArrayFeed {
  public:
-  explicit ArrayFeed(std::function<void(const std::string&)> notice);
+  /// `place` names the source in notices. Without a `shape` the first frame tells it.
+  explicit ArrayFeed(std::function<void(const std::string&)> notice, std::string place = {},
+                     std::optional<FrameShape> shape = {});
   ArrayFeed(const ArrayFeed&) = delete;
   ArrayFeed& operator=(const ArrayFeed&) = delete;
   ~ArrayFeed();
 
   // The bus calls these.
+  /// A frame of another shape is damaged. It ends the feed where no other has come.
   void push(const FrameShape& shape, const RawFrame& frame);
   void count_damaged();
   void count_reconnection();
@@ -46,9 +51,12 @@ class ArrayFeed {
   [[nodiscard]] SourceStatistics statistics() const;
 
  private:
+  void add(const RawFrame& frame);
+  [[nodiscard]] std::string refuse(const FrameShape& shape);
   void signal();
 
   const std::function<void(const std::string&)> notice_;
+  const std::string place_;
   const int event_;
   mutable std::mutex mutex_;  // Of what follows.
   std::condition_variable changed_;
@@ -57,6 +65,8 @@ class ArrayFeed {
   std::size_t count_ = 0;
   std::uint32_t left_out_ = 0;  // frames that no frame has told of yet
   std::optional<FrameShape> shape_;
+  bool has_come_ = false;  // a frame
+  bool has_told_ = false;  // of frames of another shape
   std::optional<Status> outcome_;
   ArrivalMeter arrivals_;
   SourceStatistics statistics_;

@@ -27,10 +27,6 @@ Nanos steady_now() {
   return std::chrono::steady_clock::now().time_since_epoch();
 }
 
-std::string shape_text(const FrameShape& shape) {
-  return std::to_string(shape.rows) + "x" + std::to_string(shape.cols);
-}
-
 class BusSource final : public FrameSource {
  public:
   BusSource(std::string text, std::shared_ptr<Bus> bus, std::size_t array, BusOptions options)
@@ -38,7 +34,7 @@ class BusSource final : public FrameSource {
         bus_(std::move(bus)),
         array_(bus_->arrays()[array]),
         options_(std::move(options)),
-        feed_(std::make_shared<ArrayFeed>(options_.notice)) {
+        feed_(std::make_shared<ArrayFeed>(options_.notice, "'" + text_ + "'", options_.shape)) {
     bus_->add(array, feed_);
   }
 
@@ -58,7 +54,10 @@ class BusSource final : public FrameSource {
   Result<Polled> poll(RawFrame& frame) override {
     Result<Polled> taken = feed_->take(frame);
     if (!taken) return Error{taken.error().kind, "'" + text_ + "': " + taken.error().message};
-    if (*taken == Polled::frame) return check(taken);
+    if (*taken == Polled::frame) {
+      last_ = steady_now();
+      is_silent_ = false;
+    }
     if (*taken == Polled::nothing && options_.stop != nullptr && options_.stop->load()) return Polled::end;
     if (*taken == Polled::nothing) tell_silence();
     return taken;
@@ -66,23 +65,13 @@ class BusSource final : public FrameSource {
 
   [[nodiscard]] std::optional<FrameShape> shape() const override {
     if (array_.shape != FrameShape{}) return array_.shape;
-    const std::optional<FrameShape> come = feed_->shape();
-    return come ? come : options_.shape;
+    return feed_->shape();
   }
 
   [[nodiscard]] SourceStatistics statistics() const override { return feed_->statistics(); }
   [[nodiscard]] bool is_live() const override { return true; }
 
  private:
-  Result<Polled> check(const Result<Polled>& taken) {
-    last_ = steady_now();
-    is_silent_ = false;
-    const std::optional<FrameShape> come = feed_->shape();
-    if (!options_.shape || !come || *come == *options_.shape) return taken;
-    return bad_input("'" + text_ + "': frames are " + shape_text(*come) + ", the array is " +
-                     shape_text(*options_.shape));
-  }
-
   void tell_silence() {
     if (is_silent_ || steady_now() - last_ < kSilence) return;
     is_silent_ = true;

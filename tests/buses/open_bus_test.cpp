@@ -196,5 +196,53 @@ TEST(ArrayFeed, a_reader_that_falls_behind_hears_how_many_frames_it_lost) {
   EXPECT_EQ(feed.take(frame).error().message, "gone");
 }
 
+/// Notices, and a feed that tells them.
+class NotedFeed : public ::testing::Test {
+ protected:
+  [[nodiscard]] ArrayFeed feed(std::optional<FrameShape> shape = {}) {
+    return ArrayFeed([this](const std::string& text) { notices_.push_back(text); }, "'mat'", shape);
+  }
+  static RawFrame frame_of(const FrameShape& shape) {
+    RawFrame frame;
+    frame.counts.assign(shape.taxel_count(), 1.0F);
+    return frame;
+  }
+
+  std::vector<std::string> notices_;
+};
+
+TEST_F(NotedFeed, frames_of_another_shape_than_the_first_are_damaged) {
+  ArrayFeed feed = this->feed();
+  feed.push({2, 3}, frame_of({2, 3}));
+  for (const FrameShape shape : {FrameShape{64, 64}, {3, 2}, {2, 3}}) feed.push(shape, frame_of(shape));
+  EXPECT_EQ(feed.shape(), (FrameShape{2, 3}));
+  RawFrame frame;
+  for (int k = 0; k < 2; ++k) {
+    ASSERT_EQ(*feed.take(frame), Polled::frame);
+    EXPECT_EQ(frame.counts.size(), 6U);
+  }
+  EXPECT_EQ(*feed.take(frame), Polled::nothing);
+  EXPECT_EQ(feed.statistics().damaged_frames, 2U);
+  EXPECT_EQ(notices_, std::vector<std::string>{"'mat': frames that are 64x64 are left out, as the array is 2x3"});
+}
+
+TEST_F(NotedFeed, a_first_frame_of_another_shape_than_the_array_ends_it) {
+  ArrayFeed feed = this->feed(FrameShape{2, 3});
+  feed.push({3, 2}, frame_of({3, 2}));
+  feed.push({2, 3}, frame_of({2, 3}));
+  RawFrame frame;
+  EXPECT_EQ(feed.take(frame).error().message, "frames are 3x2, the array is 2x3");
+}
+
+TEST_F(NotedFeed, a_later_frame_of_another_shape_than_the_array_is_damaged) {
+  ArrayFeed feed = this->feed(FrameShape{2, 3});
+  feed.push({2, 3}, frame_of({2, 3}));
+  feed.push({3, 2}, frame_of({3, 2}));
+  RawFrame frame;
+  ASSERT_EQ(*feed.take(frame), Polled::frame);
+  EXPECT_EQ(*feed.take(frame), Polled::nothing);
+  EXPECT_EQ(feed.statistics().damaged_frames, 1U);
+}
+
 }  // namespace
 }  // namespace dermis::buses
