@@ -70,6 +70,12 @@ bool is_possible(std::size_t rows, std::size_t cols) {
   return rows >= 1 && rows <= kMaxLines && cols >= 1 && cols <= kMaxLines;
 }
 
+/// As many as an array may have: some, or one on each taxel (ArrayDescription::temperature_sensors).
+bool is_possible_sensors(std::size_t sensors, std::size_t taxels) {
+  constexpr std::size_t kMostPlaced = 64;
+  return sensors <= kMostPlaced || sensors == taxels;
+}
+
 template <typename T>
 void write_optional(CdrWriter& writer, const std::optional<T>& value) {
   writer.write(static_cast<std::uint8_t>(value ? 1 : 0));
@@ -253,7 +259,11 @@ Result<FrameShape> decode_raw_frame(std::span<const std::uint8_t> message, RawFr
   const std::size_t cols = reader.read<std::uint32_t>();
   reader.read_floats(frame.counts);
   if (!reader.good()) return not_whole(raw_frame_type());
-  if (is_possible(rows, cols) && frame.counts.size() == rows * cols) return FrameShape{rows, cols};
+  if (is_possible(rows, cols) && frame.counts.size() == rows * cols) {
+    if (is_possible_sensors(frame.sensor_celsius.size(), frame.counts.size())) return FrameShape{rows, cols};
+    return bad_input("the message has " + std::to_string(frame.sensor_celsius.size()) +
+                     " temperatures; 64 of an array, or one of each taxel, can be read");
+  }
   return bad_input("the message has " + std::to_string(frame.counts.size()) + " counts of " + std::to_string(rows) +
                    "x" + std::to_string(cols) + " taxels; all of 1x1 to 1024x1024 can be read");
 }

@@ -223,6 +223,23 @@ TEST(RawFrameMessage, one_whose_counts_are_not_its_taxels_is_refused) {
             "the message has 6 counts of 3x3 taxels; all of 1x1 to 1024x1024 can be read");
 }
 
+TEST(RawFrameMessage, one_with_more_temperatures_than_an_array_may_have_is_refused) {
+  const auto decoded = [](const FrameShape& shape, std::size_t sensors) {
+    RawFrame frame = frame_of(std::vector<float>(shape.taxel_count(), 1.0F));
+    frame.sensor_celsius.assign(sensors, 20.0F);
+    Bytes message;
+    encode_raw_frame(frame, shape, "chest", message);
+    return decode_raw_frame(message, frame);
+  };
+  EXPECT_TRUE(decoded({2, 3}, 64));
+  EXPECT_TRUE(decoded({10, 10}, 100)) << "one of each taxel";
+  for (const std::size_t sensors : {65U, 99U, 2'000'000U}) {
+    EXPECT_EQ(decoded({10, 10}, sensors).error().message, "the message has " + std::to_string(sensors) +
+                                                              " temperatures; 64 of an array, or one of each taxel, "
+                                                              "can be read");
+  }
+}
+
 ForceFrame random_forces(std::size_t taxel_count, std::uint64_t seed) {
   Random random(seed);
   ForceFrame frame;

@@ -70,7 +70,7 @@ void encode_acquisition(const RawFrame& frame, std::vector<std::uint8_t>& messag
 /// dermis_msgs/msg/RawFrame: all of a frame, without loss.
 void encode_raw_frame(const RawFrame& frame, const FrameShape& shape, std::string_view frame_id,
                       std::vector<std::uint8_t>& message);
-/// Sets all of the frame. Accepts 1x1 ... 1024x1024 taxels.
+/// Sets all of the frame. Accepts 1x1 ... 1024x1024 taxels, and up to 64 temperatures or one of each taxel.
 [[nodiscard]] Result<FrameShape> decode_raw_frame(std::span<const std::uint8_t> message, RawFrame& frame);
 
 /// Distance between neighbouring taxels [m].
