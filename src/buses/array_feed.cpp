@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <limits>
 #include <utility>
 
 namespace dermis::buses {
@@ -18,6 +19,10 @@ constexpr std::size_t kMostWaiting = 4096;
 
 std::string shape_text(const FrameShape& shape) {
   return std::to_string(shape.rows) + "x" + std::to_string(shape.cols);
+}
+
+std::uint32_t saturated_sum(std::uint32_t a, std::uint32_t b) {
+  return a + std::min(b, std::numeric_limits<std::uint32_t>::max() - a);
 }
 
 ArrayFeed::ArrayFeed(std::function<void(const std::string&)> notice, std::string place, std::optional<FrameShape> shape)
@@ -59,7 +64,7 @@ void ArrayFeed::add(const RawFrame& frame) {
   has_come_ = true;
   statistics_.lost_frames += frame.acquisition.lost_before;
   if (count_ == kMostWaiting) {
-    left_out_ += 1 + ring_[first_].acquisition.lost_before;
+    left_out_ = saturated_sum(left_out_, saturated_sum(1, ring_[first_].acquisition.lost_before));
     ++statistics_.lost_frames;
     first_ = (first_ + 1) % ring_.size();
     --count_;
@@ -103,7 +108,7 @@ Result<Polled> ArrayFeed::take(RawFrame& frame) {
   }
   std::swap(frame, ring_[first_]);
   first_ = (first_ + 1) % ring_.size();
-  frame.acquisition.lost_before += std::exchange(left_out_, 0);
+  frame.acquisition.lost_before = saturated_sum(frame.acquisition.lost_before, std::exchange(left_out_, 0));
   ++statistics_.frames;
   if (--count_ == 0 && !outcome_) {
     eventfd_t ignored = 0;

@@ -43,7 +43,10 @@ void TopicBus::hear(const dds::Sample& sample) {
   const Status decoded = type_.decode(sample.message, readings_);
   if (!decoded) return count_damaged(decoded.error());
   has_come_ = true;
-  if (type_.is_raw_frame) return pass_on(readings_.front(), arrival, lost);
+  if (type_.is_raw_frame) {
+    const std::string_view objection = sender_.objection(sample.writer, readings_.front().frame.time, arrival.steady);
+    return objection.empty() ? pass_on(readings_.front(), arrival, lost) : leave_out(objection);
+  }
   const Nanos device_time = readings_.front().frame.acquisition.device_time.value_or(sample.source_time);
   arrival.taken = taken_at(device_time, sample.writer, arrival.steady);
   for (std::size_t k = 0; k < readings_.size(); ++k) {
@@ -67,8 +70,15 @@ Nanos TopicBus::taken_at(Nanos device_time, const dds::Sample::Writer& writer, N
 /// A frame of another dermis stays as it was sent. Its time on the way counts from here.
 void TopicBus::pass_on(messages::TouchReading& reading, const Arrival& arrival, std::uint32_t lost) {
   reading.frame.acquisition.arrival_steady = arrival.steady;
-  reading.frame.acquisition.lost_before += lost;
+  reading.frame.acquisition.lost_before = saturated_sum(reading.frame.acquisition.lost_before, lost);
   deliver_timed(0, reading.shape, reading.frame);
+}
+
+/// The user hears of each reason once.
+void TopicBus::leave_out(std::string_view objection) {
+  const std::vector<std::shared_ptr<ArrayFeed>> all = all_readers();
+  for (const std::shared_ptr<ArrayFeed>& reader : all) reader->count_damaged();
+  if (!all.empty() && told_.insert(objection).second) all.front()->tell(name() + ": " + std::string(objection));
 }
 
 /// Gaps in the numbers of its writer.

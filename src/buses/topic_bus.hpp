@@ -5,10 +5,13 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "buses/bus.hpp"
+#include "buses/followed_sender.hpp"
 #include "dermis/buses/bus_address.hpp"
 #include "dermis/core/clock_mapping.hpp"
 #include "dermis/dds/subscriber.hpp"
@@ -32,6 +35,7 @@ class TopicBus final : public Bus {
  private:
   [[nodiscard]] Nanos taken_at(Nanos device_time, const dds::Sample::Writer& writer, Nanos arrival);
   void pass_on(messages::TouchReading& reading, const Arrival& arrival, std::uint32_t lost);
+  void leave_out(std::string_view objection);
   [[nodiscard]] std::uint32_t lost_before(const dds::Sample& sample);
   void count_damaged(const Error& why);
 
@@ -43,6 +47,8 @@ class TopicBus final : public Bus {
   ClockMapping clock_;            // of writer_, or of what stamps its messages
   dds::Sample::Writer writer_{};  // of the last message
   Nanos last_taken_{};
+  FollowedSender sender_;  // of frames of another dermis
+  std::set<std::string_view> told_;
   bool has_come_ = false;                        // a message that could be read
   std::unique_ptr<dds::Subscriber> subscriber_;  // the first to go
 };

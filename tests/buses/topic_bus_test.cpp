@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <limits>
 #include <memory>
 #include <string>
 #include <thread>
@@ -38,11 +39,22 @@ class Topic {
     EXPECT_EQ(*feed_->take(frame), Polled::frame);
     return frame;
   }
+  /// A frame of another dermis is one for the reader.
+  bool takes(const RawFrame& sent, std::uint8_t writer = 1) {
+    messages::encode_raw_frame(sent, kShape, "chest", message);
+    bus_.hear({message, ++sequence_, Nanos(17), {writer}});
+    RawFrame frame;
+    return *feed_->take(frame) == Polled::frame;
+  }
+  [[nodiscard]] std::uint64_t damaged() const { return feed_->statistics().damaged_frames; }
 
   std::vector<std::uint8_t> message;
+  std::vector<std::string> notices;
 
  private:
-  std::shared_ptr<ArrayFeed> feed_ = std::make_shared<ArrayFeed>(nullptr);
+  std::uint64_t sequence_ = 0;
+  std::shared_ptr<ArrayFeed> feed_ =
+      std::make_shared<ArrayFeed>([this](const std::string& text) { notices.push_back(text); });
   TopicBus bus_;
 };
 
@@ -65,8 +77,52 @@ TEST(TopicBus, messages_that_the_network_lost_are_counted_with_those_that_the_de
   messages::encode_raw_frame(sent_frame(), kShape, "chest", topic.message);
   EXPECT_EQ(topic.hear(5).acquisition.lost_before, 2U);
   EXPECT_EQ(topic.hear(9).acquisition.lost_before, 3U + 2U);
-  EXPECT_EQ(topic.hear(1, 2).acquisition.lost_before, 2U) << "another writer has numbers of its own";
   EXPECT_EQ(topic.hear(10).acquisition.lost_before, 2U);
+}
+
+TEST(TopicBus, lost_messages_are_counted_by_the_numbers_of_their_writer) {
+  Topic topic("sensor_msgs/Image");
+  messages::encode_image(sent_frame(), kShape, "chest", topic.message);
+  EXPECT_EQ(topic.hear(5).acquisition.lost_before, 0U);
+  EXPECT_EQ(topic.hear(1, 2).acquisition.lost_before, 0U);
+  EXPECT_EQ(topic.hear(7).acquisition.lost_before, 1U);
+}
+
+TEST(TopicBus, more_lost_messages_than_can_be_counted_are_as_many_as_can_be) {
+  Topic topic("dermis_msgs/RawFrame");
+  RawFrame sent = sent_frame();
+  sent.acquisition.lost_before = std::numeric_limits<std::uint32_t>::max();
+  messages::encode_raw_frame(sent, kShape, "chest", topic.message);
+  topic.hear(1);
+  EXPECT_EQ(topic.hear(3).acquisition.lost_before, std::numeric_limits<std::uint32_t>::max());
+}
+
+TEST(TopicBus, frames_of_a_second_dermis_are_damaged) {
+  Topic topic("dermis_msgs/RawFrame");
+  EXPECT_TRUE(topic.takes(sent_frame(), 1));
+  for (int k = 0; k < 3; ++k) EXPECT_FALSE(topic.takes(sent_frame(), 2));
+  EXPECT_TRUE(topic.takes(sent_frame(), 1));
+  EXPECT_EQ(topic.damaged(), 3U);
+  ASSERT_EQ(topic.notices.size(), 1U);
+  EXPECT_TRUE(
+      topic.notices[0].starts_with("'rt/chest' of type dermis_msgs::msg::dds_::RawFrame_: frames of another "
+                                   "sender are left out"))
+      << topic.notices[0];
+}
+
+TEST(TopicBus, frames_of_another_dermis_whose_time_cannot_be_are_damaged) {
+  Topic topic("dermis_msgs/RawFrame");
+  RawFrame sent = sent_frame();
+  const Nanos begin = sent.time;
+  EXPECT_TRUE(topic.takes(sent));
+  for (const Nanos wrong : {begin - Nanos(1), Nanos::max(), Nanos::min(), begin + std::chrono::hours(1)}) {
+    sent.time = wrong;
+    EXPECT_FALSE(topic.takes(sent)) << wrong.count();
+  }
+  sent.time = begin + Nanos(1);
+  EXPECT_TRUE(topic.takes(sent));
+  EXPECT_EQ(topic.damaged(), 4U);
+  EXPECT_EQ(topic.notices.size(), 1U);
 }
 
 TEST(TopicBus, messages_of_others_are_counted_and_stamped_here) {
