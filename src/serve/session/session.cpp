@@ -6,8 +6,10 @@
 
 #include <chrono>
 #include <optional>
+#include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "serve/parts/part_makers.hpp"
 #include "serve/recording/recorded_arrays.hpp"
@@ -19,16 +21,16 @@
 namespace dermis::serve {
 namespace {
 
-/// An array that publishes what it hears would hear each frame again, without an end.
-Status check_topics(const ServedSuit& suit, std::uint32_t domain) {
+/// Arrays that hear what the server publishes would hear each frame again, without an end.
+Status check_topics(const ServedSuit& suit, const std::vector<std::string>& published, std::uint32_t domain) {
   for (const ServedArray& array : suit.arrays) {
     const Result<sources::SourceName> from = sources::SourceName::parse(array.from);
-    for (const char* const kind : {"frame", "raw"}) {
-      const std::string topic = fmt::format("rt/{}/{}", array.name, kind);
-      if (!from || !from->hears(domain, topic)) continue;
+    if (!from) continue;
+    for (const std::string& topic : published) {
+      if (!from->hears(domain, topic)) continue;
       return bad_input(
-          fmt::format("array '{}': comes from '{}' of domain {}, where it would be published again; "
-                      "give it another name, or serve it in another domain",
+          fmt::format("array '{}': comes from '{}' of domain {}, which this server publishes itself; "
+                      "give its arrays other names, or serve them in another domain",
                       array.name, topic, domain));
     }
   }
@@ -67,9 +69,6 @@ class Session::Implementation {
 };
 
 Status Session::Implementation::make(const SessionOptions& options) {
-  if (options.dds) {
-    if (Status checked = check_topics(suit_, options.dds->domain); !checked) return checked;
-  }
   Result<std::unique_ptr<live::LiveSuit>> live = make_live(suit_, parts_, options);
   if (!live) return live.error();
   live_ = *std::move(live);
@@ -82,7 +81,8 @@ Status Session::Implementation::make(const SessionOptions& options) {
   topics_ = *std::move(topics);
   recorder_ = make_recorder(options.record);
   host_.emplace(Host{suit_, options, models_, *server_, *live_, *topics_, *recorder_, parts_});
-  return make_parts();
+  if (Status made = make_parts(); !made) return made;
+  return options.dds ? check_topics(suit_, topics_->dds_topics(), options.dds->domain) : Done{};
 }
 
 std::unique_ptr<SuitRecorder> Session::Implementation::make_recorder(const std::string& wanted) {

@@ -41,6 +41,7 @@ Result<Topic> Topics::add(const TopicNames& names, const messages::MessageType& 
   const Result<dds::TopicId> added = publisher_->add_topic({names.dds, type, message_bytes, topic.is_kept_});
   if (!added) return added.error();
   topic.dds_topic_ = *added;
+  dds_topics_.push_back("rt" + names.dds);
   return topic;
 }
 

@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
@@ -67,12 +68,15 @@ class Topics {
   void thin() noexcept { frames_not_streamed_.fetch_add(1, std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t frames_not_streamed() const noexcept { return frames_not_streamed_.load(); }
   [[nodiscard]] bool has_dds() const noexcept { return publisher_ != nullptr; }
+  /// As DDS names them: "rt/chest/frame".
+  [[nodiscard]] const std::vector<std::string>& dds_topics() const noexcept { return dds_topics_; }
 
  private:
   Topics(stream::Server& server, std::unique_ptr<dds::Publisher> publisher);
 
   stream::Server& server_;
   std::unique_ptr<dds::Publisher> publisher_;  // null: none is wanted
+  std::vector<std::string> dds_topics_;
   std::atomic<std::uint64_t> frames_not_streamed_ = 0;
 };
 
