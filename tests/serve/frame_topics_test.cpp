@@ -173,6 +173,20 @@ TEST_F(TopicsOfFrames, frames_without_the_right_number_of_taxels_are_not_shown) 
   EXPECT_TRUE(heard().empty());
 }
 
+TEST(RawFrameBytes, are_those_of_a_frame_with_a_temperature_of_each_taxel) {
+  ArrayDescription array;
+  array.rows = 32;
+  array.cols = 16;
+  array.temperature_sensors = sensors_on_each_taxel(array.rows, array.cols);
+  RawFrame frame;
+  frame.counts.assign(array.taxel_count(), 1.0F);
+  frame.sensor_celsius.assign(array.taxel_count(), 25.0F);
+  std::vector<std::uint8_t> message;
+  messages::encode_raw_frame(frame, {array.rows, array.cols}, "left_palm_of_the_hand", message);
+  EXPECT_GE(raw_frame_bytes(array), message.size());
+  EXPECT_LE(raw_frame_bytes(array), message.size() + 256);
+}
+
 TEST_F(TopicsOfFrames, the_points_are_those_of_the_last_frame_that_was_streamed) {
   listen_to({"/suit/points"});
   frame_topics_->hear(Frame(5 * kMillisecond).result());

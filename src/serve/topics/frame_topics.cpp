@@ -34,6 +34,10 @@ Ends ends_of(bool is_due) {
 
 }  // namespace
 
+std::size_t raw_frame_bytes(const ArrayDescription& array) {
+  return 2 * kBytesOfHeader + (array.taxel_count() + array.temperature_sensors.size()) * sizeof(float);
+}
+
 FrameTopics::Array::Array(const ServedSuit& suit, std::size_t index)
     : served(suit.arrays[index]),
       shape{served.model->array.rows, served.model->array.cols},
@@ -78,15 +82,18 @@ Status FrameTopics::add_topics_of(Array& array) {
     Topic& topic;
     TopicNames names;
     const messages::MessageType& type;
+    std::size_t bytes = 0;
   };
-  for (const Wanted& wanted : {Wanted{array.frame, {.dds = prefix + "/frame"}, messages::raw_frame_type()},
-                               Wanted{array.raw, {prefix + "/raw", prefix + "/raw"}, image},
-                               Wanted{array.conductance, {.stream = prefix + "/conductance"}, grid},
-                               Wanted{array.force_grid, {.stream = prefix + "/force"}, grid},
-                               Wanted{array.force, {.dds = prefix + "/force"}, image},
-                               Wanted{array.force_sigma, {.dds = prefix + "/force_sigma"}, image},
-                               Wanted{array.wrench, {.dds = prefix + "/wrench"}, messages::wrench_type()}}) {
-    const Result<Topic> added = topics_.add(wanted.names, wanted.type, image_bytes);
+  const std::size_t frame_bytes = raw_frame_bytes(array.served.model->array);
+  const messages::MessageType& wrench = messages::wrench_type();
+  for (const Wanted& wanted : {Wanted{array.frame, {.dds = prefix + "/frame"}, messages::raw_frame_type(), frame_bytes},
+                               Wanted{array.raw, {prefix + "/raw", prefix + "/raw"}, image, image_bytes},
+                               Wanted{array.conductance, {.stream = prefix + "/conductance"}, grid, image_bytes},
+                               Wanted{array.force_grid, {.stream = prefix + "/force"}, grid, image_bytes},
+                               Wanted{array.force, {.dds = prefix + "/force"}, image, image_bytes},
+                               Wanted{array.force_sigma, {.dds = prefix + "/force_sigma"}, image, image_bytes},
+                               Wanted{array.wrench, {.dds = prefix + "/wrench"}, wrench, image_bytes}}) {
+    const Result<Topic> added = topics_.add(wanted.names, wanted.type, wanted.bytes);
     if (!added) return added.error();
     wanted.topic = *added;
   }

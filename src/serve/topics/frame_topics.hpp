@@ -23,6 +23,9 @@
 
 namespace dermis::serve {
 
+/// At least the bytes of a dermis_msgs/msg/RawFrame of the array, by which its history has room for enough of them.
+[[nodiscard]] std::size_t raw_frame_bytes(const ArrayDescription& array);
+
 /// The topics of frames: those of docs/stream.md, thinned to /stream/rate_hz, and those of docs/ros.md with all frames.
 class FrameTopics final : public Part {
  public:
