@@ -153,7 +153,9 @@ class Hands(unittest.TestCase):
         (self.work / "suit.toml").write_text("\n".join(suit))
         out = self.work / "hands.mcap"
         server = self.start(support.BINARY, "serve", "--suit", self.work / "suit.toml", "--port", 0, "--record", out)
+        end = time.monotonic() + 120
         while server.poll() is None and not (out.exists() and out.stat().st_size >= ENOUGH_BYTES):
+            self.assertLess(time.monotonic(), end, "the hands are not recorded")
             time.sleep(0.05)
         server.send_signal(signal.SIGINT)
         self.assertEqual(server.wait(60), 0)
