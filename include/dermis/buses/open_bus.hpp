@@ -27,7 +27,7 @@ struct BusOptions {
 /// registers has the time when its last word had come. A frame of a topic has the time of its message, mapped to the
 /// clock of this machine. Its device time is that of the message. Its sequence counts the messages of the topic, lost
 /// ones included. A frame of another dermis (dermis_msgs/msg/RawFrame) has all that it was sent with, but for
-/// arrival_steady.
+/// arrival_steady. One such sender is followed (docs/hands.md). Frames of another shape than the first are damaged.
 ///
 /// Fails where the plugin of the bus is not there, and on a device that cannot be reached. Also fails where the address
 /// names no array of several. A topic is waited for. A device that goes is waited for, too (reconnect_s).
