@@ -34,11 +34,18 @@ double mean_of(const std::vector<float>& values) {
 }  // namespace
 
 void Piece::add_temperature(double celsius) {
+  constexpr double kMost = std::numeric_limits<float>::max();
+  if (!(std::abs(celsius) <= kMost)) celsius = std::numeric_limits<double>::quiet_NaN();
   if (temperature_celsius && sensor_celsius.empty()) {
     sensor_celsius.push_back(static_cast<float>(*temperature_celsius));
   }
   if (temperature_celsius) sensor_celsius.push_back(static_cast<float>(celsius));
   temperature_celsius = sensor_celsius.empty() ? celsius : mean_of(sensor_celsius);
+}
+
+void Piece::forget_temperatures() noexcept {
+  temperature_celsius.reset();
+  sensor_celsius.clear();
 }
 
 FrameFields::FrameFields(const Layout& layout, const Moduli& moduli)

@@ -28,8 +28,9 @@ struct Piece {
   std::vector<float> sensor_celsius{};  ///< Where there are several temperatures; NaN: no reading.
   std::optional<double> supply_v{};
 
-  /// One after the other; NaN: no reading.
+  /// One after the other; not finite or beyond float: no reading.
   void add_temperature(double celsius);
+  void forget_temperatures() noexcept;
 
   /// A time in a smaller unit than the one before adds to it: seconds and then microseconds.
   void set_time(std::uint64_t nanos, double unit) noexcept {

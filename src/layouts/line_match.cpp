@@ -60,7 +60,7 @@ LineMatch::Pattern LineMatch::pattern_of(const TextLayout::Pattern& fields) cons
   const Holds holds = is_taxel ? Holds::taxel : is_row ? Holds::row : may_be_row ? Holds::row_or_frame : Holds::frame;
   std::vector<std::size_t> shares;
   for (std::size_t k = 0; k < layout_.arrays.size(); ++k) shares.push_back(shares_of(fields, k));
-  return {&fields, holds, std::move(shares), is_head, begins_frame};
+  return {&fields, holds, std::move(shares), is_head, begins_frame, has_role(fields, Role::temperature)};
 }
 
 bool LineMatch::read(std::span<const std::uint8_t> line, Piece& piece) {
@@ -76,6 +76,7 @@ bool LineMatch::read(std::span<const std::uint8_t> line, Piece& piece) {
 
 bool LineMatch::read_pattern(std::span<const std::uint8_t> line, Piece& piece) {
   piece = heads_;
+  if (pattern_->has_temperature) piece.forget_temperatures();
   count_ = 0;
   at_ = line.data();
   end_ = line.data() + line.size();

@@ -41,6 +41,7 @@ class LineMatch {
     std::vector<std::size_t> shares{};  ///< Fields of each array, which share what the line holds of it.
     bool is_head = false;
     bool begins_frame = false;
+    bool has_temperature = false;
   };
 
   [[nodiscard]] Pattern pattern_of(const TextLayout::Pattern& fields) const;

@@ -6,7 +6,6 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "layouts/has_role.hpp"
 
@@ -178,7 +177,7 @@ std::size_t PacketMatch::count_of(const PacketField& field, std::size_t array, c
 bool PacketMatch::use(const PacketField& field, double number, Piece& piece) {
   const double value = field.unit * number + field.offset;
   if (field.role == Role::temperature) {
-    piece.add_temperature(std::isfinite(value) ? value : std::numeric_limits<double>::quiet_NaN());
+    piece.add_temperature(value);
     return true;
   }
   if (field.role == Role::supply) {

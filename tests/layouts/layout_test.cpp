@@ -184,6 +184,46 @@ TEST(TextLayout, several_temperatures_are_those_of_sensors) {
   EXPECT_EQ(frames[1].temperature_celsius, 21.0) << "the mean of those that read";
 }
 
+TEST(TextLayout, each_head_with_temperatures_replaces_those_before_it) {
+  const std::string one = std::string(kTwoByTwo) + "line = [\"T {temperature}\", \"{values}\"]\n";
+  const auto frames = frames_of(one, bytes_of("T 20\nT 21\nT 22\n1 2 3 4\nT 23\n5 6 7 8\n"));
+  ASSERT_EQ(readings_of(frames), kOneToEight);
+  EXPECT_EQ(frames[0].temperature_celsius, 22.0);
+  EXPECT_EQ(frames[1].temperature_celsius, 23.0);
+  for (const RawFrame& frame : frames) EXPECT_TRUE(frame.sensor_celsius.empty()) << "there is one sensor";
+
+  const std::string two = std::string(kTwoByTwo) + "line = [\"T {temperature} {temperature}\", \"{values}\"]\n";
+  const auto pairs = frames_of(two, bytes_of("T 20 30\nT 21 31\nT 22 32\n1 2 3 4\nT 23 33\n5 6 7 8\n"));
+  ASSERT_EQ(readings_of(pairs), kOneToEight);
+  EXPECT_EQ(pairs[0].sensor_celsius, (std::vector<float>{22.0F, 32.0F}));
+  EXPECT_EQ(pairs[0].temperature_celsius, 27.0);
+  EXPECT_EQ(pairs[1].sensor_celsius, (std::vector<float>{23.0F, 33.0F}));
+}
+
+TEST(TextLayout, the_temperature_of_a_line_replaces_that_of_its_head) {
+  const auto frames =
+      frames_of(std::string(kTwoByTwo) + "line = [\"T {temperature}\", \"{temperature}C {values}\", \"{values}\"]\n",
+                bytes_of("T 20\n25C 1 2 3 4\n5 6 7 8\n"));
+  ASSERT_EQ(readings_of(frames), kOneToEight);
+  EXPECT_EQ(frames[0].temperature_celsius, 25.0);
+  EXPECT_TRUE(frames[0].sensor_celsius.empty());
+  EXPECT_EQ(frames[1].temperature_celsius, 20.0);
+}
+
+TEST(TextLayout, a_temperature_beyond_float_is_no_reading) {
+  const auto pairs = frames_of(std::string(kTwoByTwo) + "line = \"{temperature} {temperature}: {values}\"\n",
+                               bytes_of("1e300 20: 1 2 3 4\n20 -1e300: 5 6 7 8\n"));
+  ASSERT_EQ(readings_of(pairs), kOneToEight);
+  EXPECT_TRUE(std::isnan(pairs[0].sensor_celsius[0]));
+  EXPECT_EQ(pairs[0].temperature_celsius, 20.0);
+  EXPECT_TRUE(std::isnan(pairs[1].sensor_celsius[1]));
+  EXPECT_EQ(pairs[1].temperature_celsius, 20.0);
+  const auto one = frames_of(std::string(kTwoByTwo) + "line = \"{temperature}: {values}\"\n",
+                             bytes_of("1e300: 1 2 3 4\n20: 5 6 7 8\n"));
+  ASSERT_EQ(readings_of(one), kOneToEight);
+  EXPECT_EQ(one[0].temperature_celsius, std::nullopt);
+}
+
 TEST(TextLayout, a_clock_goes_on_over_midnight_and_a_date_counts_from_1970) {
   const std::string clock = std::string(kTwoByTwo) + "line = \"{clock} {values}\"\n";
   const auto night = frames_of(clock, bytes_of("23:59:59.500 1 2 3 4\n00:00:00,500 5 6 7 8\n"));
