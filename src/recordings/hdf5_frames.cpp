@@ -155,7 +155,7 @@ Status Hdf5FramesReader::State::open_sensors() {
   const Result<Hdf5Dataset> dataset = file.dataset(kSensors);
   if (!dataset) return dataset.error();
   if (dataset->sizes.size() != 2 || dataset->sizes[0] != counts.frame_count() || dataset->sizes[1] == 0 ||
-      dataset->sizes[1] > kMaxLines * kMaxLines) {
+      (dataset->sizes[1] > kMaxLines && dataset->sizes[1] != counts.shape().taxel_count())) {
     return bad_input(dataset->place + " does not hold the sensors of each of " + std::to_string(counts.frame_count()) +
                      " frames");
   }

@@ -48,13 +48,15 @@ void WrittenArray::encode(const RawFrame& frame, const ForceFrame* force) {
   raw_.is_in_frame = true;
 }
 
-/// As an image of one row.
+/// As an image of one row. With one sensor a taxel it has the shape of the array, since a row is no longer than
+/// kMaxLines.
 void WrittenArray::encode_sensors(const RawFrame& frame) {
-  sensors_.is_in_frame = !frame.sensor_celsius.empty();
+  const std::size_t count = frame.sensor_celsius.size();
+  sensors_.is_in_frame = count > 0;
   if (!sensors_.is_in_frame) return;
-  temperatures_.time = frame.time;
-  temperatures_.counts = frame.sensor_celsius;
-  messages::encode_image(temperatures_, {1, frame.sensor_celsius.size()}, frame_id_, sensors_.message);
+  const FrameShape& taxels = description_.shape;
+  const FrameShape shape = count == taxels.taxel_count() ? taxels : FrameShape{1, count};
+  messages::encode_value_image(frame.sensor_celsius, frame.time, shape, frame_id_, sensors_.message);
 }
 
 }  // namespace dermis::recordings

@@ -53,7 +53,6 @@ class WrittenArray {
 
   RecordedArray description_;
   std::string frame_id_;
-  RawFrame temperatures_;  // of the sensors, as counts
   // In the order of the file. The image comes last: a frame whose image is there is whole.
   Topic temperature_{"temperature", messages::temperature_type()};
   Topic sensors_{kSensorsTopic, messages::image_type()};

@@ -130,6 +130,37 @@ TEST(SuitRecording, temperatures_of_several_sensors_read_back_with_the_same_bits
   }
 }
 
+TEST(SuitRecording, one_sensor_a_taxel_reads_back_from_an_array_of_more_than_1024) {
+  const support::TemporaryFolder folder;
+  const std::vector<RecordedArray> arrays{{.name = "chest", .shape = {33, 32}}};
+  std::vector<Written> all = interleaved(arrays, 3, 4);
+  for (Written& written : all) {
+    for (std::size_t k = 0; k < arrays[0].shape.taxel_count(); ++k) {
+      written.frame.sensor_celsius.push_back(20.0F + 0.01F * static_cast<float>(k));
+    }
+  }
+  record(folder.file("rec.mcap"), arrays, all);
+  expect_same(read_suit(folder.file("rec.mcap")), all);
+}
+
+TEST(SuitRecording, whole_temperatures_of_sensors_are_32FC1_too) {
+  const support::TemporaryFolder folder;
+  const std::vector<RecordedArray> arrays{{.name = "chest", .shape = {3, 5}}};
+  std::vector<Written> all = interleaved(arrays, 1, 5);
+  all[0].frame.sensor_celsius = {20.0F, 21.0F};
+  record(folder.file("rec.mcap"), arrays, all);
+  const auto mcap = McapReader::open(folder.file("rec.mcap"));
+  ASSERT_TRUE(mcap) << mcap.error().message;
+  McapMessage message;
+  std::string image;
+  for (Result<bool> more = (*mcap)->next(message); more && *more; more = (*mcap)->next(message)) {
+    const bool is_of_sensors = (*mcap)->channels().at(message.channel).topic == "/chest/temperatures";
+    if (is_of_sensors) image.assign(message.data.begin(), message.data.end());
+  }
+  EXPECT_NE(image.find("32FC1"), std::string::npos);
+  expect_same(read_suit(folder.file("rec.mcap")), all);
+}
+
 TEST(SuitRecording, of_one_array_is_a_recording_as_recording_writer_makes_it) {
   const support::TemporaryFolder folder;
   const std::vector<RecordedArray> arrays{three_arrays().front()};
