@@ -26,7 +26,7 @@ enum class Column { time, temperature, supply, sensor };
 constexpr std::array<const char*, 3> kColumnNames{"time_s", "temperature_celsius", "supply_v"};
 constexpr std::string_view kSensorBegin = "sensor";
 constexpr std::string_view kSensorEnd = "_celsius";
-constexpr std::size_t kMaxColumns = kMaxLines * kMaxLines + kColumnNames.size();
+constexpr std::size_t kMaxColumns = 2 * kMaxLines * kMaxLines + kColumnNames.size();  // with one sensor a taxel
 
 const char* name_of(Column column) {
   return kColumnNames[static_cast<std::size_t>(column)];
@@ -136,7 +136,7 @@ Result<std::vector<Column>> parse_columns(const Cells& cells) {
   const std::size_t first = columns.size();
   if (first < cells.size() && cells[first] != taxel_name(0, 0) && !parse_taxel(cells[first])) {
     return bad_input("unknown column " + in_quotes(cells[first]) +
-                     "; before r0c0 stand time_s, temperature_celsius and supply_v");
+                     "; before r0c0 stand time_s, temperature_celsius, sensor0_celsius and so on, and supply_v");
   }
   return columns;
 }
@@ -156,6 +156,10 @@ Result<Header> parse_header(const Cells& cells, std::optional<FrameShape> shape)
     return bad_input(taxel_mistake(cells, columns->size(), *expected));
   }
   const auto sensors = static_cast<std::size_t>(std::count(columns->begin(), columns->end(), Column::sensor));
+  if (sensors > kMaxLines && sensors != expected->shape.taxel_count()) {
+    return bad_input("has " + std::to_string(sensors) +
+                     " sensors of temperature; at most 1024, or one a taxel, can be read");
+  }
   return Header{*std::move(columns), expected->shape, sensors};
 }
 
@@ -314,7 +318,7 @@ void FramesCsvWriter::write_header(std::size_t sensors) {
 
 Status FramesCsvWriter::write(const RawFrame& frame) {
   assert(frame.counts.size() == shape_.taxel_count());
-  if (!sensors_) write_header(frame.sensor_celsius.size());
+  if (!sensors_) write_header(std::max(columns_.sensors, frame.sensor_celsius.size()));
   line_.clear();
   append_seconds(line_, frame.time);
   const auto append_optional = [this](const std::optional<double>& value) {
@@ -338,7 +342,7 @@ Status FramesCsvWriter::write(const RawFrame& frame) {
 }
 
 Status FramesCsvWriter::commit() {
-  if (!sensors_) write_header(0);
+  if (!sensors_) write_header(columns_.sensors);
   return file_.commit();
 }
 

@@ -2,10 +2,12 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/recordings/conversion.hpp"
 
+#include <algorithm>
 #include <memory>
 
 #include "dermis/files/array_toml.hpp"
 #include "dermis/recordings/recording.hpp"
+#include "recordings/described_sensors.hpp"
 
 namespace dermis::recordings {
 namespace {
@@ -14,13 +16,14 @@ namespace {
 struct Extras {
   bool is_timed = false;
   bool has_temperature = false;
-  bool has_sensors = false;
+  std::size_t kept_sensors = 0;  ///< Those of the first frame, or as many as the array is said to have.
+  std::size_t most_sensors = 0;
   bool has_supply = false;
   bool has_acquisition = false;
 
   void add(const RawFrame& frame) {
     has_temperature = has_temperature || frame.temperature_celsius;
-    has_sensors = has_sensors || !frame.sensor_celsius.empty();
+    most_sensors = std::max(most_sensors, frame.sensor_celsius.size());
     has_supply = has_supply || frame.supply_v;
     has_acquisition = has_acquisition || frame.acquisition != Acquisition{};
   }
@@ -32,7 +35,10 @@ std::vector<std::string> left_out(const Extras& extras, bool has_forces, const F
   const bool holds_temperature = holds_all || format == FrameFormat::csv;
   if (extras.is_timed && !has_times(format)) names.emplace_back("times");
   if (extras.has_temperature && !holds_temperature) names.emplace_back("temperature");
-  if (extras.has_sensors && !holds_temperature) names.emplace_back("temperatures of several sensors");
+  if (extras.most_sensors > 0 && !holds_temperature) names.emplace_back("temperatures of several sensors");
+  if (extras.most_sensors > extras.kept_sensors && format == FrameFormat::csv) {
+    names.emplace_back("temperatures of the sensors that the first frame lacks");
+  }
   if (extras.has_supply && !holds_temperature) names.emplace_back("supply");
   if (extras.has_acquisition && !holds_all) names.emplace_back("numbers, device times and arrivals of the frames");
   if (!notes.array_toml.empty() && !holds_all) names.emplace_back("the description of the array");
@@ -84,6 +90,7 @@ Status write_all(FrameSource& source, const std::string& out, const FrameNotes& 
   const Result<bool> has_frame = source.next(frame);
   if (!has_frame) return has_frame.error();
   if (!*has_frame) return failed("stopped; nothing is written");
+  extras.kept_sensors = std::max(described_sensors(notes), frame.sensor_celsius.size());
   const Result<std::unique_ptr<FrameSink>> sink = create_frames(out, *source.shape(), notes);
   if (!sink) return sink.error();
   return copy(source, frame, **sink, stop, extras);

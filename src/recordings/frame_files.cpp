@@ -20,6 +20,7 @@
 #include "dermis/importers/text_matrix.hpp"
 #include "dermis/importers/xsensor.hpp"
 #include "dermis/recordings/recording.hpp"
+#include "recordings/described_sensors.hpp"
 #include "recordings/hdf5_dataset_frames.hpp"
 #include "recordings/matlab_hdf5.hpp"
 #include "recordings/wiresens_hdf5.hpp"
@@ -183,7 +184,7 @@ Result<std::unique_ptr<FrameSink>> create_frames(const std::string& path, FrameS
     case FrameFormat::hdf5: return as<FrameSink>(Hdf5FramesWriter::create(path, shape, notes));
     case FrameFormat::wiresens: return as<FrameSink>(WiresensHdf5Writer::create(path, shape));
     case FrameFormat::npy: return as<FrameSink>(files::NpyWriter::create(path, shape));
-    default: return as<FrameSink>(files::FramesCsvWriter::create(path, shape));
+    default: return as<FrameSink>(files::FramesCsvWriter::create(path, shape, {.sensors = described_sensors(notes)}));
   }
 }
 

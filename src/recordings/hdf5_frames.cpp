@@ -267,7 +267,7 @@ struct Hdf5FramesWriter::State {
   Hdf5Id counts{};
   Column<double> time_s{};
   Fields<Column> columns{};
-  std::optional<std::size_t> sensor_count{};  ///< Of the first frame.
+  std::size_t sensor_count = 0;  ///< The most of any frame so far.
   Column<float> sensors{};
   bool is_u16 = true;
   hsize_t written = 0;      ///< Frames in the datasets.
@@ -278,7 +278,8 @@ struct Hdf5FramesWriter::State {
   void add_notes(const FrameNotes& notes) const;
   Status create_datasets();
   Hdf5Id create_counts(const char* name, hid_t type) const;
-  Status create_sensors(std::size_t count);
+  Status widen_sensors(std::size_t count);
+  Status copy_sensors(hsize_t first, hsize_t frames, const Hdf5Id& wide, std::size_t count) const;
   void append_sensors(const std::vector<float>& celsius);
   template <typename T>
   bool create_column(const Label<T>& label, Column<T>& column) const;
@@ -320,19 +321,46 @@ Status Hdf5FramesWriter::State::create_datasets() {
   return file.status();
 }
 
-Status Hdf5FramesWriter::State::create_sensors(std::size_t count) {
-  sensor_count = count;
-  if (count == 0) return Done{};
+/// A dataset of more sensors: earlier frames have no reading of those that are new.
+Status Hdf5FramesWriter::State::widen_sensors(std::size_t count) {
+  if (Status flushed = flush(); !flushed) return flushed;
+  constexpr const char* kWide = "sensor_celsius_wide";
   const std::size_t frames = std::clamp<std::size_t>(kChunkBytes / (count * sizeof(float)), 1, kMaxChunkFrames);
-  sensors.dataset = file.create_dataset(kSensors, hdf5_type<float>(), {count}, frames);
-  if (!sensors.dataset) return file.failure();
-  Hdf5Output::add_text(sensors.dataset.get(), "units", "degC");
+  Hdf5Id wide = file.create_dataset(kWide, hdf5_type<float>(), {count}, frames);
+  if (!wide) return file.failure();
+  Hdf5Output::add_text(wide.get(), "units", "degC");
+  for (hsize_t first = 0; first < written; first += frames) {
+    if (Status copied = copy_sensors(first, std::min<hsize_t>(frames, written - first), wide, count); !copied) {
+      return copied;
+    }
+  }
+  sensors.dataset.close();
+  if ((sensor_count > 0 && H5Ldelete(file.id(), kSensors, H5P_DEFAULT) < 0) ||
+      H5Lmove(file.id(), kWide, file.id(), kSensors, H5P_DEFAULT, H5P_DEFAULT) < 0) {
+    return file.failure();
+  }
+  sensors.dataset = std::move(wide);
+  sensor_count = count;
   return file.status();
+}
+
+Status Hdf5FramesWriter::State::copy_sensors(hsize_t first, hsize_t frames, const Hdf5Id& wide,
+                                             std::size_t count) const {
+  std::vector<float> narrow(frames * sensor_count);
+  if (sensor_count > 0) {
+    Status read = file.read_back(sensors.dataset, first, frames, hdf5_type<float>(), narrow.data());
+    if (!read) return read;
+  }
+  std::vector<float> celsius(frames * count, std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t frame = 0; frame < frames; ++frame) {
+    std::copy_n(narrow.data() + frame * sensor_count, sensor_count, celsius.data() + frame * count);
+  }
+  return file.append(wide, first, frames, hdf5_type<float>(), celsius.data());
 }
 
 /// A sensor that this frame has not is NaN.
 void Hdf5FramesWriter::State::append_sensors(const std::vector<float>& celsius) {
-  for (std::size_t sensor = 0; sensor < *sensor_count; ++sensor) {
+  for (std::size_t sensor = 0; sensor < sensor_count; ++sensor) {
     sensors.waiting.push_back(sensor < celsius.size() ? celsius[sensor] : std::numeric_limits<float>::quiet_NaN());
   }
 }
@@ -417,10 +445,10 @@ Status Hdf5FramesWriter::write(const RawFrame& frame) {
   if (state.is_u16 && !files::fit_u16(frame.counts)) {
     if (Status widened = state.widen(); !widened) return widened;
   }
-  state.counts_f32.insert(state.counts_f32.end(), frame.counts.begin(), frame.counts.end());
-  if (!state.sensor_count) {
-    if (Status created = state.create_sensors(frame.sensor_celsius.size()); !created) return created;
+  if (frame.sensor_celsius.size() > state.sensor_count) {
+    if (Status widened = state.widen_sensors(frame.sensor_celsius.size()); !widened) return widened;
   }
+  state.counts_f32.insert(state.counts_f32.end(), frame.counts.begin(), frame.counts.end());
   state.append_sensors(frame.sensor_celsius);
   state.time_s.waiting.push_back(files::seconds_of(frame.time));
   const Fields<Value> fields = fields_of(frame);

@@ -10,6 +10,7 @@
 #include <streambuf>
 
 #include "dermis/core/random.hpp"
+#include "dermis/files/taxel_text.hpp"
 #include "support/mutations.hpp"
 #include "support/random_frames.hpp"
 #include "support/temporary_folder.hpp"
@@ -166,7 +167,8 @@ TEST(FramesCsvReader, refuses_a_header_from_which_no_shape_can_be_learnt) {
 
 TEST(FramesCsvReader, names_an_unknown_column) {
   EXPECT_EQ(error_of("time_s,humidity,r0c0,r0c1\n"),
-            "frames.csv:1: unknown column 'humidity'; before r0c0 stand time_s, temperature_celsius and supply_v");
+            "frames.csv:1: unknown column 'humidity'; before r0c0 stand time_s, temperature_celsius, "
+            "sensor0_celsius and so on, and supply_v");
   EXPECT_EQ(error_of("time_s,r0c0,x,r0c1\n"), "frames.csv:1: unknown column 'x'; expected r0c1");
   EXPECT_EQ(error_of("time_s,r0c0,r0c1,x\n"),
             "frames.csv:1: unknown column 'x' after the last taxel of a 1x2 array; remove it");
@@ -352,6 +354,40 @@ TEST(FramesCsvReader, sensors_are_numbered_from_0_on) {
   const auto reader = FramesCsvReader::open(folder.file("f.csv"));
   ASSERT_FALSE(reader);
   EXPECT_NE(reader.error().message.find("sensor0_celsius is expected"), std::string::npos) << reader.error().message;
+}
+
+TEST(FramesCsvReader, more_sensors_than_an_array_can_have_are_refused) {
+  std::string header = "time_s";
+  for (int sensor = 0; sensor < 1025; ++sensor) header += ",sensor" + std::to_string(sensor) + "_celsius";
+  EXPECT_EQ(error_of(header + ",r0c0,r0c1\n"),
+            "frames.csv:1: has 1025 sensors of temperature; at most 1024, or one a taxel, can be read");
+}
+
+TEST(FramesCsvReader, the_largest_array_may_have_one_sensor_a_taxel) {
+  std::string text = "time_s";
+  for (std::size_t i = 0; i < std::size_t{1024} * 1024; ++i) text += ",sensor" + std::to_string(i) + "_celsius";
+  append_taxel_names(text, 1024, 1024);
+  text += "\n0";
+  for (std::size_t i = 0; i < std::size_t{2} * 1024 * 1024; ++i) text += ",7";
+  const auto reader = FramesCsvReader::open(std::make_unique<std::istringstream>(text + "\n"), "frames.csv");
+  ASSERT_TRUE(reader) << reader.error().message;
+  RawFrame frame;
+  const Result<bool> more = (*reader)->next(frame);
+  ASSERT_TRUE(more) << more.error().message;
+  EXPECT_EQ(frame.sensor_celsius, std::vector<float>(std::size_t{1024} * 1024, 7.0F));
+}
+
+TEST(FramesCsvWriter, columns_of_sensors_that_the_first_frame_lacks_may_be_asked_for) {
+  const support::TemporaryFolder folder;
+  const auto writer = FramesCsvWriter::create(folder.file("f.csv"), {1, 1}, {.supply_v = false, .sensors = 2});
+  ASSERT_TRUE(writer);
+  RawFrame frame{Nanos(0), 20.5, {}, {1.0F}};
+  ASSERT_TRUE((*writer)->write(frame));
+  frame.sensor_celsius = {20.0F, 21.0F};
+  ASSERT_TRUE((*writer)->write(frame));
+  ASSERT_TRUE((*writer)->commit());
+  EXPECT_EQ(support::read_bytes(folder.file("f.csv")),
+            "time_s,temperature_celsius,sensor0_celsius,sensor1_celsius,r0c0\n0,20.5,,,1\n0,20.5,20,21,1\n");
 }
 
 TEST(FramesCsvWriter, reports_a_full_disk) {

@@ -6,6 +6,7 @@
 
 #include "dermis/files/array_toml.hpp"
 #include "support/random_frames.hpp"
+#include "support/reference_array.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace dermis::recordings {
@@ -52,6 +53,26 @@ TEST_F(Conversion, what_the_format_has_no_place_for_is_named) {
   EXPECT_EQ(*convert_frames(in_, folder_.file("out.csv")), Names{"numbers, device times and arrivals of the frames"});
   EXPECT_EQ(*convert_frames(in_, folder_.file("out.npy")),
             (Names{"times", "temperature", "supply", "numbers, device times and arrivals of the frames"}));
+}
+
+TEST_F(Conversion, sensors_of_temperature_that_the_first_frame_lacks_are_kept_or_named) {
+  frames_[3].sensor_celsius = {20.5F, 21.5F};
+  const std::string in = folder_.file("late.mcap");
+  const auto sink = create_frames(in, kShape);
+  ASSERT_TRUE(sink);
+  ASSERT_TRUE(support::write_all(**sink, frames_));
+  const std::string numbers = "numbers, device times and arrivals of the frames";
+  EXPECT_EQ(*convert_frames(in, folder_.file("out.csv")),
+            (Names{"temperatures of the sensors that the first frame lacks", numbers}));
+  EXPECT_EQ(*convert_frames(in, folder_.file("out.h5")), Names{});
+  EXPECT_EQ(read_frames(folder_.file("out.h5"))->at(3).sensor_celsius, frames_[3].sensor_celsius);
+
+  ArrayDescription array = support::reference_array(kShape.rows, kShape.cols);
+  array.name = "hand";
+  array.temperature_sensors = {{0, 0}, {2, 3}};
+  EXPECT_EQ(*convert_frames(in, folder_.file("described.csv"), {.array = &array}),
+            (Names{numbers, "the description of the array"}));
+  EXPECT_EQ(read_frames(folder_.file("described.csv"))->at(3).sensor_celsius, frames_[3].sensor_celsius);
 }
 
 TEST_F(Conversion, a_file_without_times_has_none_to_leave_out) {

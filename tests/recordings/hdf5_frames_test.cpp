@@ -73,10 +73,29 @@ TEST(Hdf5Frames, sensors_that_a_frame_lacks_have_no_reading) {
   ASSERT_TRUE(write_file(folder.file("f.h5"), {3, 4}, frames));
   const Result<std::vector<RawFrame>> read = read_file(folder.file("f.h5"));
   ASSERT_TRUE(read) << read.error().message;
-  EXPECT_EQ(read->at(0).sensor_celsius, frames[0].sensor_celsius);
-  ASSERT_EQ(read->at(1).sensor_celsius.size(), 2U);
+  ASSERT_EQ(read->at(0).sensor_celsius.size(), 3U);
+  EXPECT_EQ(read->at(0).sensor_celsius[1], 21.0F);
+  EXPECT_TRUE(std::isnan(read->at(0).sensor_celsius[2]));
+  ASSERT_EQ(read->at(1).sensor_celsius.size(), 3U);
   EXPECT_TRUE(std::isnan(read->at(1).sensor_celsius[0]));
-  EXPECT_EQ(read->at(2).sensor_celsius, frames[0].sensor_celsius);
+  EXPECT_EQ(read->at(2).sensor_celsius, frames[2].sensor_celsius);
+}
+
+TEST(Hdf5Frames, sensors_that_come_later_are_kept_and_have_no_reading_before) {
+  const support::TemporaryFolder folder;
+  std::vector<RawFrame> frames = support::random_frames(8, 3000, 12, support::RandomCounts::whole);
+  for (std::size_t k = 1100; k < 2500; ++k) frames[k].sensor_celsius = {0.01F * static_cast<float>(k)};
+  for (std::size_t k = 2500; k < 3000; ++k) frames[k].sensor_celsius = {0.01F * static_cast<float>(k), 21.0F};
+  ASSERT_TRUE(write_file(folder.file("f.h5"), {3, 4}, frames));
+  const Result<std::vector<RawFrame>> read = read_file(folder.file("f.h5"));
+  ASSERT_TRUE(read) << read.error().message;
+  ASSERT_EQ(read->size(), frames.size());
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    std::vector<float> expected = frames[k].sensor_celsius;
+    expected.resize(2, std::nanf(""));
+    frames[k].sensor_celsius = expected;
+    support::expect_same_frame(read->at(k), frames[k]);
+  }
 }
 
 TEST(Hdf5Frames, keep_what_is_said_of_all_frames) {

@@ -22,6 +22,7 @@ namespace dermis::files {
 struct FramesCsvColumns {
   bool temperature_celsius = true;
   bool supply_v = true;
+  std::size_t sensors = 0;  ///< Of temperature, at least; the first frame may have more.
 };
 
 /// Reads frames.csv (docs/file-formats.md) frame by frame. The memory is that of one line, at most 32 MiB. Counts may
@@ -63,8 +64,8 @@ class FramesCsvWriter final : public FrameSink {
   [[nodiscard]] static Result<std::unique_ptr<FramesCsvWriter>> create(const std::string& path, FrameShape shape,
                                                                        const FramesCsvColumns& columns = {});
 
-  /// Appends a frame of `shape`; values of columns that are not in the file are dropped. It has columns for as many
-  /// temperature sensors as the first frame has.
+  /// Appends a frame of `shape`; values of columns that are not in the file are dropped: those of sensors, too, that
+  /// neither the first frame has nor FramesCsvColumns names.
   [[nodiscard]] Status write(const RawFrame& frame) override;
   [[nodiscard]] Status commit() override;
 
