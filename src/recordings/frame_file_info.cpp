@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <system_error>
 
+#include "dermis/core/mean_celsius.hpp"
 #include "dermis/files/taxel_text.hpp"
 
 namespace dermis::recordings {
@@ -44,11 +44,11 @@ void add(const RawFrame& frame, FrameFileInfo& info) {
   if (info.frames++ == 0 && frame.acquisition.arrival_utc >= kEarliestClock) {
     info.start_utc = frame.acquisition.arrival_utc;
   }
-  if (!frame.temperature_celsius || std::isnan(*frame.temperature_celsius)) return;
-  const double celsius = *frame.temperature_celsius;
+  const std::optional<double> celsius = mean_celsius(frame);
+  if (!celsius) return;
   auto& range = info.temperature_celsius;
-  if (!range) range.emplace(celsius, celsius);
-  range = {std::min(range->first, celsius), std::max(range->second, celsius)};
+  if (!range) range.emplace(*celsius, *celsius);
+  range = {std::min(range->first, *celsius), std::max(range->second, *celsius)};
 }
 
 /// Returns the time of the first frame.

@@ -178,6 +178,21 @@ TEST(Evaluation, breaks_down_every_judged_taxel_once) {
   }
 }
 
+TEST(Evaluation, breaks_down_by_the_mean_of_several_sensors) {
+  const pipeline::Model model = exact_model();
+  std::vector<RawFrame> frames = {frame_under(model, {5.0, 0.0, 0.0, 0.0})};
+  frames[0].temperature_celsius.reset();
+  frames[0].sensor_celsius = {31.0F, 35.0F};
+  frames.push_back(frames[0]);
+  const std::vector<Load> loads = {{0, LoadKind::force, {0, 0, 0, 0}, 5.0}, {1, LoadKind::force, {0, 0, 1, 1}, 5.0}};
+  const auto evaluation = evaluate(model, frames, loads);
+  ASSERT_TRUE(evaluation) << evaluation.error().message;
+  ASSERT_EQ(evaluation->by_temperature.size(), 1U);
+  EXPECT_EQ(evaluation->by_temperature.front().low, 30.0);
+  ASSERT_FALSE(evaluation->totals.empty());
+  EXPECT_EQ(evaluation->totals.front().temperature_celsius, 33.0);
+}
+
 /// A press that comes, grows, is held, falls and goes, ten labels a second.
 struct TimedPress {
   std::vector<RawFrame> frames;

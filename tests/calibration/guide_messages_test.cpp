@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <memory>
+
 namespace dermis::calibration {
 namespace {
 
@@ -68,6 +71,19 @@ TEST(GuideMessages, tell_which_of_two_is_missing) {
   EXPECT_EQ(words(state, GuideHint::other_taxel), "That is r1c2: put 20 N (2.04 kg) on r3c2 instead. r1c1 is right.");
   state.pressed_taxel = 5;
   EXPECT_EQ(words(state, GuideHint::one_of_two), "Only r1c1 is pressed: put 20 N (2.04 kg) on r3c2, too.");
+}
+
+TEST(GuideMessages, the_result_holds_for_the_mean_of_several_sensors) {
+  const auto press = std::make_shared<GuidedPress>();
+  press->frames.resize(2);
+  press->frames[0].sensor_celsius = {30.0F, 36.0F};
+  press->frames[1].sensor_celsius = {32.0F, std::numeric_limits<float>::quiet_NaN()};
+  Calibration calibration;
+  calibration.model.array = array_of_taxels();
+  EXPECT_NE(describe_result(calibration, {}, {press}).find("It holds for about 32 C"), std::string::npos);
+  press->frames.clear();
+  EXPECT_NE(describe_result(calibration, {}, {press}).find("It holds for the temperature of today."),
+            std::string::npos);
 }
 
 }  // namespace

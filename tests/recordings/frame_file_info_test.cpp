@@ -80,6 +80,17 @@ TEST(FrameFileInfo, the_range_of_temperatures_is_that_of_the_numbers) {
   EXPECT_FALSE(info_of("f.npy", three_frames(kIn2026)).temperature_celsius);
 }
 
+TEST(FrameFileInfo, the_range_of_temperatures_is_that_of_the_means_of_sensors) {
+  std::vector<RawFrame> frames = three_frames(kIn2026);
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    frames[k].temperature_celsius.reset();
+    frames[k].sensor_celsius = {20.0F + static_cast<float>(k), std::numeric_limits<float>::quiet_NaN(), 25.0F};
+  }
+  const auto range = info_of("f.csv", frames).temperature_celsius;
+  ASSERT_TRUE(range);
+  EXPECT_EQ(*range, std::pair(22.5, 23.5));
+}
+
 TEST(FrameFileInfo, notes_come_from_formats_that_keep_them) {
   EXPECT_EQ(info_of("f.h5", three_frames(kIn2026)).notes, kNotes);
   const FrameFileInfo recording = info_of("f.mcap", three_frames(kIn2026));

@@ -25,7 +25,7 @@ struct FrameFileInfo {
   std::optional<Nanos> start_utc;    ///< Time of the first, since 1970.
   std::optional<std::uint64_t> lost;
   bool complete = true;                                          ///< Written to its end.
-  std::optional<std::pair<double, double>> temperature_celsius;  ///< Lowest and highest.
+  std::optional<std::pair<double, double>> temperature_celsius;  ///< Lowest and highest of mean_celsius().
   FrameNotes notes;
   std::string compression;  ///< Of a recording.
   std::string software;

@@ -9,6 +9,7 @@
 
 #include "calibration/evaluation/contact_count.hpp"
 #include "calibration/evaluation/error_summary.hpp"
+#include "dermis/core/mean_celsius.hpp"
 
 namespace dermis::calibration {
 namespace {
@@ -35,7 +36,7 @@ void add_taxels(std::size_t frame, const RawFrame& raw, const Sample& truth, con
         if (!std::isnan(ghost)) judgement.ghost_n[k].push_back(ghost);  // no force is no ghost
       }
     } else if (newtons >= row.judged_from_n()) {
-      JudgedTaxel judged{frame, taxel, newtons, raw.temperature_celsius, raw.supply_v, contacts, {}, 0.0F};
+      JudgedTaxel judged{frame, taxel, newtons, mean_celsius(raw), raw.supply_v, contacts, {}, 0.0F};
       for (const std::vector<float>& forces : row.newtons()) judged.newtons.push_back(forces[taxel]);
       judged.sigma_newtons = row.force().sigma_newtons[taxel];
       judged.touch = judgement.clocks[taxel].touch();
@@ -50,7 +51,7 @@ void add_totals(std::size_t frame, const RawFrame& raw, const Sample& truth, con
   if (is_only_one) judgement.total_clock.add(raw.time, truth.totals.front().newtons);
   if (is_unloaded(truth)) judgement.total_clock.add(raw.time, 0.0);
   for (const TotalForce& total : truth.totals) {
-    JudgedTotal judged{frame, total.newtons, raw.temperature_celsius, {}};
+    JudgedTotal judged{frame, total.newtons, mean_celsius(raw), {}};
     if (is_only_one) judged.touch = judgement.total_clock.touch();
     const auto of_dermis = row.force().total(total.taxels);
     judged.newtons.push_back(of_dermis.left_out < total.taxels.size() ? of_dermis.newtons : 0.0);

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "calibration/circuit_fit/discriminating_presses.hpp"
+#include "dermis/core/mean_celsius.hpp"
 
 namespace dermis::calibration {
 namespace {
@@ -38,8 +39,9 @@ std::string describe_temperature(const TrainingReport& training, const GuidedPre
   double count = 0.0;
   for (const auto& press : presses) {
     for (const RawFrame& frame : press->frames) {
-      if (!frame.temperature_celsius) continue;
-      sum += *frame.temperature_celsius;
+      const std::optional<double> celsius = mean_celsius(frame);
+      if (!celsius) continue;
+      sum += *celsius;
       count += 1.0;
     }
   }
