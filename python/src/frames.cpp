@@ -294,6 +294,14 @@ Forces part_of_forces(const Forces& whole, const py::slice& slice) {
   return part;
 }
 
+/// `values` of each of `frames` frames, with NaN behind them.
+std::vector<float> widened(const std::vector<float>& values, std::size_t frames, std::size_t each) {
+  std::vector<float> wide(frames * each, std::numeric_limits<float>::quiet_NaN());
+  const std::size_t had = frames > 0 ? values.size() / frames : 0;
+  for (std::size_t k = 0; k < frames; ++k) std::copy_n(values.data() + k * had, had, wide.data() + k * each);
+  return wide;
+}
+
 void bind_many_frames(py::module_& module) {
   py::class_<Recording>(module, "Recording")
       .def(py::init(&make_recording), py::arg("counts"), py::kw_only(), py::arg("time_ns") = py::none(),
@@ -408,10 +416,11 @@ void bind_many_frames(py::module_& module) {
 }  // namespace
 
 void Recording::append(const RawFrame& frame) {
-  if (time_ns.empty()) sensors = frame.sensor_celsius.size();
-  sensor_celsius.insert(
-      sensor_celsius.end(), frame.sensor_celsius.begin(),
-      frame.sensor_celsius.begin() + static_cast<std::ptrdiff_t>(std::min(sensors, frame.sensor_celsius.size())));
+  if (frame.sensor_celsius.size() > sensors) {
+    sensor_celsius = widened(sensor_celsius, size(), frame.sensor_celsius.size());
+    sensors = frame.sensor_celsius.size();
+  }
+  sensor_celsius.insert(sensor_celsius.end(), frame.sensor_celsius.begin(), frame.sensor_celsius.end());
   time_ns.push_back(frame.time.count());
   temperature_celsius.push_back(frame.temperature_celsius.value_or(kNone));
   supply_v.push_back(frame.supply_v.value_or(kNone));
@@ -451,6 +460,10 @@ Recording recording_of(const py::object& counts, const ArrayDescription* array, 
   const py::array_t<float> sensors =
       numbers<float>(beside.sensor_celsius, "sensor_celsius", {static_cast<py::ssize_t>(frames), -1});
   recording.sensors = static_cast<std::size_t>(sensors.shape(1));
+  if (recording.sensors > kMaxLines && recording.sensors != recording.shape.taxel_count()) {
+    throw py::value_error("sensor_celsius: has " + std::to_string(recording.sensors) +
+                          " sensors; give at most 1024, or one a taxel");
+  }
   recording.sensor_celsius = copied(sensors);
   return recording;
 }

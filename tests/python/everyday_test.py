@@ -115,11 +115,29 @@ class Everyday(workspace.CalibratedArray):
         self.assertEqual(self.recording.sensor_celsius.shape, (len(self.recording), 0))
         with self.assertRaisesRegex(ValueError, "sensor_celsius"):
             dermis.Recording(counts, rate_hz=10.0, sensor_celsius=sensors[:2])
+        with self.assertRaisesRegex(
+            ValueError, "^sensor_celsius: has 1025 sensors; give at most 1024, or one a taxel$"
+        ):
+            dermis.Recording(counts, rate_hz=10.0, sensor_celsius=np.zeros((3, 1025)))
+
+    def test_sensors_that_the_first_frame_lacks_are_read(self):
+        layout = self.folder / "late.toml"
+        layout.write_text('[layout]\nrows = 2\ncols = 2\nline = ["T {temperature} {temperature}", "{values}"]\n')
+        text = self.folder / "late.txt"
+        text.write_text("1 2 3 4\nT 20 21\n5 6 7 8\n")
+        for suffix in ("mcap", "h5"):
+            path = self.folder / f"late.{suffix}"
+            workspace.dermis("convert", text, path, "--layout", layout, "--rate", 10)
+            late = dermis.Recording.read(path)
+            np.testing.assert_array_equal(late.sensor_celsius, [[np.nan, np.nan], [20.0, 21.0]])
+            self.assertEqual(len(late.counts), 2)
 
     def test_a_pipeline_takes_a_temperature_or_those_of_sensors(self):
         counts = self.recording.counts[0]
         one = dermis.Pipeline(self.model).process(counts, 25.0)
-        np.testing.assert_array_equal(dermis.Pipeline(self.model).process(counts, np.float32(25.0)).newtons, one.newtons)
+        np.testing.assert_array_equal(
+            dermis.Pipeline(self.model).process(counts, np.float32(25.0)).newtons, one.newtons
+        )
         unknown = dermis.Pipeline(self.model).process(counts, [25.0, 25.0])
         self.assertTrue(unknown.status & dermis.FrameStatus.TEMPERATURE_UNKNOWN, "the array has one sensor")
         with self.assertRaises(TypeError):
