@@ -80,13 +80,13 @@ Result<ArraySteps> ArraySteps::create(const RecordedArrays::Array& array, std::s
                                       std::vector<Column> columns) {
   ArraySteps steps(array, window, std::move(columns));
   steps.tally_.name = array.name;
+  for (const Column& column : steps.columns_) {
+    if (column.quantity == "temperature") steps.last_.celsius.resize(column.elements());
+  }
   if (array.model == nullptr) return steps;
   Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(*array.model);
   if (!pipeline) return pipeline.error();
   steps.pipeline_.emplace(*std::move(pipeline));
-  for (const Column& column : steps.columns_) {
-    if (column.quantity == "temperature") steps.last_.celsius.resize(column.elements());
-  }
   const auto is_contacts = [](const Column& column) { return column.quantity == "contacts"; };
   if (std::any_of(steps.columns_.begin(), steps.columns_.end(), is_contacts)) {
     steps.tracker_.emplace(array.model->array, contacts::ContactOptions{}, array.model->strip);
