@@ -214,10 +214,8 @@ void ArraySteps::work(std::span<const Nanos> steps, std::span<std::vector<std::b
   for (std::size_t k = 0; k < frame_count_; ++k) process(frames_[k]);
   frame_count_ = 0;
   for (const Nanos step : steps) {
-    const std::uint64_t missed_before = window_.missed();
     window_.step(step);
-    const std::uint64_t came = window_.fresh() + (window_.missed() - missed_before);
-    tally_.most_fresh = std::max<std::size_t>(tally_.most_fresh, came);
+    tally_.most_fresh = std::max(tally_.most_fresh, window_.came());
     for (std::size_t column = 0; column < columns_.size(); ++column) append_row(columns_[column], step, values[column]);
   }
 }

@@ -31,6 +31,9 @@ class ArraySteps {
   /// Processes the frames, then appends a row to each of `values`, one for each column, at each of these times.
   void work(std::span<const Nanos> steps, std::span<std::vector<std::byte>> values);
 
+  /// Says when the next step is, so that frames before its window are let go.
+  void await(Nanos next) { window_.await(next); }
+
   [[nodiscard]] ArrayTally tally() const;
 
  private:

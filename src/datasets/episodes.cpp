@@ -227,6 +227,9 @@ Status Maker::write_steps(bool is_over) {
     if (Status written = write_steps(now); !written) return written;
     if (Status ended = end_split_episode(); !ended) return ended;
   } while (!left.empty());
+  if (const std::optional<Nanos> next = plan_->next()) {
+    for (ArraySteps& steps : steps_) steps.await(*next);
+  }
   if (options_.progressed) options_.progressed(tally_.steps);
   return Done{};
 }
@@ -268,7 +271,7 @@ Status Maker::add(const std::string& from, std::size_t number) {
   if (Status begun = begin_episode(from, number); !begun) return begun;
   while (true) {
     if (Status taken = take(from); !taken) return taken;
-    if (!*more) break;
+    if (!*more || plan_->is_done()) break;
     more = read_batch();
     if (!more) return more.error();
   }

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/datasets/frame_window.hpp"
 
+#include <utility>
+
 namespace dermis::datasets {
 
 std::optional<std::size_t> FrameWindow::add(Nanos time) {
@@ -16,21 +18,26 @@ std::optional<std::size_t> FrameWindow::add(Nanos time) {
   return waiting_.back().slot;
 }
 
-void FrameWindow::drop_oldest() {
-  free_.push_back(held_.front().slot);
-  held_.pop_front();
-  if (fresh_ < length_) return;
-  --fresh_;
-  ++missed_;
-}
-
 void FrameWindow::step(Nanos time) {
-  fresh_ = 0;
-  while (!waiting_.empty() && waiting_.front().time <= time) {
-    if (held_.size() == length_) drop_oldest();
+  came_ = std::exchange(skipped_, 0);
+  for (; !waiting_.empty() && waiting_.front().time <= time; ++came_) {
+    if (held_.size() == length_) {
+      free_.push_back(held_.front().slot);
+      held_.pop_front();
+    }
     held_.push_back(waiting_.front());
     waiting_.pop_front();
-    ++fresh_;
+  }
+  missed_ += came_ - fresh();
+}
+
+void FrameWindow::await(Nanos next) {
+  const auto is_later = [next](const Held& frame) { return frame.time > next; };
+  const auto later = std::find_if(waiting_.begin(), waiting_.end(), is_later);
+  for (auto count = static_cast<std::size_t>(later - waiting_.begin()); count > length_; --count) {
+    free_.push_back(waiting_.front().slot);
+    waiting_.pop_front();
+    ++skipped_;
   }
 }
 

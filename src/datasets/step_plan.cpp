@@ -41,6 +41,12 @@ std::optional<Nanos> StepPlan::settled_until() const {
   return std::max(until, patience_ends);
 }
 
+std::optional<Nanos> StepPlan::next() const {
+  if (start_) return step_time(*start_, fps_, taken_);
+  if (taken_ < given_.size()) return given_[taken_];
+  return std::nullopt;
+}
+
 std::vector<Nanos> StepPlan::take_given(bool is_over) {
   std::vector<Nanos> due;
   const std::optional<Nanos> until = settled_until();

@@ -230,6 +230,21 @@ TEST_F(Episodes, of_given_times_are_several_of_a_recording) {
   EXPECT_EQ(raw.back(), 99.0F);
 }
 
+TEST_F(Episodes, of_given_times_read_no_further_than_the_last_step) {
+  const std::string path = folder_.file("long.mcap");
+  write_recording(path, even_times(30'000));
+  EpisodeOptions options{.window = 2, .quantities = {"raw", "fresh"}};
+  options.times = {{milliseconds(85'005), milliseconds(150'005)}};
+  Kept kept;
+  const Result<EpisodeTally> made = make_episodes({path}, options, kept);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_EQ(kept.column<float>("left_hand_raw"), (std::vector<float>{8499, 8499, 8500, 8500, 14'999, 14'999, 15'000, 15'000}));
+  EXPECT_EQ(kept.column<std::int64_t>("left_hand_fresh"), (std::vector<std::int64_t>{2, 2}));
+  EXPECT_LT(made->arrays[0].frames, 25'000U);
+  EXPECT_EQ(made->arrays[0].missed, 15'001U - 4U);
+  EXPECT_EQ(made->arrays[0].most_fresh, 8501U);
+}
+
 TEST_F(Episodes, need_times_that_rise_and_are_of_their_recordings) {
   const auto error = [&](const std::vector<std::vector<Nanos>>& times, std::size_t recordings) {
     EpisodeOptions options;

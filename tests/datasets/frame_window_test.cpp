@@ -41,6 +41,24 @@ TEST(FrameWindow, counts_frames_that_no_window_holds) {
   EXPECT_EQ(window.missed(), 3U);
 }
 
+TEST(FrameWindow, keeps_no_more_frames_than_the_next_step_can_hold) {
+  FrameWindow window(2);
+  std::size_t most_slots = 0;
+  for (int time = 1; time <= 1000; ++time) {
+    most_slots = std::max(most_slots, window.add(milliseconds(time)).value() + 1);
+    window.await(milliseconds(900));
+  }
+  EXPECT_EQ(most_slots, 102U) << "100 behind the step, and its window";
+  window.step(milliseconds(900));
+  EXPECT_EQ(times_of(window), (std::vector<Nanos>{milliseconds(899), milliseconds(900)}));
+  EXPECT_EQ(window.fresh(), 2U);
+  EXPECT_EQ(window.came(), 900U);
+  EXPECT_EQ(window.missed(), 898U);
+  window.step(milliseconds(901));
+  EXPECT_EQ(window.came(), 1U);
+  EXPECT_EQ(window.missed(), 898U);
+}
+
 TEST(FrameWindow, has_every_frame_once_among_the_fresh_ones_whatever_the_times) {
   Random random(45);
   for (int round = 0; round < 200; ++round) {
@@ -59,6 +77,7 @@ TEST(FrameWindow, has_every_frame_once_among_the_fresh_ones_whatever_the_times) 
         came.push_back(now);
       }
       now += milliseconds(1);
+      if (random.below(2) == 0) window.await(now);
       window.step(now);
       ASSERT_LE(window.held().size(), length);
       ASSERT_EQ(window.held().size(), std::min(length, came.size()));

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -31,22 +32,26 @@ class FrameWindow {
   /// Moves on to a step: the window holds the last frames of that time and earlier. `time` rises.
   void step(Nanos time);
 
+  /// Says when the next step is. Frames that its window will not hold give their slots back.
+  void await(Nanos next);
+
   /// The window, from its oldest frame to its newest.
   [[nodiscard]] const std::deque<Held>& held() const noexcept { return held_; }
   /// So many of the newest were not in the window of the step before.
-  [[nodiscard]] std::size_t fresh() const noexcept { return fresh_; }
+  [[nodiscard]] std::size_t fresh() const noexcept { return std::min(came_, length_); }
+  /// So many came since the step before, in the window or not.
+  [[nodiscard]] std::size_t came() const noexcept { return came_; }
   /// Frames that came and are in no window: more came between two steps than it holds, or they were too late.
   [[nodiscard]] std::uint64_t missed() const noexcept { return missed_; }
 
  private:
-  void drop_oldest();
-
   std::size_t length_;
   std::deque<Held> waiting_;
   std::deque<Held> held_;
   std::vector<std::size_t> free_;
   std::size_t slots_ = 0;
-  std::size_t fresh_ = 0;
+  std::size_t came_ = 0;
+  std::size_t skipped_ = 0;  ///< Of those that came since the last step.
   std::uint64_t missed_ = 0;
   std::optional<Nanos> newest_;
 };

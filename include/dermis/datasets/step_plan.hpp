@@ -38,6 +38,11 @@ class StepPlan {
   /// The times of the steps that are due and were not taken yet. `is_over`: no frame follows.
   [[nodiscard]] std::vector<Nanos> take_due(bool is_over);
 
+  /// The time of the next step; empty where that is not known yet, and where none is left.
+  [[nodiscard]] std::optional<Nanos> next() const;
+  /// All of the given times are taken.
+  [[nodiscard]] bool is_done() const noexcept { return fps_ <= 0.0 && taken_ == given_.size(); }
+
  private:
   struct Seen {
     std::uint64_t frames = 0;
