@@ -203,6 +203,7 @@ Status decode_joint_state(std::span<const std::uint8_t> message, JointNumbers& j
     }
   }
   if (!reader.good()) return not_whole(kJointState);
+  if (joints.numbers.empty()) joints.names.clear();
   if (joints.numbers.size() == joints.names.size()) return Done{};
   return bad_input("the message names " + std::to_string(joints.names.size()) + " joints and has numbers of " +
                    std::to_string(joints.numbers.size()));

@@ -408,6 +408,9 @@ TEST(JointState, has_positions_or_else_velocities_or_efforts) {
   EXPECT_EQ(joints.numbers, (std::vector<double>{2}));
   ASSERT_TRUE(decode_joint_state(joint_state({"elbow"}, {{}, {}, {4}}), joints));
   EXPECT_EQ(joints.numbers, (std::vector<double>{4}));
+  ASSERT_TRUE(decode_joint_state(joint_state({"elbow"}, {{}, {}, {}}), joints));
+  EXPECT_TRUE(joints.names.empty());
+  EXPECT_TRUE(joints.numbers.empty());
 }
 
 TEST(JointState, one_that_is_cut_or_has_other_numbers_than_names_is_refused) {

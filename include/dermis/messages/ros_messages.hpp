@@ -50,7 +50,7 @@ inline constexpr const char* kTactileState = "tactile_msgs/msg/TactileState";
 [[nodiscard]] Result<FrameShape> decode_tactile_state(std::span<const std::uint8_t> message, RawFrame& frame);
 
 /// sensor_msgs/msg/JointState, as other robots have it: a number for each joint. They are the positions of the joints
-/// or, where the message has none, their velocities or efforts.
+/// or, where the message has none, their velocities or efforts. Names without any number are no joints.
 inline constexpr const char* kJointState = "sensor_msgs/msg/JointState";
 struct JointNumbers {
   std::vector<std::string> names;
