@@ -161,7 +161,7 @@ def extend(old, new, recordings, *, model, window, columns, flat, starts_ns):
     with tempfile.TemporaryDirectory(prefix=f".{new.name}.", dir=new.absolute().parent) as work:
         made, tactile = Path(work) / "made", Path(work) / "tactile"
         dataset = _dermis.Dataset(
-            recordings, model=model, fps=info["fps"], window=window, columns=columns, flat=flat, times_ns=times
+            recordings, model=model, fps=info["fps"], window=window, columns=columns, flat=flat, state=(), times_ns=times
         )
         dataset.write(tactile)
         features = {

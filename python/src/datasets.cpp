@@ -157,6 +157,7 @@ std::unique_ptr<Dataset> make_dataset(const py::object& recordings, const py::ob
   if (!model.is_none()) options.model = path_of(model);
   options.quantities = columns.value_or(std::vector<std::string>());
   options.states = paths_of(state);
+  options.finds_state = state.is_none();
   options.actions = paths_of(action);
   options.times = times_of(times_ns);
   return std::make_unique<Dataset>(std::move(paths), std::move(options));

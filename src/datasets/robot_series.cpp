@@ -6,6 +6,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "dermis/files/text.hpp"
@@ -15,9 +17,10 @@
 namespace dermis::datasets {
 namespace {
 
-/// Paths that begin so are of files of CSV.
+/// A file of CSV may have an absolute path, too.
 bool is_topic(const std::string& from) {
-  return from.starts_with('/') && !from.ends_with(".csv");
+  std::error_code none;
+  return from.starts_with('/') && !from.ends_with(".csv") && !std::filesystem::is_regular_file(from, none);
 }
 
 /// Empty where the file is no MCAP.
@@ -65,20 +68,37 @@ Result<SampledSeries> read_topic(const std::string& recording, const std::string
   return SampledSeries::read_topic(*mcap_of(recording), topic);
 }
 
+/// The only topic of joints that the recordings have, if it is of the same joints in each.
+Result<std::vector<std::string>> found_states(const std::vector<std::string>& recordings,
+                                              const EpisodeOptions& options) {
+  Result<std::vector<std::string>> topics = shared_topics(recordings, options.actions);
+  if (!topics || topics->empty()) return topics;
+  std::string why;
+  if (topics->size() > 1) {
+    why = fmt::format("the recordings have the joints of {}; name the topic of the state for a column",
+                      fmt::join(*topics, ", "));
+  } else {
+    RobotSeries series("state", *topics);
+    for (std::size_t k = 0; k < recordings.size() && why.empty(); ++k) {
+      const Status read = series.read(recordings[k], k);
+      if (!read) why = read.error().message + "; so there is no column of the state";
+    }
+  }
+  if (why.empty()) return topics;
+  if (options.notice) options.notice(why);
+  return std::vector<std::string>();
+}
+
 }  // namespace
 
 Result<std::vector<RobotSeries>> RobotSeries::choose(const std::vector<std::string>& recordings,
                                                      const EpisodeOptions& options) {
   std::vector<RobotSeries> series;
   std::vector<std::string> states = options.states;
-  if (states.empty()) {
-    const Result<std::vector<std::string>> topics = shared_topics(recordings, options.actions);
-    if (!topics) return topics.error();
-    if (topics->size() == 1) states = *topics;
-    if (topics->size() > 1 && options.notice) {
-      options.notice(fmt::format("the recordings have the joints of {}; name the topic of the state for a column",
-                                 fmt::join(*topics, ", ")));
-    }
+  if (states.empty() && options.finds_state) {
+    Result<std::vector<std::string>> found = found_states(recordings, options);
+    if (!found) return found.error();
+    states = *std::move(found);
   }
   for (const auto& [quantity, from] :
        {std::pair("state", &std::as_const(states)), std::pair("action", &options.actions)}) {

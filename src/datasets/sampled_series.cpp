@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "datasets/sampled_series.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -12,6 +14,11 @@
 #include "dermis/recordings/joint_states.hpp"
 
 namespace dermis::datasets {
+namespace {
+
+constexpr std::size_t kMostJoints = 1024;
+
+}  // namespace
 
 Result<SampledSeries> SampledSeries::read(const std::string& csv) {
   const Result<files::CsvTable> table = files::CsvTable::read(csv);
@@ -40,11 +47,14 @@ Result<SampledSeries> SampledSeries::read(const std::string& csv) {
 
 Result<SampledSeries> SampledSeries::read_topic(const std::string& recording, const std::string& topic) {
   SampledSeries series;
+  bool has_too_many = false;
   const auto take = [&](Nanos time, const messages::JointNumbers& joints) {
     for (std::size_t k = 0; k < joints.names.size(); ++k) {
       if (!std::isfinite(joints.numbers[k])) continue;
       const auto is_it = [&](const Numbers& numbers) { return numbers.name == joints.names[k]; };
       auto found = std::find_if(series.numbers_.begin(), series.numbers_.end(), is_it);
+      has_too_many = has_too_many || (found == series.numbers_.end() && series.numbers_.size() == kMostJoints);
+      if (has_too_many) return;
       if (found == series.numbers_.end()) found = series.numbers_.insert(found, {joints.names[k]});
       if (!found->times.empty() && time < found->times.back()) continue;
       found->times.push_back(time);
@@ -52,6 +62,10 @@ Result<SampledSeries> SampledSeries::read_topic(const std::string& recording, co
     }
   };
   if (Status read = recordings::read_joint_states(recording, topic, take); !read) return read.error();
+  if (has_too_many) {
+    return bad_input(fmt::format("{}: has more than {} joints in {}; name another topic", recording, kMostJoints,
+                                 files::in_quotes(topic)));
+  }
   if (series.numbers_.empty()) return bad_input(recording + ": has no joint in " + files::in_quotes(topic));
   return series;
 }

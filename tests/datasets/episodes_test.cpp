@@ -303,8 +303,57 @@ TEST_F(Episodes, name_topics_and_joints_that_are_not_there) {
   EXPECT_EQ(error_of({path_}, {.states = {"/joints"}}), path_ + ": has no topic '/joints' of joints; it has none");
   const std::string other = folder_.file("other.mcap");
   write_robot(other, {{"/joint_states", milliseconds(100), {{"knee", 1}}}});
-  EXPECT_EQ(error_of({path, other}, {}),
+  EXPECT_EQ(error_of({path, other}, {.states = {"/joint_states"}}),
             "/joint_states of " + other + ": has other columns than that of the first recording, which has elbow");
+}
+
+TEST_F(Episodes, have_no_state_with_a_notice_where_the_joints_differ) {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  const auto at = milliseconds(100);
+  const std::string path = folder_.file("robot.mcap");
+  write_robot(path, {{"/joint_states", at, {{"elbow", 1}, {"wrist", 2}}}});
+  const std::string other = folder_.file("other.mcap");
+  for (const auto& positions : {std::vector<std::pair<std::string, double>>{{"elbow", 1}, {"wrist", none}}, {}}) {
+    write_robot(other, {{"/joint_states", at, positions}});
+    std::vector<std::string> notices;
+    EpisodeOptions options{.quantities = {"fresh"}};
+    options.notice = [&](const std::string& line) { notices.push_back(line); };
+    Kept kept;
+    const Result<EpisodeTally> made = make_episodes({path, other}, options, kept);
+    ASSERT_TRUE(made) << made.error().message;
+    EXPECT_EQ(kept.names(), (std::vector<std::string>{"time_ns", "tip_fresh"}));
+    ASSERT_EQ(notices.size(), 1U);
+    EXPECT_NE(notices.front().find("so there is no column of the state"), std::string::npos);
+    EXPECT_NE(notices.front().find(other), std::string::npos);
+  }
+}
+
+TEST_F(Episodes, have_no_state_where_none_is_wanted) {
+  const std::string path = folder_.file("robot.mcap");
+  write_robot(path, {{"/joint_states", milliseconds(100), {{"elbow", 1}}}});
+  EpisodeOptions options{.quantities = {"fresh"}};
+  options.finds_state = false;
+  Kept kept;
+  ASSERT_TRUE(make_episodes({path}, options, kept));
+  EXPECT_EQ(kept.names(), (std::vector<std::string>{"time_ns", "tip_fresh"}));
+}
+
+TEST_F(Episodes, take_a_file_of_any_name_as_csv) {
+  std::ofstream(folder_.file("joints.txt")) << "time_s,elbow\n0,3\n";
+  Kept kept;
+  const Result<EpisodeTally> made =
+      make_episodes({path_}, {.quantities = {"fresh"}, .states = {folder_.file("joints.txt")}}, kept);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_EQ(kept.column<float>("state").front(), 3.0F);
+}
+
+TEST_F(Episodes, refuse_more_joints_than_a_robot_has) {
+  std::vector<std::pair<std::string, double>> joints;
+  for (int k = 0; k < 1025; ++k) joints.emplace_back("joint" + std::to_string(k), k);
+  const std::string path = folder_.file("many.mcap");
+  write_robot(path, {{"/joint_states", milliseconds(100), joints}});
+  EXPECT_EQ(error_of({path}, {.states = {"/joint_states"}}),
+            path + ": has more than 1024 joints in '/joint_states'; name another topic");
 }
 
 TEST_F(Episodes, tell_when_a_recording_begins) {

@@ -31,9 +31,11 @@ struct EpisodeOptions {
   std::string model{};
   /// The robot's state, such as joint angles, and its actions: a topic of sensor_msgs/msg/JointState that all
   /// recordings have ("/joint_states"), or a CSV for each, with time_s on the clock of the frames. Each step has the
-  /// newest numbers. Without states, the only topic of joints that all recordings have is the state.
+  /// newest numbers.
   std::vector<std::string> states{};
   std::vector<std::string> actions{};
+  /// Without states, the only topic that all recordings have is the state, if its joints are the same in each.
+  bool finds_state = true;
   /// Times of the steps of each recording, which rise, in place of `fps`. Those of a single recording may be of several
   /// episodes, one after the other. Empty: those of a clock.
   std::vector<std::vector<Nanos>> times{};
