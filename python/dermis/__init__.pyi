@@ -224,10 +224,8 @@ class Pipeline:
         supply: float | None = None,
         time_ns: int | None = None,
     ) -> ForceFrame:
-        """counts (rows, cols); temperature [C], one or one of each sensor; supply [V].
-
-        time_ns: now, by the host's clock, where it is None.
-        """
+        """counts (rows, cols); temperature [C], one or one of each sensor; supply [V]; time_ns: now, by the host's clock,
+        where it is None."""
     def run(
         self,
         frames: Recording | _Path | ArrayLike,
@@ -415,7 +413,7 @@ def extend_lerobot(
 ) -> None:
     """A copy of a dataset of LeRobot v3 with tactile columns at the times of its steps; needs pyarrow. `old` stays as
     it is. recordings: one for each episode, or one for all. starts_ns: when each episode begins, on the clock of its
-    recording; without them with its first frame. The others: as of Dataset."""
+    recording; without them half a frame after its first one. The others: as of Dataset."""
 
 class Load:
     """A load that was known while a frame was taken: newtons over all taxels of `where`, or pascals on each of them.

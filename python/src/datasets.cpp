@@ -167,9 +167,11 @@ std::unique_ptr<Dataset> make_dataset(const py::object& recordings, const py::ob
 
 void bind_datasets(py::module_& module) {
   module.def(
-      "_first_time_ns",
-      [](const py::object& recording) { return value_or_raise(datasets::first_time(path_of(recording))).count(); },
-      py::arg("recording"));
+      "_first_step_ns",
+      [](const py::object& recording, double fps) {
+        return value_or_raise(datasets::first_step(path_of(recording), fps)).count();
+      },
+      py::arg("recording"), py::arg("fps"));
   py::class_<Dataset>(module, "Dataset")
       .def(py::init(&make_dataset), py::arg("recordings"), py::kw_only(), py::arg("model") = py::none(),
            py::arg("fps") = 30.0, py::arg("window") = 1, py::arg("columns") = py::none(), py::arg("flat") = false,

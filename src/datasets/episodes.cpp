@@ -67,6 +67,7 @@ class Maker {
   [[nodiscard]] Status end_split_episode();
   [[nodiscard]] std::size_t most_steps() const;
   [[nodiscard]] bool is_gap(Nanos time) const;
+  [[nodiscard]] Status check_frames(const std::string& from, std::size_t number, Nanos first) const;
 
   const EpisodeOptions& options_;
   ArrayModels models_;
@@ -161,6 +162,21 @@ Result<bool> Maker::read_batch() {
 bool Maker::is_gap(Nanos time) const {
   const std::optional<Nanos> newest = plan_->newest();
   return options_.times.empty() && newest && time - *newest > kLongestGap;
+}
+
+/// Every episode at given times has a frame.
+Status Maker::check_frames(const std::string& from, std::size_t number, Nanos first) const {
+  for (std::size_t k = 0; k < options_.times.size(); ++k) {
+    if (!is_split_ && k != number) continue;
+    const std::vector<Nanos>& times = options_.times[k];
+    if (times.back() < first) {
+      return bad_input(fmt::format("{}: begins after the last step of episode {}; mend its times", from, k));
+    }
+    if (times.front() > *plan_->newest()) {
+      return bad_input(fmt::format("{}: ends before the first step of episode {}; mend its times", from, k));
+    }
+  }
+  return Done{};
 }
 
 /// The batch, of one episode or of several.
@@ -269,12 +285,14 @@ Status Maker::add(const std::string& from, std::size_t number) {
     if (Status begun = sink_.begin(columns_); !begun) return begun;
   }
   if (Status begun = begin_episode(from, number); !begun) return begun;
+  const Nanos first = batch_.front().frame.time;
   while (true) {
     if (Status taken = take(from); !taken) return taken;
     if (!*more || plan_->is_done()) break;
     more = read_batch();
     if (!more) return more.error();
   }
+  if (Status right = check_frames(from, number, first); !right) return right;
   return end_episode();
 }
 
@@ -336,15 +354,21 @@ Result<EpisodeTally> make_episodes(const std::vector<std::string>& recordings, c
   return maker.tally();
 }
 
-Result<Nanos> first_time(const std::string& recording) {
+Result<Nanos> first_step(const std::string& recording, double fps) {
+  if (Status valid = EpisodeOptions{.fps = fps}.validate(); !valid) return valid.error();
   Result<RecordedArrays> opened = RecordedArrays::open(recording, {}, {});
   if (!opened) return opened.error();
+  StepPlan plan(opened->arrays().size(), 1, fps);
   std::size_t array = 0;
   RawFrame frame;
-  const Result<bool> more = opened->next(array, frame);
-  if (!more) return more.error();
-  if (!*more) return bad_input(recording + ": has no frame");
-  return frame.time;
+  while (!plan.next()) {
+    const Result<bool> more = opened->next(array, frame);
+    if (!more) return more.error();
+    if (!*more) break;
+    plan.see(array, frame.time);
+  }
+  if (!plan.newest()) return bad_input(recording + ": has no frame");
+  return plan.next().value_or(*plan.newest());
 }
 
 }  // namespace dermis::datasets

@@ -238,7 +238,8 @@ TEST_F(Episodes, of_given_times_read_no_further_than_the_last_step) {
   Kept kept;
   const Result<EpisodeTally> made = make_episodes({path}, options, kept);
   ASSERT_TRUE(made) << made.error().message;
-  EXPECT_EQ(kept.column<float>("left_hand_raw"), (std::vector<float>{8499, 8499, 8500, 8500, 14'999, 14'999, 15'000, 15'000}));
+  EXPECT_EQ(kept.column<float>("left_hand_raw"),
+            (std::vector<float>{8499, 8499, 8500, 8500, 14'999, 14'999, 15'000, 15'000}));
   EXPECT_EQ(kept.column<std::int64_t>("left_hand_fresh"), (std::vector<std::int64_t>{2, 2}));
   EXPECT_LT(made->arrays[0].frames, 25'000U);
   EXPECT_EQ(made->arrays[0].missed, 15'001U - 4U);
@@ -356,10 +357,23 @@ TEST_F(Episodes, refuse_more_joints_than_a_robot_has) {
             path + ": has more than 1024 joints in '/joint_states'; name another topic");
 }
 
-TEST_F(Episodes, tell_when_a_recording_begins) {
-  write_recording(folder_.file("later.mcap"), even_times(3, milliseconds(1234)));
-  EXPECT_EQ(first_time(folder_.file("later.mcap")).value(), milliseconds(1234));
-  EXPECT_FALSE(first_time(folder_.file("none.mcap")));
+TEST_F(Episodes, may_begin_half_a_frame_after_the_first) {
+  const std::string later = folder_.file("later.mcap");
+  write_recording(later, even_times(3, milliseconds(1234)));
+  EXPECT_EQ(first_step(later, 30.0).value(), milliseconds(1239));
+  EXPECT_EQ(first_step(later, 1000.0).value(), std::chrono::microseconds(1'234'500)) << "or half a step";
+  write_recording(later, even_times(1, milliseconds(1234)));
+  EXPECT_EQ(first_step(later, 30.0).value(), milliseconds(1234));
+  EXPECT_FALSE(first_step(later, 0.0));
+  EXPECT_FALSE(first_step(folder_.file("none.mcap"), 30.0));
+}
+
+TEST_F(Episodes, need_frames_at_their_times) {
+  EpisodeOptions options;
+  options.times = {{milliseconds(100)}, {milliseconds(991)}};
+  EXPECT_EQ(error_of({path_}, options), path_ + ": ends before the first step of episode 1; mend its times");
+  options.times = {{milliseconds(-2), milliseconds(-1)}};
+  EXPECT_EQ(error_of({path_}, options), path_ + ": begins after the last step of episode 0; mend its times");
 }
 
 TEST_F(Episodes, name_what_is_wrong) {

@@ -6,6 +6,7 @@ Usage: extend_lerobot_test.py DERMIS"""
 import hashlib
 import importlib.util
 import json
+import shutil
 import sys
 import unittest.mock
 from pathlib import Path
@@ -121,7 +122,7 @@ class ExtendedDatasets(workspace.CalibratedArray):
     def expected(self, recordings, starts):
         """The same columns of a dataset that is made at these times."""
         times = [
-            start + numpy.round(numpy.float32(numpy.arange(steps) / FPS).astype(float) * 1e9).astype(numpy.int64)
+            start + numpy.round(numpy.arange(steps) / FPS * 1e9).astype(numpy.int64)
             for start, steps in zip(starts, STEPS, strict=True)
         ]
         made = dermis.Dataset(recordings, model=self.model, window=WINDOW, times_ns=times)
@@ -158,10 +159,25 @@ class ExtendedDatasets(workspace.CalibratedArray):
 
     def test_columns_have_the_times_of_the_steps_from_the_first_frame_on(self):
         new = self.extend(self.recordings)
-        self.check(new, self.expected(self.recordings, [START + k * 60 * 10**9 for k in range(len(STEPS))]))
+        half_a_frame = 10**9 // 35 // 2
+        starts = [START + k * 60 * 10**9 + half_a_frame for k in range(len(STEPS))]
+        self.check(new, self.expected(self.recordings, starts))
         video = Path("videos/front/chunk-000/file-000.mp4")
         self.assertTrue((new / video).samefile(self.old / video))
         self.assertEqual((new / "meta/tasks.parquet").read_bytes(), (self.old / "meta/tasks.parquet").read_bytes())
+
+    def test_frames_at_the_times_of_the_steps_are_all_in_windows(self):
+        frames = dermis.Recording.read(self.frames)
+        counts = numpy.resize(frames.counts, (5 * max(STEPS), *frames.counts.shape[1:]))
+        even = self.folder / "even.mcap"
+        times = START + numpy.arange(len(counts)) * 10**9 // (5 * FPS)
+        dermis.Recording(counts, time_ns=times, array=self.array).write(even)
+        new = self.folder / "even"
+        dermis.extend_lerobot(self.old, new, [even] * len(STEPS), window=5, columns=["fresh"])
+        fresh = values_of(data_of(new), "observation.tactile.pad_fresh")
+        first = numpy.cumsum((0, *STEPS[:-1]))
+        self.assertEqual(set(fresh[first]), {1})
+        self.assertEqual(set(numpy.delete(fresh, first)), {5})
 
     def test_one_recording_has_all_episodes_where_they_begin(self):
         long = self.folder / "long.mcap"
@@ -248,13 +264,98 @@ class ExtendedDatasets(workspace.CalibratedArray):
 
     def test_what_cannot_be_is_refused(self):
         self.refuse("has 3 episodes, and there are 2 recordings", self.old, self.recordings[:2])
-        self.refuse("no JSON of LeRobot", self.folder, self.recordings)
+        self.refuse("no JSON of LeRobot", self.folder / "calibration", self.recordings)
         self.refuse("has 2 times for 3 episodes", self.old, self.recordings, starts_ns=[0, 1])
-        self.refuse("episode 0: ends before the first frame", self.old, self.recordings, starts_ns=[0, START, START])
+        for wrong in (5, [[0], [1], [2]], [2**70] * 3, ["a"] * 3):
+            self.refuse("starts_ns: ", self.old, self.recordings, starts_ns=wrong)
+        starts = [START + k * 60 * 10**9 for k in range(len(STEPS))]
+        self.refuse("begins after the last step of episode 0", self.old, self.recordings, starts_ns=[0, *starts[1:]])
+        self.refuse(
+            "ends before the first step of episode 2",
+            self.old,
+            self.recordings,
+            starts_ns=[*starts[:2], starts[2] + 10**10],
+        )
+        with self.assertRaisesRegex(dermis.BadInput, "lies within .*; name a folder outside"):
+            dermis.extend_lerobot(self.old, self.old / "more/touch", self.recordings)
+        self.assertEqual(digest(self.old), self.before)
+        self.assertFalse((self.old / "more").exists())
         twice = self.extend(self.recordings)
         self.refuse("has observation.tactile.pad already", twice, self.recordings)
         with self.assertRaisesRegex(dermis.BadInput, "exists; name a new folder"):
             dermis.extend_lerobot(self.old, twice, self.recordings)
+
+    def damaged(self):
+        """A copy of the dataset, to be damaged."""
+        copy = self.folder / f"damaged-{self.id()}"
+        shutil.rmtree(copy, ignore_errors=True)
+        shutil.copytree(self.old, copy)
+        return copy
+
+    def test_damaged_json_is_named(self):
+        info = json.loads((self.old / "meta/info.json").read_text())
+        for part, content in (
+            ("info.json: is no JSON", []),
+            ("is no dataset of LeRobot v3", {**info, "codebase_version": "v2.1"}),
+            ("info.json: has no features", {**info, "features": None}),
+            ("info.json: fps is no number", {**info, "fps": "20"}),
+            ("info.json: fps is no number", {name: value for name, value in info.items() if name != "fps"}),
+        ):
+            copy = self.damaged()
+            (copy / "meta/info.json").write_text(json.dumps(content))
+            self.refuse(part, copy, self.recordings)
+        copy = self.damaged()
+        (copy / "meta/stats.json").write_text("[]")
+        self.refuse("stats.json: is no JSON", copy, self.recordings)
+
+    def test_damaged_parquet_is_named(self):
+        data, episodes = "data/chunk-000/file-001.parquet", "meta/episodes/chunk-000/file-000.parquet"
+        for name in (data, episodes):
+            copy = self.damaged()
+            (copy / name).write_bytes((copy / name).read_bytes()[:-20])
+            self.refuse(f"{name}: is no Parquet of LeRobot", copy, self.recordings)
+        for name, column in (
+            (data, "timestamp"),
+            (data, "frame_index"),
+            (data, "episode_index"),
+            (episodes, "episode_index"),
+        ):
+            copy = self.damaged()
+            table = pyarrow.parquet.read_table(copy / name)
+            pyarrow.parquet.write_table(table.drop_columns([column]), copy / name)
+            self.refuse(f"{name}: is no Parquet of LeRobot: has no column {column}", copy, self.recordings)
+            place = table.column_names.index(column)
+            words = pyarrow.array(["word"] * len(table))
+            pyarrow.parquet.write_table(table.set_column(place, column, words), copy / name)
+            self.refuse(f"{name}: is no Parquet of LeRobot", copy, self.recordings)
+            gaps = pyarrow.nulls(len(table), pyarrow.float32())
+            pyarrow.parquet.write_table(table.set_column(place, column, gaps), copy / name)
+            self.refuse(f"has a row without {column}", copy, self.recordings)
+        copy = self.damaged()
+        table = pyarrow.parquet.read_table(copy / episodes)
+        numbers = pyarrow.array([0, 1, 7])
+        pyarrow.parquet.write_table(table.set_column(0, "episode_index", numbers), copy / episodes)
+        self.refuse("has episode 7, of which there is no step", copy, self.recordings)
+
+    def test_videos_behind_links_and_files_without_rows_come_along(self):
+        copy = self.damaged()
+        (copy / "videos").rename(self.folder / "elsewhere")
+        (copy / "videos").symlink_to(self.folder / "elsewhere")
+        (copy / "videos/loop").symlink_to(self.folder / "elsewhere")
+        empty = "data/chunk-000/file-002.parquet"
+        table = pyarrow.parquet.read_table(copy / "data/chunk-000/file-001.parquet")
+        with pyarrow.parquet.ParquetWriter(copy / empty, table.schema):
+            pass
+        new = self.folder / "linked"
+        dermis.extend_lerobot(copy, new, self.recordings, columns=["age"])
+        self.assertEqual(
+            (new / "videos/front/chunk-000/file-000.mp4").read_bytes(),
+            (self.old / "videos/front/chunk-000/file-000.mp4").read_bytes(),
+        )
+        self.assertFalse((new / "videos/loop").exists())
+        added = pyarrow.parquet.read_table(new / empty)
+        self.assertEqual(added.num_rows, 0)
+        self.assertIn("observation.tactile.pad_age", added.column_names)
 
     def test_a_machine_without_pyarrow_is_told_so(self):
         without = unittest.mock.patch.dict(sys.modules, {"pyarrow.parquet": None})

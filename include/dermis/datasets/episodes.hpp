@@ -37,7 +37,8 @@ struct EpisodeOptions {
   /// Without states, the only topic that all recordings have is the state, if its joints are the same in each.
   bool finds_state = true;
   /// Times of the steps of each recording, which rise, in place of `fps`. Those of a single recording may be of several
-  /// episodes, one after the other. Empty: those of a clock.
+  /// episodes, one after the other. Each begins before the last frame and ends after the first. Empty: those of a
+  /// clock.
   std::vector<std::vector<Nanos>> times{};
   const std::atomic<bool>* stop = nullptr;                ///< Set: ends the work, and nothing is written.
   std::function<void(const std::string&)> notice{};       ///< Receives one line on what a user should know.
@@ -70,7 +71,8 @@ inline constexpr Nanos kLongestGap = std::chrono::seconds(10);
 [[nodiscard]] Result<EpisodeTally> make_episodes(const std::vector<std::string>& recordings,
                                                  const EpisodeOptions& options, EpisodeSink& sink);
 
-/// The time of the first frame of a recording, of whatever array.
-[[nodiscard]] Result<Nanos> first_time(const std::string& recording);
+/// When the steps of a recording may begin: half a frame after the first of the array that first has two. So the frames
+/// of an even rate lie between steps.
+[[nodiscard]] Result<Nanos> first_step(const std::string& recording, double fps);
 
 }  // namespace dermis::datasets
