@@ -50,11 +50,14 @@ def configure(*options):
 
 
 def headers_of_pybind11():
-    """Those of this Python where it has them, else Debian's."""
+    """Those of this Python where it has some of version 2, else Debian's."""
     if not importlib.util.find_spec("pybind11"):
         return []
     import pybind11
 
+    if pybind11.version_info[0] != 2:
+        print(f"pybind11 {pybind11.__version__} is not taken: dermis is built with version 2", file=sys.stderr)
+        return []
     return [f"-Dpybind11_DIR={pybind11.get_cmake_dir()}"]
 
 

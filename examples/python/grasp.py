@@ -9,7 +9,9 @@ replace Gripper; grasp() stays as it is.
 """
 
 import argparse
+import math
 import socket
+import sys
 import threading
 import time
 
@@ -21,6 +23,7 @@ RATE_HZ = 100
 WIDTH_MM = 40.0  # of the object
 STIFFNESS_N_PER_MM = 0.8
 FASTEST_MM_S = 25.0
+LONGEST_S = 20.0  # until the force has been held
 
 
 class Gripper:
@@ -64,12 +67,19 @@ def grasp(gripper: Gripper, model: dermis.Model, newtons: float, seconds: float)
     gain_mm_s_per_n = 4.0
     pipeline = dermis.Pipeline(model)
     held: list[float] = []
+    ends = time.monotonic() + LONGEST_S + seconds
     with dermis.open(gripper.uri, model.array) as pad:
         while len(held) < seconds * RATE_HZ:
             raw = pad.latest(timeout_s=2.0)
             if raw is None:
                 raise ConnectionError("the pad has ended")
             force = pipeline.process(raw).total
+            if time.monotonic() > ends:
+                gripper.speed_mm_s = 0.0
+                raise TimeoutError(f"the pad has not held {newtons:g} N within {LONGEST_S:g} s; it reads {force:.2f} N")
+            if math.isnan(force):
+                gripper.speed_mm_s = 0.0  # nobody knows how it holds
+                continue
             gripper.speed_mm_s = float(np.clip(gain_mm_s_per_n * (newtons - force), -FASTEST_MM_S, FASTEST_MM_S))
             is_held = abs(force - newtons) < 0.1 * newtons
             held = [*held, force] if is_held else []
@@ -80,7 +90,10 @@ def grasp(gripper: Gripper, model: dermis.Model, newtons: float, seconds: float)
 def main(model_path: str, newtons: float, seconds: float) -> None:
     model = dermis.read_model(model_path)
     gripper = Gripper(model)
-    force = grasp(gripper, model, newtons, seconds)
+    try:
+        force = grasp(gripper, model, newtons, seconds)
+    except (ConnectionError, TimeoutError) as error:
+        sys.exit(f"grasp.py: {error}")
     print(f"closed to {gripper.opening_mm:.1f} mm; held {force:.2f} N for {seconds:g} s")
 
 

@@ -224,8 +224,8 @@ class Pipeline:
         supply: float | None = None,
         time_ns: int | None = None,
     ) -> ForceFrame:
-        """counts (rows, cols); temperature [C], one or one of each sensor; supply [V]; time_ns: now, by the host's clock,
-        where it is None."""
+        """counts (rows, cols); temperature [C], one or one of each sensor; supply [V]; time_ns: now, by the host's
+        clock, where it is None."""
     def run(
         self,
         frames: Recording | _Path | ArrayLike,

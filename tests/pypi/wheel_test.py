@@ -4,9 +4,12 @@
 
 Usage: wheel_test.py DERMIS PACKAGE VENV, the last of which is kept"""
 
+import importlib.machinery
 import subprocess
 import sys
 import tarfile
+import types
+import unittest.mock
 import zipfile
 from pathlib import Path
 
@@ -47,6 +50,15 @@ class Wheel(bare.BareTest):
         listed = subprocess.run(["git", "ls-files"], cwd=ROOT, check=True, capture_output=True, text=True).stdout
         self.assertEqual(names - {"PKG-INFO"}, {name for name in listed.splitlines() if (ROOT / name).exists()})
         self.assertIn("Name: dermis", about)
+
+    def test_headers_of_pybind11_are_those_of_version_2(self):
+        there = types.ModuleType("pybind11")
+        there.__spec__ = importlib.machinery.ModuleSpec("pybind11", None)
+        there.get_cmake_dir = lambda: "/there"
+        for version, taken in (((2, 13, 6), ["-Dpybind11_DIR=/there"]), ((3, 0, 1), [])):
+            there.version_info, there.__version__ = version, ".".join(map(str, version))
+            with unittest.mock.patch.dict(sys.modules, {"pybind11": there}):
+                self.assertEqual(build_backend.headers_of_pybind11(), taken)
 
 
 if __name__ == "__main__":

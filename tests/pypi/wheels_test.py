@@ -16,14 +16,14 @@ import wheels
 
 TESTS = Path(__file__).resolve().parents[1]
 FOLDER = Path(sys.argv.pop(2)).resolve()
-NUMPYS = {"3.11": ("1.26.4", "2.4.6"), "3.12": ("1.26.4", "2.4.6"), "3.13": ("2.4.6",)}  # 1.26 has no wheel for 3.13
+NUMPYS = {"3.11": ("1.26.*", "2.*"), "3.12": ("1.26.*", "2.*"), "3.13": ("2.*",)}  # 1.26 has no wheel for 3.13
 # Threads, and how frames show themselves.
 OTHER_TESTS = ("threads", "everyday")
 
 
 class Wheels(bare.BareTest):
     def check(self, python, wheel, numpy):
-        inside = bare.environment(python, numpy, FOLDER / f"bare/{wheel.name.split('-')[2]}-{numpy}")
+        inside = bare.environment(python, numpy, FOLDER / f"bare/{wheel.name.split('-')[2]}-{numpy.removesuffix('.*')}")
         bare.install(inside, wheel)
         self.assert_gives_the_bits_of_the_command(inside)
         for test in OTHER_TESTS:
@@ -34,6 +34,9 @@ class Wheels(bare.BareTest):
         self.assertNotEqual(pythons, [])
         for python in pythons:
             version = python.name.removeprefix("python")
+            if version not in NUMPYS:
+                print(f"skipped: Python {version}; NUMPYS says of none which numpy it takes")
+                continue
             (wheel,) = FOLDER.glob(f"dermis-*-cp{version.replace('.', '')}-*.whl")
             for numpy in NUMPYS[version]:
                 with self.subTest(python=version, numpy=numpy):

@@ -4,8 +4,10 @@
 
 import os
 import re
+import runpy
 import subprocess
 import sys
+import unittest.mock
 
 import numpy as np
 import workspace
@@ -48,6 +50,20 @@ class Examples(workspace.CalibratedArray):
         closed, held = map(float, re.match(r"closed to ([\d.]+) mm; held ([\d.]+) N", said).groups())
         self.assertAlmostEqual(held, 2.0, delta=0.2)
         self.assertAlmostEqual(40 - closed, 2.0 / 0.8, delta=1.0)  # by the stiffness of the object
+
+    def test_grasp_ends_where_the_pad_never_reads_the_force(self):
+        grasp = runpy.run_path(str(EXAMPLES / "grasp.py"))
+        names = grasp["main"].__globals__
+        names["LONGEST_S"] = 0.3
+        with self.assertRaisesRegex(SystemExit, r"^grasp.py: the pad has not held 1e\+06 N within 0.3 s; it reads"):
+            grasp["main"](self.model, 1e6, 0.1)
+        model = dermis.read_model(self.model)
+        gripper = grasp["Gripper"](model)
+        blind = unittest.mock.Mock()
+        blind.process.return_value.total = float("nan")
+        with unittest.mock.patch.object(dermis, "Pipeline", return_value=blind), self.assertRaises(TimeoutError):
+            grasp["grasp"](gripper, model, 2.0, 0.1)
+        self.assertEqual(gripper.opening_mm, grasp["WIDTH_MM"] + 15, "it does not move")
 
     def test_train_on_touch(self):
         said = self.run_example("train_on_touch.py", self.model, self.frames, self.frames, "--seconds", 0.5)
