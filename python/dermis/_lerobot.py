@@ -281,6 +281,7 @@ def put_together(parquet, dataset, old, new, numbers, info, stats):
         extend_episodes(parquet, old, made, tactile, numbers)
         info["features"].update(features)
         stats.update({name: of for name, of in read_json(tactile / STATS).items() if name in features})
+        (made / INFO).parent.mkdir(exist_ok=True)
         (made / INFO).write_text(json.dumps(info, indent=4, ensure_ascii=False), encoding="utf-8")
         (made / STATS).write_text(json.dumps(stats, indent=4), encoding="utf-8")
         made.rename(new)

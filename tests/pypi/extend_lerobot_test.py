@@ -346,6 +346,9 @@ class ExtendedDatasets(workspace.CalibratedArray):
         table = pyarrow.parquet.read_table(copy / "data/chunk-000/file-001.parquet")
         with pyarrow.parquet.ParquetWriter(copy / empty, table.schema):
             pass
+        for path in ("tasks.parquet", "stats.json"):
+            (copy / "meta" / path).unlink()
+        shutil.rmtree(copy / "meta/episodes")  # which leaves nothing but info.json
         new = self.folder / "linked"
         dermis.extend_lerobot(copy, new, self.recordings, columns=["age"])
         self.assertEqual(
