@@ -54,7 +54,7 @@ def read_info(old):
 
 @contextlib.contextmanager
 def reading(path):
-    """What pyarrow says of a damaged file becomes one line with its path."""
+    """A damaged file is named in one line, whatever pyarrow says of it."""
     arrow = importlib.import_module("pyarrow")
     try:
         yield

@@ -51,7 +51,7 @@ class FrameWindow {
   std::vector<std::size_t> free_;
   std::size_t slots_ = 0;
   std::size_t came_ = 0;
-  std::size_t skipped_ = 0;  ///< Of those that came since the last step.
+  std::size_t skipped_ = 0;  ///< They came since the last step and gave their slots back.
   std::uint64_t missed_ = 0;
   std::optional<Nanos> newest_;
 };
