@@ -377,8 +377,9 @@ class Dataset:
 
     model: of the array, or the suit.toml of several; without one there are no forces. window: each step has so many of
     the last frames. columns: only these quantities. state, action: a topic of joints in the recordings, or a CSV with
-    time_s for each. times_ns: the times of the steps of each recording, such as those of its images, in place of fps;
-    of a single recording also of several episodes, one after the other.
+    time_s for each. Without a state the only topic of joints is it; () is none. times_ns: the times of the steps of
+    each recording, such as those of its images, in place of fps. Of a single recording they may be those of several
+    episodes, one after the other.
     """
 
     def __init__(

@@ -102,14 +102,15 @@ class Dataset {
 
  private:
   void make(datasets::EpisodeSink& sink) {
-    std::vector<std::string> losses;
-    options_.loss = [&losses](const std::string& line) { losses.push_back(line); };
+    std::vector<std::string> warnings;
+    options_.loss = [&warnings](const std::string& line) { warnings.push_back(line); };
+    options_.notice = options_.loss;
     const auto made = [&] {
       const py::gil_scoped_release others_run;
       return datasets::make_episodes(recordings_, options_, sink);
     }();
     if (!made) raise(made.error());
-    for (const std::string& line : losses) {
+    for (const std::string& line : warnings) {
       if (PyErr_WarnEx(PyExc_UserWarning, line.c_str(), 1) != 0) throw py::error_already_set();
     }
   }

@@ -248,6 +248,19 @@ class Datasets(CalibratedArray):
         newest = numpy.maximum(numpy.searchsorted(times, columns["time_ns"], side="right") - 1, 0)
         numpy.testing.assert_array_equal(columns["observation.state"], angles[newest].astype(numpy.float32))
 
+    @unittest.skipUnless(importlib.util.find_spec("dermis"), "the package of Python is not built")
+    def test_python_warns_of_joints_that_differ_and_takes_none_when_told(self):
+        module = importlib.import_module("dermis")
+        times = self.episodes[0][0][0] + numpy.arange(2) * 10**7
+        bags = [
+            self.bag_with_joints(recording, times, numpy.array([[1.0, wrist]] * 2))
+            for recording, wrist in zip(self.recordings[:2], (2.0, numpy.nan), strict=True)
+        ]
+        with self.assertWarnsRegex(UserWarning, "so there is no column of the state"):
+            self.assertNotIn("state", module.Dataset(bags, fps=FPS)[0])
+        self.assertEqual(module.Dataset(bags[0], fps=FPS)[0]["state"][0].tolist(), [1.0, 2.0])
+        self.assertNotIn("state", module.Dataset(bags[0], fps=FPS, state=())[0])
+
     def test_batches_in_any_order_have_one_shape(self):
         _, loaded = self.load(self.make("lerobot", "--flat"))
         sizes = set()
