@@ -59,6 +59,10 @@ std::vector<Fact> array_facts(const ArrayDescription& array) {
   }
   facts.emplace_back("ADC", fmt::format("{} bit", readout.adc_bits));
   if (readout.supply_v) facts.emplace_back("nominal supply", fmt::format("{:.4g} V", *readout.supply_v));
+  if (const std::size_t sensors = array.temperature_sensors.size(); sensors > 0) {
+    facts.emplace_back("temperature sensors",
+                       sensors == array.taxel_count() ? "one on each taxel" : fmt::format("{}", sensors));
+  }
   return facts;
 }
 

@@ -34,6 +34,15 @@ TEST(ModelFacts, an_array_is_its_size_its_circuit_and_its_adc) {
   EXPECT_EQ(fact(facts, "load"), "180 to 220 ohm");
   EXPECT_EQ(fact(facts, "ADC"), "12 bit");
   EXPECT_EQ(fact(facts, "nominal supply"), "not told");
+  EXPECT_EQ(fact(facts, "temperature sensors"), "not told");
+}
+
+TEST(ModelFacts, an_array_says_how_many_temperature_sensors_it_has) {
+  ArrayDescription array = small_array();
+  array.temperature_sensors = {{0, 0}, {0, 2}};
+  EXPECT_EQ(fact(array_facts(array), "temperature sensors"), "2");
+  array.temperature_sensors = sensors_on_each_taxel(1, 3);
+  EXPECT_EQ(fact(array_facts(array), "temperature sensors"), "one on each taxel");
 }
 
 TEST(ModelFacts, a_calibration_is_told_in_the_order_in_which_one_asks) {
