@@ -20,7 +20,7 @@ namespace dermis::buses {
 
 [[nodiscard]] std::string shape_text(const FrameShape& shape);
 
-/// Of frames that were lost, which others may have counted.
+/// The number of lost frames, which others may have counted.
 [[nodiscard]] std::uint32_t saturated_sum(std::uint32_t a, std::uint32_t b);
 
 /// Frames of one array on their way from a bus to one reader, all of one shape. A reader that falls 4096 frames behind

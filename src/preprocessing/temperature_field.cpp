@@ -81,7 +81,7 @@ bool is_temperature(float celsius) {
   return std::abs(celsius) <= kMostCelsius;  // nor is NaN
 }
 
-/// Of those that are temperatures; NaN without any.
+/// The mean of those that are temperatures; NaN without any.
 float mean_of(std::span<const float> sensors) {
   float sum = 0.0F;
   float known = 0.0F;

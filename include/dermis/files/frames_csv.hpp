@@ -22,7 +22,7 @@ namespace dermis::files {
 struct FramesCsvColumns {
   bool temperature_celsius = true;
   bool supply_v = true;
-  std::size_t sensors = 0;  ///< Of temperature, at least; the first frame may have more.
+  std::size_t sensors = 0;  ///< Temperature sensors, at least; the first frame may have more.
 };
 
 /// Reads frames.csv (docs/file-formats.md) frame by frame. The memory is that of one line, at most 32 MiB. Counts may
