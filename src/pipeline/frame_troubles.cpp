@@ -37,7 +37,7 @@ void FrameTroubles::add(const RawFrame& raw, const ForceFrame& force, const Pipe
   const bool is_outside = missing_.add(raw, pipeline.conditioned());
   const bool is_rejected = has(force.status, FrameStatus::rejected);
   const bool is_unsolved = has(force.status, FrameStatus::not_converged);
-  if (is_unsolved && unsolved_++ == 0) first_unsolved_ = place_of(prefix_, source, number_);
+  if (is_unsolved && unsolved_.frames++ == 0) unsolved_.first = place_of(prefix_, source, number_);
   const bool is_zero = std::ranges::all_of(raw.counts, [](float count) { return count == 0.0F; });
   if (is_zero && zero_) ++*zero_;
   if (is_rejected || is_unsolved) {
@@ -48,30 +48,30 @@ void FrameTroubles::add(const RawFrame& raw, const ForceFrame& force, const Pipe
   if (has(force.status, FrameStatus::line_fault)) ++faulty_;
   add_doubts(raw, force, pipeline);
   if (!is_rejected) return;
-  if (rejected_++ > 0) return;
-  first_rejection_ = fmt::format("{}: {}", place_of(prefix_, source, number_), pipeline.why_rejected());
+  if (rejected_.frames++ > 0) return;
+  rejected_.first = fmt::format("{}: {}", place_of(prefix_, source, number_), pipeline.why_rejected());
 }
 
 void FrameTroubles::add_doubts(const RawFrame& raw, const ForceFrame& force, const Pipeline& pipeline) {
   const bool is_supply_doubted = has(force.status, FrameStatus::supply_clamped | FrameStatus::supply_implausible);
   if (is_supply_doubted && supply_.frames++ == 0) {
     const auto& [least_v, most_v] = pipeline.supply_bounds().trusted();
-    supply_.what = fmt::format(
+    supply_.first = fmt::format(
         "with a supply outside of the calibration, the first: {:.3g} V, where {:.3g} to {:.3g} V are trusted",
         *raw.supply_v, least_v, most_v);
   }
   const std::optional<double> kelvin = preprocessing::kelvin_in(raw);
   if (has(force.status, FrameStatus::temperature_clamped) && kelvin && kelvin_.frames++ == 0) {
-    kelvin_.what = fmt::format(
+    kelvin_.first = fmt::format(
         "with a temperature that no sheet has, the first: {:.1f} C: it looks like kelvin, give degrees Celsius",
         *kelvin);
   }
   if (raw.sensor_celsius.size() != sensors_ && other_sensors_.frames++ == 0) {
-    other_sensors_.what = fmt::format("with temperatures of {} sensors, where array.temperature_sensors has {} places",
-                                      raw.sensor_celsius.size(), sensors_);
+    other_sensors_.first = fmt::format("with temperatures of {} sensors, where array.temperature_sensors has {} places",
+                                       raw.sensor_celsius.size(), sensors_);
   }
   if (is_silent(raw, force, pipeline) && silent_.frames++ == 0) {
-    silent_.what = fmt::format("with all readings 0, where untouched taxels read more: {}", kPowered);
+    silent_.first = fmt::format("with all readings 0, where untouched taxels read more: {}", kPowered);
   }
 }
 
@@ -94,8 +94,8 @@ std::optional<std::string> FrameTroubles::silence() const {
 }
 
 std::optional<std::string> FrameTroubles::impossible() const {
-  for (const Doubt* doubt : {&kelvin_, &silent_}) {
-    if (2 * doubt->frames > frames_) return describe(*doubt);
+  for (const Trouble* trouble : {&kelvin_, &silent_}) {
+    if (2 * trouble->frames > frames_) return describe(*trouble);
   }
   return std::nullopt;
 }
@@ -103,35 +103,35 @@ std::optional<std::string> FrameTroubles::impossible() const {
 std::string FrameTroubles::cause() const {
   if (2 * lost_.zero > lost_.frames) return fmt::format("all readings are 0: {}", kPowered);
   if (2 * lost_.outside > lost_.frames) return *missing_.describe_range();
-  if (rejected_ > unsolved_) return "the first is rejected, " + first_rejection_;
-  return fmt::format("their readings {}, the first at {}", kMisfit, first_unsolved_);
+  if (rejected_.frames > unsolved_.frames) return "the first is rejected, " + rejected_.first;
+  return fmt::format("their readings {}, the first at {}", kMisfit, unsolved_.first);
 }
 
 std::vector<std::string> FrameTroubles::describe() const {
   std::vector<std::string> lines;
-  if (rejected_ > 0) {
-    lines.push_back(fmt::format("{} of {} frames rejected, the first: {}", rejected_, frames_, first_rejection_));
+  if (rejected_.frames > 0) {
+    lines.push_back(fmt::format("{} of {} frames rejected, the first: {}", rejected_.frames, frames_, rejected_.first));
   }
   if (missing_.any()) lines.push_back(missing_.describe());
   if (const auto range = missing_.describe_range()) lines.push_back(*range);
-  if (unsolved_ > 0) {
-    lines.push_back(fmt::format("{} of {} frames without forces: their readings {}, the first at {}", unsolved_,
+  if (unsolved_.frames > 0) {
+    lines.push_back(fmt::format("{} of {} frames without forces: their readings {}, the first at {}", unsolved_.frames,
                                 frames_, 2 * lost_.outside > lost_.frames ? "lie outside of the ADC" : kMisfit,
-                                first_unsolved_));
+                                unsolved_.first));
   }
   if (faulty_ > 0) {
     lines.push_back(fmt::format(
         "{} of {} frames with faulty lines or taxels, which are masked: a diagnosis tells which", faulty_, frames_));
   }
-  for (const Doubt* doubt : {&supply_, &kelvin_, &other_sensors_, &silent_}) {
-    if (doubt->frames > 0) lines.push_back(describe(*doubt));
+  for (const Trouble* trouble : {&supply_, &kelvin_, &other_sensors_, &silent_}) {
+    if (trouble->frames > 0) lines.push_back(describe(*trouble));
   }
   if (const auto line = silence()) lines.push_back(*line);
   return lines;
 }
 
-std::string FrameTroubles::describe(const Doubt& doubt) const {
-  return fmt::format("{} of {} frames {}", doubt.frames, frames_, doubt.what);
+std::string FrameTroubles::describe(const Trouble& trouble) const {
+  return fmt::format("{} of {} frames {}", trouble.frames, frames_, trouble.first);
 }
 
 Status FrameTroubles::verdict() const {

@@ -51,10 +51,10 @@ class FrameTroubles {
   [[nodiscard]] Status verdict() const;
 
  private:
-  /// A kind of trouble that does not cost the force.
-  struct Doubt {
+  /// A kind of trouble: how many frames have it.
+  struct Trouble {
     std::size_t frames = 0;
-    std::string what;  ///< "with a supply outside of the calibration, the first: 6.5 V"
+    std::string first;  ///< "with a supply outside of the calibration, the first: 6.5 V", or the place of the first.
   };
 
   /// Frames without a force: rejected, or not solved.
@@ -66,25 +66,23 @@ class FrameTroubles {
 
   void add_doubts(const RawFrame& raw, const ForceFrame& force, const Pipeline& pipeline);
   [[nodiscard]] std::string cause() const;
-  [[nodiscard]] std::string describe(const Doubt& doubt) const;
+  [[nodiscard]] std::string describe(const Trouble& trouble) const;
 
   std::string prefix_;  ///< Of messages: "frames.csv: ", or nothing.
   preprocessing::MissingReadings missing_;
   std::size_t number_ = 0;  ///< Number of the last frame in its source, from 1.
   std::size_t frames_ = 0;
-  std::size_t rejected_ = 0;
-  std::size_t unsolved_ = 0;
   std::size_t faulty_ = 0;
   Lost lost_;
   std::optional<std::size_t> zero_;  ///< Nothing but zeros; empty where readings are forces, of which 0 is one.
-  std::string first_rejection_;
-  std::string first_unsolved_;  ///< Its place.
-  std::size_t rows_;            ///< Of the array.
-  std::size_t sensors_;         ///< Of its temperature.
-  Doubt supply_;
-  Doubt kelvin_;
-  Doubt other_sensors_;
-  Doubt silent_;
+  Trouble rejected_;
+  Trouble unsolved_;
+  std::size_t rows_;     ///< Of the array.
+  std::size_t sensors_;  ///< Of its temperature.
+  Trouble supply_;
+  Trouble kelvin_;
+  Trouble other_sensors_;
+  Trouble silent_;
 };
 
 }  // namespace dermis::pipeline
