@@ -141,8 +141,7 @@ RawFrame measure_gradient(const Model& model, const std::vector<double>& newtons
     return 25.0 + 4.0 * ((row - 1.5) * std::sin(angle) + (col - 1.5) * std::cos(angle));
   };
   std::vector<double> taxels;
-  for (std::size_t k = 0; k < 16; ++k)
-    taxels.push_back(celsius(static_cast<double>(k / 4), static_cast<double>(k % 4)));
+  for (const auto& [row, col] : sensors_on_each_taxel(4, 4)) taxels.push_back(celsius(row, col));
   RawFrame raw = measure(model, newtons, taxels, 5.0);
   for (const auto& [row, col] : model.array.temperature_sensors) {
     raw.sensor_celsius.push_back(static_cast<float>(celsius(row, col)));

@@ -44,9 +44,9 @@ TEST(TemperatureField, four_corners_tell_a_gradient) {
   const auto plane = [](double row, double col) { return static_cast<float>(18.0 + 0.8 * row - 1.1 * col); };
   const std::vector<float> taxels =
       interpolated(array_with(corners), {plane(0, 0), plane(0, 5), plane(7, 0), plane(7, 5)});
+  const std::vector<TemperatureSensor> places = sensors_on_each_taxel(8, 6);
   for (std::size_t taxel = 0; taxel < taxels.size(); ++taxel) {
-    const auto row = static_cast<double>(taxel / 6);
-    const auto col = static_cast<double>(taxel % 6);
+    const auto& [row, col] = places[taxel];
     EXPECT_NEAR(taxels[taxel], plane(row, col), 0.15);
   }
 }
@@ -75,8 +75,8 @@ TEST(TemperatureField, sensors_without_a_reading_count_as_if_they_were_not_there
 TEST(TemperatureField, a_taxel_of_a_map_without_a_reading_has_the_mean_of_its_neighbours) {
   const ArrayDescription array = array_with(sensors_on_each_taxel(8, 6));
   std::vector<float> sensors;
-  for (std::size_t taxel = 0; taxel < 48; ++taxel) {
-    sensors.push_back(20.0F + static_cast<float>(taxel / 6) + 0.5F * static_cast<float>(taxel % 6));
+  for (const auto& [row, col] : sensors_on_each_taxel(8, 6)) {
+    sensors.push_back(static_cast<float>(20.0 + row + 0.5 * col));
   }
   std::vector<float> some = sensors;
   for (const std::size_t taxel : {7U, 20U}) some[taxel] = kNan;
