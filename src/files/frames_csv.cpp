@@ -306,20 +306,20 @@ Result<std::unique_ptr<FramesCsvWriter>> FramesCsvWriter::create(const std::stri
   return std::unique_ptr<FramesCsvWriter>(new FramesCsvWriter(*std::move(file), shape, columns));
 }
 
-void FramesCsvWriter::write_header(std::size_t sensors) {
-  std::string header = name_of(Column::time);
+void FramesCsvWriter::begin(std::size_t sensors) {
+  std::string& header = line_ = name_of(Column::time);
   if (columns_.temperature_celsius) header.append(",").append(name_of(Column::temperature));
   for (std::size_t sensor = 0; sensor < sensors; ++sensor) header.append(",").append(sensor_name(sensor));
   if (columns_.supply_v) header.append(",").append(name_of(Column::supply));
   append_taxel_names(header, shape_.rows, shape_.cols);
-  file_.write(header + "\n");
+  header += '\n';
   sensors_ = sensors;
 }
 
 Status FramesCsvWriter::write(const RawFrame& frame) {
   assert(frame.counts.size() == shape_.taxel_count());
-  if (!sensors_) write_header(std::max(columns_.sensors, frame.sensor_celsius.size()));
   line_.clear();
+  if (!sensors_) begin(std::max(columns_.sensors, frame.sensor_celsius.size()));
   append_seconds(line_, frame.time);
   const auto append_optional = [this](const std::optional<double>& value) {
     line_ += ',';
@@ -342,7 +342,10 @@ Status FramesCsvWriter::write(const RawFrame& frame) {
 }
 
 Status FramesCsvWriter::commit() {
-  if (!sensors_) write_header(columns_.sensors);
+  if (!sensors_) {
+    begin(columns_.sensors);
+    file_.write(line_);
+  }
   return file_.commit();
 }
 

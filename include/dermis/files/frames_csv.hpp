@@ -71,7 +71,7 @@ class FramesCsvWriter final : public FrameSink {
 
  private:
   FramesCsvWriter(AtomicFile file, FrameShape shape, const FramesCsvColumns& columns);
-  void write_header(std::size_t sensors);
+  void begin(std::size_t sensors);
 
   AtomicFile file_;
   FrameShape shape_;
