@@ -11,8 +11,8 @@
 
 #include "acquisition/row_layout.hpp"
 #include "acquisition/row_syntax.hpp"
+#include "dermis/acquisition/protocol.hpp"
 #include "dermis/core/frame_source.hpp"
-#include "dermis/layouts/decoder.hpp"
 #include "dermis/layouts/line_reader.hpp"
 
 namespace dermis::acquisition {

@@ -1,7 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
-"""Every public header compiles alone, and twice: check_headers.py [--all] COMPILER BINARY_INCLUDES
+"""Every header compiles alone, and twice: check_headers.py [--all] COMPILER BINARY_INCLUDES
+
+A unity build hides the include that a private header lacks, and so does scripts/tidy.
 
 Without --all, those that have changed since the merge base with origin/main; where there is no such branch, since the
 last commit of twelve hours ago; where git knows neither, all."""
@@ -13,7 +15,9 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-INCLUDE = ROOT / "include"
+PLACES = ("include", "src", "apps")
+FOLDERS = (ROOT / "include", ROOT / "src", ROOT / "apps/dermis")
+LIBRARIES = ("/usr/include/eigen3", "/usr/include/hdf5/serial")
 FLAGS = ["-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror", "-fsyntax-only", "-x", "c++", "-"]
 
 
@@ -24,14 +28,14 @@ def git(*arguments):
 def changed_since_base():
     """Paths below the project; None where there is nothing to compare with."""
     base = git("merge-base", "HEAD", "origin/main") or git("rev-list", "-1", "--before=12 hours ago", "HEAD")
-    return git("diff", "--name-only", base, "--", "include").splitlines() if base else None
+    return git("diff", "--name-only", base, "--", *PLACES).splitlines() if base else None
 
 
 def errors_of(header, compiler, folders):
-    include = f'#include "{header}"\n'
-    result = subprocess.run(
-        [compiler, *(f"-I{folder}" for folder in folders), *FLAGS], input=include * 2, capture_output=True, text=True
-    )
+    """Asio 1.74 needs <utility> before it."""
+    source = "#include <utility>\n" + f'#include "{header}"\n' * 2
+    options = [*(f"-I{folder}" for folder in folders), *(f"-isystem{folder}" for folder in LIBRARIES)]
+    result = subprocess.run([compiler, *options, *FLAGS], input=source, capture_output=True, text=True)
     return result.stderr if result.returncode else ""
 
 
@@ -40,14 +44,15 @@ def main():
     changed = None if "--all" in arguments else changed_since_base()
     compiler, *folders = [argument for argument in arguments if argument != "--all"]
     headers = sorted(
-        str(path.relative_to(INCLUDE))
-        for path in INCLUDE.rglob("*.hpp")
+        path
+        for place in PLACES
+        for path in (ROOT / place).rglob("*.hpp")
         if changed is None or str(path.relative_to(ROOT)) in changed
     )
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         errors = [
             error
-            for error in pool.map(lambda header: errors_of(header, compiler, [INCLUDE, *folders]), headers)
+            for error in pool.map(lambda header: errors_of(header, compiler, [*FOLDERS, *folders]), headers)
             if error
         ]
     print(*errors, f"{len(headers)} headers compiled alone, {len(errors)} do not", sep="\n")

@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 
+#include "dermis/core/frame_source.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
 
