@@ -10,16 +10,14 @@
 #include <limits>
 #include <utility>
 
+#include "dermis/files/taxel_text.hpp"
+
 namespace dermis::buses {
 namespace {
 
 constexpr std::size_t kMostWaiting = 4096;
 
 }  // namespace
-
-std::string shape_text(const FrameShape& shape) {
-  return std::to_string(shape.rows) + "x" + std::to_string(shape.cols);
-}
 
 std::uint32_t saturated_sum(std::uint32_t a, std::uint32_t b) {
   return a + std::min(b, std::numeric_limits<std::uint32_t>::max() - a);
@@ -51,13 +49,14 @@ void ArrayFeed::push(const FrameShape& shape, const RawFrame& frame) {
 /// Gives a notice where the user has had none.
 std::string ArrayFeed::refuse(const FrameShape& shape) {
   if (!has_come_) {
-    outcome_ = bad_input("frames are " + shape_text(shape) + ", the array is " + shape_text(*shape_));
+    outcome_ = bad_input("frames are " + files::size_text(shape) + ", the array is " + files::size_text(*shape_));
     signal();
     return {};
   }
   ++statistics_.damaged_frames;
   if (std::exchange(has_told_, true)) return {};
-  return place_ + ": frames that are " + shape_text(shape) + " are left out, as the array is " + shape_text(*shape_);
+  return place_ + ": frames that are " + files::size_text(shape) + " are left out, as the array is " +
+         files::size_text(*shape_);
 }
 
 void ArrayFeed::add(const RawFrame& frame) {

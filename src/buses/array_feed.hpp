@@ -18,8 +18,6 @@
 
 namespace dermis::buses {
 
-[[nodiscard]] std::string shape_text(const FrameShape& shape);
-
 /// The number of lost frames, which others may have counted.
 [[nodiscard]] std::uint32_t saturated_sum(std::uint32_t a, std::uint32_t b);
 

@@ -13,6 +13,7 @@
 #include "buses/register_bus.hpp"
 #include "buses/topic_bus.hpp"
 #include "dermis/core/nearest_name.hpp"
+#include "dermis/files/taxel_text.hpp"
 #include "dermis/messages/touch_messages.hpp"
 
 namespace dermis::buses {
@@ -141,8 +142,8 @@ Result<std::unique_ptr<FrameSource>> open_bus(const BusAddress& address, const B
   if (!array) return array.error();
   const FrameShape shape = (*bus)->arrays()[*array].shape;
   if (options.shape && shape != FrameShape{} && shape != *options.shape) {
-    return bad_input("'" + address.text + "': frames are " + shape_text(shape) + ", the array is " +
-                     shape_text(*options.shape));
+    return bad_input("'" + address.text + "': frames are " + files::size_text(shape) + ", the array is " +
+                     files::size_text(*options.shape));
   }
   return std::unique_ptr<FrameSource>(std::make_unique<BusSource>(address.text, *std::move(bus), *array, options));
 }

@@ -141,7 +141,6 @@ Status validate_absent(const ArrayDescription& array) {
 }
 
 Status validate_temperatures(const ArrayDescription& array) {
-  constexpr std::size_t kMostSensors = 64;
   constexpr std::size_t kMostWeights = std::size_t{1} << 22U;  // of sensors for taxels
   constexpr double kMostGradientCelsius = 100.0;
   const double gradient = array.temperature_gradient_celsius;
@@ -155,7 +154,7 @@ Status validate_temperatures(const ArrayDescription& array) {
     if (is_on_line(row, array.rows) && is_on_line(col, array.cols)) continue;
     return bad_input("array.temperature_sensors: must be places [row, col] on the array, from [0, 0] on");
   }
-  const std::size_t most = std::min(kMostSensors, std::max<std::size_t>(1, kMostWeights / array.taxel_count()));
+  const std::size_t most = std::min(kMaxPlacedSensors, std::max<std::size_t>(1, kMostWeights / array.taxel_count()));
   if (array.temperature_sensors.size() <= most) return Done{};
   if (array.temperature_sensors == sensors_on_each_taxel(array.rows, array.cols)) return Done{};
   return bad_input("array.temperature_sensors: must be at most " + std::to_string(most) + ", or \"each taxel\"");

@@ -296,6 +296,11 @@ Status Maker::add(const std::string& from, std::size_t number) {
   return end_episode();
 }
 
+/// Each of the times is an episode of the only recording.
+bool are_split(const std::vector<std::vector<Nanos>>& times, std::size_t recordings) {
+  return recordings == 1 && times.size() > 1;
+}
+
 bool is_rising(const std::vector<Nanos>& times) {
   return std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()) == times.end();
 }
@@ -303,7 +308,7 @@ bool is_rising(const std::vector<Nanos>& times) {
 /// Times of the steps of each recording, or of each episode of the only one.
 Status check_times(const std::vector<std::vector<Nanos>>& times, std::size_t recordings) {
   if (times.empty()) return Done{};
-  const bool is_split = recordings == 1 && times.size() > 1;
+  const bool is_split = are_split(times, recordings);
   if (!is_split && times.size() != recordings) {
     return bad_field("times", fmt::format("are of {} recordings in place of {}", times.size(), recordings));
   }
@@ -345,8 +350,7 @@ Result<EpisodeTally> make_episodes(const std::vector<std::string>& recordings, c
   if (!series) return series.error();
   Result<ArrayModels> models = ArrayModels::read(options.model);
   if (!models) return models.error();
-  const bool is_split = recordings.size() == 1 && options.times.size() > 1;
-  Maker maker(options, *std::move(models), *std::move(series), sink, is_split);
+  Maker maker(options, *std::move(models), *std::move(series), sink, are_split(options.times, recordings.size()));
   for (std::size_t k = 0; k < recordings.size(); ++k) {
     if (Status added = maker.add(recordings[k], k); !added) return added.error();
   }

@@ -306,13 +306,14 @@ Result<std::unique_ptr<FramesCsvWriter>> FramesCsvWriter::create(const std::stri
   return std::unique_ptr<FramesCsvWriter>(new FramesCsvWriter(*std::move(file), shape, columns));
 }
 
+/// Puts the header into the line. It is written with the first frame, so that the reader of a pipe gets both at once.
 void FramesCsvWriter::begin(std::size_t sensors) {
-  std::string& header = line_ = name_of(Column::time);
-  if (columns_.temperature_celsius) header.append(",").append(name_of(Column::temperature));
-  for (std::size_t sensor = 0; sensor < sensors; ++sensor) header.append(",").append(sensor_name(sensor));
-  if (columns_.supply_v) header.append(",").append(name_of(Column::supply));
-  append_taxel_names(header, shape_.rows, shape_.cols);
-  header += '\n';
+  line_ = name_of(Column::time);
+  if (columns_.temperature_celsius) line_.append(",").append(name_of(Column::temperature));
+  for (std::size_t sensor = 0; sensor < sensors; ++sensor) line_.append(",").append(sensor_name(sensor));
+  if (columns_.supply_v) line_.append(",").append(name_of(Column::supply));
+  append_taxel_names(line_, shape_.rows, shape_.cols);
+  line_ += '\n';
   sensors_ = sensors;
 }
 

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <vector>
+
+#include "dermis/core/mean_celsius.hpp"
 
 namespace dermis::layouts {
 namespace {
@@ -19,28 +22,18 @@ bool holds(const std::vector<std::uint64_t>& values, const std::optional<std::ui
   return flags && std::find(values.begin(), values.end(), *flags) != values.end();
 }
 
-/// The mean of those that are not NaN; NaN without any.
-double mean_of(const std::vector<float>& values) {
-  double sum = 0.0;
-  double count = 0.0;
-  for (const float value : values) {
-    if (std::isnan(value)) continue;
-    sum += static_cast<double>(value);
-    ++count;
-  }
-  return sum / count;
-}
-
 }  // namespace
 
 void Piece::add_temperature(double celsius) {
   constexpr double kMost = std::numeric_limits<float>::max();
-  if (!(std::abs(celsius) <= kMost)) celsius = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  if (!(std::abs(celsius) <= kMost)) celsius = kNone;
   if (temperature_celsius && sensor_celsius.empty()) {
     sensor_celsius.push_back(static_cast<float>(*temperature_celsius));
   }
   if (temperature_celsius) sensor_celsius.push_back(static_cast<float>(celsius));
-  temperature_celsius = sensor_celsius.empty() ? celsius : mean_of(sensor_celsius);
+  temperature_celsius =
+      sensor_celsius.empty() ? celsius : mean_celsius(std::span<const float>(sensor_celsius)).value_or(kNone);
 }
 
 void Piece::forget_temperatures() noexcept {

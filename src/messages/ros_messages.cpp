@@ -72,8 +72,7 @@ bool is_possible(std::size_t rows, std::size_t cols) {
 
 /// As many as an array may have: some, or one on each taxel (ArrayDescription::temperature_sensors).
 bool is_possible_sensors(std::size_t sensors, std::size_t taxels) {
-  constexpr std::size_t kMostPlaced = 64;
-  return sensors <= kMostPlaced || sensors == taxels;
+  return sensors <= kMaxPlacedSensors || sensors == taxels;
 }
 
 template <typename T>

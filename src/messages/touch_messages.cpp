@@ -8,8 +8,10 @@
 #include <iterator>
 #include <limits>
 #include <set>
+#include <span>
 
 #include "dermis/core/array_description.hpp"
+#include "dermis/core/mean_celsius.hpp"
 #include "dermis/core/nearest_name.hpp"
 #include "dermis/messages/ros_messages.hpp"
 #include "messages/cdr.hpp"
@@ -54,17 +56,11 @@ void read_module(CdrReader& reader, TouchReading& reading) {
   for (float& count : counts) count = reader.read<float>();
   std::vector<float>& sensors = reading.frame.sensor_celsius;
   sensors.assign(kModuleTaxels, std::numeric_limits<float>::quiet_NaN());
-  double sum = 0.0;
-  int measured = 0;
   for (std::size_t k = 0; k < kModuleTaxels; ++k) {
     const auto celsius = reader.read<float>();
-    if (counts[k] == kAbsentPressure || !(celsius >= kColdest && celsius <= kWarmest)) continue;
-    sensors[k] = celsius;
-    sum += celsius;
-    ++measured;
+    if (counts[k] != kAbsentPressure && celsius >= kColdest && celsius <= kWarmest) sensors[k] = celsius;
   }
-  reading.frame.temperature_celsius.reset();
-  if (measured > 0) reading.frame.temperature_celsius = sum / measured;
+  reading.frame.temperature_celsius = mean_celsius(std::span<const float>(sensors));
   std::replace(counts.begin(), counts.end(), kAbsentPressure, std::numeric_limits<float>::quiet_NaN());
   skip<std::uint32_t>(reader, 2);  // lost, reserve
 }

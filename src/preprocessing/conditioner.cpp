@@ -6,9 +6,11 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "dermis/core/mean_celsius.hpp"
 #include "dermis/core/neighbours.hpp"
 #include "dermis/core/processor_clones.hpp"
 
@@ -143,9 +145,7 @@ void Conditioner::process(const RawFrame& raw, ConditionedFrame& conditioned) no
 void Conditioner::find_temperatures(const RawFrame& raw, ConditionedFrame& conditioned) noexcept {
   conditioned.temperature_celsius = without_nan(raw.temperature_celsius);
   if (!temperatures_ || !temperatures_->interpolate(raw.sensor_celsius, conditioned.taxel_celsius)) return;
-  double sum = 0.0;
-  for (const float celsius : conditioned.taxel_celsius) sum += static_cast<double>(celsius);
-  conditioned.temperature_celsius = sum / static_cast<double>(array_.taxel_count());
+  conditioned.temperature_celsius = mean_celsius(std::span<const float>(conditioned.taxel_celsius));
 }
 
 DERMIS_PROCESSOR_CLONES void Conditioner::convert(const RawFrame& raw, ConditionedFrame& conditioned) noexcept {

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <span>
+#include <vector>
 
 namespace dermis {
 namespace {
@@ -27,6 +29,12 @@ TEST(MeanCelsius, is_that_of_the_array_where_there_is_one) {
 TEST(MeanCelsius, is_the_mean_of_the_sensors_with_a_reading) {
   EXPECT_EQ(mean_celsius(frame_of({}, {20.0F, kNone, 23.0F, kInfinite})), 21.5);
   EXPECT_EQ(mean_celsius(frame_of(std::numeric_limits<double>::quiet_NaN(), {20.0F})), 20.0);
+}
+
+TEST(MeanCelsius, is_that_of_sensors_alone) {
+  const std::vector<float> sensors{20.0F, kNone, 23.0F};
+  EXPECT_EQ(mean_celsius(std::span(sensors)), 21.5);
+  EXPECT_EQ(mean_celsius(std::span(sensors).subspan(1, 1)), std::nullopt);
 }
 
 TEST(MeanCelsius, is_none_without_any_reading) {

@@ -6,6 +6,7 @@
 
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <limits>
 
 #include "dermis/messages/ros_messages.hpp"
@@ -97,24 +98,34 @@ struct JointSample {
   std::vector<std::pair<std::string, double>> positions;
 };
 
-/// An array of 1x1 whose frames are 10 ms apart, beside joints.
-void write_robot(const std::string& path, const std::vector<JointSample>& samples) {
-  messages::MessageType joints = messages::temperature_type();
-  joints.name = messages::kJointState;
+/// An array of 1x1 whose frames are 10 ms apart, each as `change` leaves it. `beside` writes what comes with it.
+void write_tip(const std::string& path, const std::function<void(int, RawFrame&)>& change,
+               const std::function<void(recordings::SuitRecordingWriter&, Nanos)>& beside) {
   const auto writer = recordings::SuitRecordingWriter::create(path, {{.name = "tip", .shape = {1, 1}}});
   ASSERT_TRUE(writer) << writer.error().message;
   RawFrame frame;
   frame.counts = {1.0F};
   for (int k = 0; k < 50; ++k) {
     frame.time = milliseconds(10 * k);
+    change(k, frame);
     ASSERT_TRUE((*writer)->write(0, frame));
-    for (const JointSample& sample : samples) {
-      if (sample.time != frame.time) continue;
-      const std::vector<std::uint8_t> message = support::joint_message(sample.positions);
-      ASSERT_TRUE((*writer)->write({sample.topic, joints, sample.time, message}));
-    }
+    beside(**writer, frame.time);
   }
   ASSERT_TRUE((*writer)->commit());
+}
+
+void write_robot(const std::string& path, const std::vector<JointSample>& samples) {
+  messages::MessageType joints = messages::temperature_type();
+  joints.name = messages::kJointState;
+  const auto write_joints = [&](recordings::SuitRecordingWriter& writer, Nanos time) {
+    for (const JointSample& sample : samples) {
+      if (sample.time != time) continue;
+      const std::vector<std::uint8_t> message = support::joint_message(sample.positions);
+      ASSERT_TRUE(writer.write({sample.topic, joints, sample.time, message}));
+    }
+  };
+  write_tip(
+      path, [](int, RawFrame&) {}, write_joints);
 }
 
 std::vector<Nanos> even_times(std::size_t count, Nanos first = {}) {
@@ -166,16 +177,10 @@ TEST_F(Episodes, have_the_windows_and_ages_of_all_arrays) {
 
 TEST_F(Episodes, have_the_temperature_of_each_sensor) {
   const std::string path = folder_.file("sensors.mcap");
-  const auto writer = recordings::SuitRecordingWriter::create(path, {{.name = "tip", .shape = {1, 1}}});
-  ASSERT_TRUE(writer) << writer.error().message;
-  RawFrame frame;
-  frame.counts = {1.0F};
-  for (int k = 0; k < 50; ++k) {
-    frame.time = milliseconds(10 * k);
+  const auto warm = [](int k, RawFrame& frame) {
     frame.sensor_celsius = {20.0F, k == 0 ? 30.0F : std::numeric_limits<float>::quiet_NaN()};
-    ASSERT_TRUE((*writer)->write(0, frame));
-  }
-  ASSERT_TRUE((*writer)->commit());
+  };
+  write_tip(path, warm, [](recordings::SuitRecordingWriter&, Nanos) {});
   Kept kept;
   ASSERT_TRUE(make_episodes({path}, {.fps = 20.0}, kept));
   EXPECT_EQ(kept.axes("tip_temperature"), (std::vector<std::string>{"sensors"}));

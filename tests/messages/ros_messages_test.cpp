@@ -13,6 +13,7 @@
 #include "dermis/messages/live_messages.hpp"
 #include "messages/read_by_definition.hpp"
 #include "support/allocation_guard.hpp"
+#include "support/joint_messages.hpp"
 #include "support/simd_targets.hpp"
 
 namespace dermis::messages {
@@ -348,7 +349,6 @@ TEST(MessageTypes, definitions_name_every_type_that_they_use) {
   }
 }
 
-/// As ROS 2 prints them ("ros2 topic info --verbose"), from recordings and programs of others.
 Bytes tactile_state(const std::vector<std::vector<float>>& sensors) {
   Bytes message;
   CdrWriter writer(message);
@@ -384,46 +384,32 @@ TEST(TactileState, one_that_is_cut_or_has_no_value_is_refused) {
             "the sensors have 0x0 values; 1x1 to 1024x1024 can be read");
 }
 
-Bytes joint_state(const std::vector<std::string>& names, const std::vector<std::vector<double>>& quantities) {
-  Bytes message;
-  CdrWriter writer(message);
-  writer.write(std::int32_t{7});
-  writer.write(std::uint32_t{9});
-  writer.write_text("base");
-  writer.write(static_cast<std::uint32_t>(names.size()));
-  for (const std::string& name : names) writer.write_text(name);
-  for (const std::vector<double>& numbers : quantities) {
-    writer.write(static_cast<std::uint32_t>(numbers.size()));
-    for (const double number : numbers) writer.write(number);
-  }
-  return message;
-}
-
 TEST(JointState, has_positions_or_else_velocities_or_efforts) {
   JointNumbers joints;
-  ASSERT_TRUE(decode_joint_state(joint_state({"elbow", "wrist"}, {{0.5, -1}, {2, 3}, {4, 5}}), joints));
+  ASSERT_TRUE(decode_joint_state(support::joint_message({"elbow", "wrist"}, {{0.5, -1}, {2, 3}, {4, 5}}), joints));
   EXPECT_EQ(joints.names, (std::vector<std::string>{"elbow", "wrist"}));
   EXPECT_EQ(joints.numbers, (std::vector<double>{0.5, -1}));
-  ASSERT_TRUE(decode_joint_state(joint_state({"elbow"}, {{}, {2}, {4}}), joints));
+  ASSERT_TRUE(decode_joint_state(support::joint_message({"elbow"}, {{}, {2}, {4}}), joints));
   EXPECT_EQ(joints.numbers, (std::vector<double>{2}));
-  ASSERT_TRUE(decode_joint_state(joint_state({"elbow"}, {{}, {}, {4}}), joints));
+  ASSERT_TRUE(decode_joint_state(support::joint_message({"elbow"}, {{}, {}, {4}}), joints));
   EXPECT_EQ(joints.numbers, (std::vector<double>{4}));
-  ASSERT_TRUE(decode_joint_state(joint_state({"elbow"}, {{}, {}, {}}), joints));
+  ASSERT_TRUE(decode_joint_state(support::joint_message({"elbow"}, {{}, {}, {}}), joints));
   EXPECT_TRUE(joints.names.empty());
   EXPECT_TRUE(joints.numbers.empty());
 }
 
 TEST(JointState, one_that_is_cut_or_has_other_numbers_than_names_is_refused) {
   JointNumbers joints;
-  const Bytes whole = joint_state({"elbow"}, {{0.5}, {}, {}});
+  const Bytes whole = support::joint_message({"elbow"}, {{0.5}, {}, {}});
   for (std::size_t size = 0; size < whole.size(); ++size) {
     EXPECT_EQ(decode_joint_state(std::span(whole).first(size), joints).error().message,
               "the message is no whole sensor_msgs/msg/JointState in CDR");
   }
-  EXPECT_EQ(decode_joint_state(joint_state({"elbow"}, {{1, 2}, {}, {}}), joints).error().message,
+  EXPECT_EQ(decode_joint_state(support::joint_message({"elbow"}, {{1, 2}, {}, {}}), joints).error().message,
             "the message names 1 joints and has numbers of 2");
 }
 
+/// As ROS 2 prints them ("ros2 topic info --verbose"), from recordings and programs of others.
 TEST(MessageTypes, hashes_are_those_of_ros) {
   EXPECT_STREQ(image_type().hash, "RIHS01_d31d41a9a4c4bc8eae9be757b0beed306564f7526c88ea6a4588fb9582527d47");
   EXPECT_STREQ(point_cloud_type().hash, "RIHS01_9198cabf7da3796ae6fe19c4cb3bdd3525492988c70522628af5daa124bae2b5");

@@ -11,8 +11,9 @@
 
 namespace dermis::support {
 
-/// sensor_msgs/msg/JointState with positions alone, as ROS 2 serialises it.
-inline std::vector<std::uint8_t> joint_message(const std::vector<std::pair<std::string, double>>& joints) {
+/// sensor_msgs/msg/JointState as ROS 2 serialises it. `quantities`: positions, velocities and efforts.
+inline std::vector<std::uint8_t> joint_message(const std::vector<std::string>& names,
+                                               const std::vector<std::vector<double>>& quantities) {
   std::vector<std::uint8_t> bytes;  // the encapsulation comes before them at the end
   const auto put = [&](auto number) {
     while (bytes.size() % sizeof number != 0) bytes.push_back(0);
@@ -27,14 +28,25 @@ inline std::vector<std::uint8_t> joint_message(const std::vector<std::pair<std::
   put(std::int32_t{7});
   put(std::uint32_t{9});
   put_text("base");
-  put(static_cast<std::uint32_t>(joints.size()));
-  for (const auto& [name, position] : joints) put_text(name);
-  put(static_cast<std::uint32_t>(joints.size()));
-  for (const auto& [name, position] : joints) put(position);
-  put(std::uint32_t{0});
-  put(std::uint32_t{0});
+  put(static_cast<std::uint32_t>(names.size()));
+  for (const std::string& name : names) put_text(name);
+  for (const std::vector<double>& numbers : quantities) {
+    put(static_cast<std::uint32_t>(numbers.size()));
+    for (const double number : numbers) put(number);
+  }
   bytes.insert(bytes.begin(), {0, 1, 0, 0});
   return bytes;
+}
+
+/// The same with positions alone.
+inline std::vector<std::uint8_t> joint_message(const std::vector<std::pair<std::string, double>>& positions) {
+  std::vector<std::string> names;
+  std::vector<std::vector<double>> quantities(3);
+  for (const auto& [name, position] : positions) {
+    names.push_back(name);
+    quantities.front().push_back(position);
+  }
+  return joint_message(names, quantities);
 }
 
 }  // namespace dermis::support

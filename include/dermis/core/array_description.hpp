@@ -16,6 +16,9 @@ namespace dermis {
 /// Most rows, and most columns, of an array.
 inline constexpr std::size_t kMaxLines = 1024;
 
+/// Most temperature sensors with places of their own; more are one on each taxel.
+inline constexpr std::size_t kMaxPlacedSensors = 64;
+
 /// How the array is wired to the ADC. Drawings: docs/circuits.md.
 enum class Circuit {
   divider,         ///< Every column ends in a resistor to ground; the ADC reads the column voltage.
