@@ -186,8 +186,8 @@ void raise_own_priority() {
   if (!std::exchange(is_raised, true)) raise_thread_priority(ThreadPriority::frames);
 }
 
-/// Asks for all messages. A second reader takes what it gets of writers that send nothing again; it hears the others,
-/// too, so both leave out what has been there.
+/// Asks for all messages. A second reader serves writers that send nothing again. It hears the others, too, so both
+/// leave out repeated messages.
 class FastReader final : public Reader, private fast::DataReaderListener {
  public:
   FastReader(fast::Subscriber& subscriber, Subscription subscription)

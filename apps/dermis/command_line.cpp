@@ -118,8 +118,8 @@ std::vector<std::string> takers_of(const std::string& option, const CLI::App& co
   return takers;
 }
 
-/// Names the problem of an unknown argument of a command of `app`, and what may have been meant: a name that is near,
-/// or the few commands that take such an option.
+/// Names the problem of an unknown argument of a command of `app`. Adds the name that may have been meant, or the few
+/// commands that take such an option.
 std::string unknown(const std::string& argument, const CLI::App& command, const CLI::App& app) {
   const bool is_option = argument.starts_with('-');
   const std::set<std::string> known = is_option ? options_of(command) : commands_of(command);

@@ -20,8 +20,8 @@
 #ifndef DERMIS_COMPENSATION_GROUNDED_ROWS_VIEW
 #define DERMIS_COMPENSATION_GROUNDED_ROWS_VIEW
 namespace dermis::compensation {
-/// The arrays of the state. Kernels take them by value: stores of vectors may alias all that is reached through a
-/// pointer, and the pointers themselves would be loaded anew after each. Many members: the symbols of the state.
+/// The arrays of the state. Kernels take them by value. Stores of vectors may alias all that is reached through a
+/// pointer. So pointers behind one would be loaded anew after each store. Many members: the symbols of the state.
 struct GroundedRowsView {
   explicit GroundedRowsView(GroundedRowsState& state)
       : rows(state.rows),

@@ -20,9 +20,9 @@ enum class ReadingVerdict { possible, unknown, shorted, impossible };
 ///   slack_kj = 1 - Rd_k sum_j' I_kj' - V_kj        (one loaded column: - Rd_k I_kj)
 ///
 /// and its resistance at most slack / I, if no other taxel carries current to the line. Where idle rows float others
-/// do; then slack / I is that of them all, and low only under a wide press. Where idle rows are grounded, the readings
-/// of a column are together less than the supply, as they are when all rows are driven at once. For one column alone,
-/// the rest of the supply gives the resistances,
+/// do; then slack / I is that of them all, and low only under a wide press. Where idle rows are grounded, the
+/// readings of a column are together less than the supply. Their sum is the reading with all rows driven at once. For
+/// one column alone, the rest of the supply gives the resistances,
 ///
 ///   Rd_k + 1 / G_kj  =  RL_j (1 - sum_k' r_k'j) / r_kj
 ///

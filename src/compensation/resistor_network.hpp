@@ -10,10 +10,10 @@
 
 namespace dermis::compensation {
 
-/// Node potentials of a network of resistors by star-mesh elimination. A node of pivot g = sum of all conductances at
-/// it is taken out, and each pair of its neighbours q, r gains g_pq g_pr / g. This is a sparse Cholesky factorisation
-/// of the nodal equations without a single subtraction. So every potential is right to a few roundings of itself,
-/// however far apart the conductances are. 0 S is a conductance like any other.
+/// Node potentials of a network of resistors by star-mesh elimination. A node p is taken out, whose pivot g is the sum
+/// of all conductances at it. Each pair of its neighbours q, r gains g_pq g_pr / g. This is a sparse Cholesky
+/// factorisation of the nodal equations without a single subtraction. So every potential is right to a few roundings of
+/// itself, however far apart the conductances are. 0 S is a conductance like any other.
 ///
 /// Nodes 0 ... free_nodes - 1 are eliminated in this order, the others are held at given potentials.
 class ResistorNetwork {

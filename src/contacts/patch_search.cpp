@@ -117,8 +117,8 @@ Patch PatchSearch::start_at(const ExpectedContact& start, double newtons) const 
   return patch;
 }
 
-/// Where the residual of the patch exceeds the noise, every taxel has a deviation beside its noise: the material is
-/// uneven, or the patch not round. Otherwise the taxels of the least noise, at the rim, would place it alone.
+/// Where the residual of the patch exceeds the noise, the material is uneven, or the patch not round. Then every taxel
+/// has a deviation beside its noise. Otherwise the taxels of the least noise, at the rim, would place it alone.
 void PatchSearch::add_mismatch(const PatchFit& fit) {
   float squares = 0.0F;
   for (const FitTaxel& taxel : taxels_) squares += square_of_residual(fit, taxel);

@@ -11,8 +11,8 @@
 // The arithmetic of MaterialMemory with the taxels in SIMD lanes (single precision, Highway).
 namespace dermis::fusion {
 
-/// What is remembered of a taxel stands in tiles [tiles, kStates, kTile], which are read from front to back: rows of
-/// all taxels would lie a power of two apart, and displace each other from the cache.
+/// The memory of taxels stands in tiles [tiles, kStates, kTile], which are read from front to back. Rows of all taxels
+/// would lie a power of two apart, and displace each other from the cache.
 inline constexpr std::size_t kTile = 16;  // as many as the widest vectors have lanes
 
 // The states of a taxel, in this order.

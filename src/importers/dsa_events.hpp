@@ -23,8 +23,8 @@ struct DsaEvent {
 };
 
 /// Reads the XML of a DSA recording, compressed by bzip2 or not, event by event. Memory: an event of at most 64 MiB.
-/// Document types are refused, so no entity can grow. No recording has tags of more than 1 MiB, names of more than 64
-/// KiB in all, or more than 32 nested elements: these are refused, too. Not thread-safe.
+/// Document types are refused, so no entity can grow. Tags of more than 1 MiB and names of more than 64 KiB
+/// in all are refused, too, and more than 32 nested elements. No recording has them. Not thread-safe.
 class DsaEvents {
  public:
   /// `in` must be able to seek.

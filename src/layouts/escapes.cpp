@@ -5,8 +5,8 @@
 namespace dermis::layouts {
 namespace {
 
-/// Cheshire, Baker, "Consistent Overhead Byte Stuffing", IEEE/ACM Transactions on Networking 7 (1999): a code of n
-/// stands before n - 1 bytes and, but for 255, a byte of 0.
+/// A code of n stands before n - 1 bytes and, but for 255, a byte of 0. Cheshire, Baker, "Consistent Overhead Byte
+/// Stuffing", IEEE/ACM Transactions on Networking 7 (1999).
 bool undo_cobs(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& plain) {
   while (!bytes.empty()) {
     const std::size_t code = bytes.front();

@@ -22,7 +22,7 @@ struct NamedField {
 
 enum class FieldsOf { line, packet };
 
-/// "row", "time_ms", ..., or an array by its name; "values" and "value" are the readings of the only array, or of the
+/// "row", "time_ms", ..., or an array by its name. "values" and "value" are the readings of the only array, or of the
 /// one that a field `array` names. Fails with the nearest name.
 [[nodiscard]] Result<NamedField> field_named(std::string_view name, FieldsOf where,
                                              const std::vector<LayoutArray>& arrays);

@@ -4,7 +4,7 @@
 
 #include <cassert>
 
-// Parameters stand in tiles [tiles, parameter_count, kTile], which are read from front to back: rows of all networks
+// Parameters stand in tiles [tiles, parameter_count, kTile], which are read from front to back. Rows of all networks
 // would lie a power of two apart, and displace each other from the cache.
 #ifndef DERMIS_NETWORK_TILE
 #define DERMIS_NETWORK_TILE

@@ -15,8 +15,8 @@ namespace dermis::recordings {
 /// The meaning of a topic's messages for the frames; what holds counts is an image, also of sensors without places.
 enum class MessageKind : std::uint8_t { none, image, acquisition, temperature, sensors };
 
-/// Last part of the topic that carries the temperatures of several sensors, as an image of one row or, with one a
-/// taxel, of the array's shape.
+/// Last part of the topic that carries the temperatures of several sensors. They are an image of one row or, with one
+/// a taxel, of the array's shape.
 inline constexpr const char* kSensorsTopic = "temperatures";
 
 /// Frames are read of messages in CDR alone.

@@ -28,7 +28,7 @@ int decade_of(int index) {
   return index >= 0 ? index / 3 : -((2 - index) / 3);
 }
 
-/// factor * 1, 2, 5, 10, 20, ... for index 0, 1, 2, 3, 4, and so on; below 0 it goes on with 0.5, 0.2, 0.1, and so on.
+/// factor * 1, 2, 5, 10, 20 for index 0, 1, 2, 3, 4, and so on. Below 0 it goes on with 0.5, 0.2, 0.1, and so on.
 /// Negative powers divide, so that 3 * 0.1 is the double that is written 0.3.
 double on_grid(double factor, int index) {
   constexpr std::array<double, 3> kMantissas = {1.0, 2.0, 5.0};

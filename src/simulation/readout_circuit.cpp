@@ -129,8 +129,8 @@ Table one_load_grounded(const TerminalNetwork& network, const ArrayXd& drive_ohm
   return (left_of_supply(supply_ohm, taken.array()) * current.array()).matrix() * load_ohm.matrix().asDiagonal();
 }
 
-// A series of driver, array and load. The array's resistance between line k and sensed line j is the voltage of a unit
-// current into line k, with line j at 0 V and all others floating.
+// A series of driver, array and load. The array's resistance between line k and sensed line j is measured by a unit
+// current into line k. It is the voltage there, with line j at 0 V and all others floating.
 Table one_load_floating(const TerminalNetwork& network, const ArrayXd& drive_ohm, const ArrayXd& load_ohm,
                         const ArrayXd& switch_ohm) {
   const Index driven = drive_ohm.size();

@@ -14,8 +14,8 @@ namespace {
 
 using acquisition::Transport;
 
-/// Without a protocol, a file may be more than the bytes of a device: with a rate or an order of lines, or with a shape
-/// where its system does not tell one.
+/// Without a protocol, a file may be more than the bytes of a device. It is so with a rate or an order of lines, or
+/// with a shape where its system does not tell one.
 bool is_file_of_frames(const acquisition::SourceUri& uri) {
   if (uri.transport != Transport::file || uri.protocol.name != "auto" || uri.protocol.has_layout()) return false;
   const Result<recordings::FrameFormat> format = recordings::frame_format(recordings::recording_place(uri.path).path);

@@ -44,8 +44,8 @@ struct ProtocolOptions {
 /// "flexitac", "3dvitac", ..., and "auto" at the end.
 [[nodiscard]] const std::vector<std::string>& protocol_names();
 
-/// Fails on an unknown name (with the nearest known one), on shapes or options that the protocol cannot have, and on
-/// a layout that cannot be read.
+/// Fails on an unknown name, with the nearest known one. Fails on shapes and options that the protocol cannot have, and
+/// on a layout that cannot be read.
 [[nodiscard]] Result<std::unique_ptr<Decoder>> make_decoder(const ProtocolOptions& options);
 
 /// The same; `shape` is required, and "auto" cannot be encoded.

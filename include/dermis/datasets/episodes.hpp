@@ -29,9 +29,9 @@ struct EpisodeOptions {
   /// Path as for pipeline::read_model(); of recordings of several arrays, of the suit.toml that names theirs. Empty:
   /// there are no forces.
   std::string model{};
-  /// The robot's state, such as joint angles, and its actions: a topic of sensor_msgs/msg/JointState that all
-  /// recordings have ("/joint_states"), or a CSV for each, with time_s on the clock of the frames. Each step has the
-  /// newest numbers.
+  /// The robot's state, such as joint angles, and its actions. Either is a topic of sensor_msgs/msg/JointState that all
+  /// recordings have ("/joint_states"), or a CSV for each. time_s of a CSV is on the clock of the frames. Each step has
+  /// the newest numbers.
   std::vector<std::string> states{};
   std::vector<std::string> actions{};
   /// Without states, the only topic that all recordings have is the state, if its joints are the same in each.

@@ -64,8 +64,8 @@ class FramesCsvWriter final : public FrameSink {
   [[nodiscard]] static Result<std::unique_ptr<FramesCsvWriter>> create(const std::string& path, FrameShape shape,
                                                                        const FramesCsvColumns& columns = {});
 
-  /// Appends a frame of `shape`; values of columns that are not in the file are dropped: those of sensors, too, that
-  /// neither the first frame has nor FramesCsvColumns names.
+  /// Appends a frame of `shape`. Values without a column in the file are dropped. Sensors have columns where the first
+  /// frame has them, or FramesCsvColumns names them.
   [[nodiscard]] Status write(const RawFrame& frame) override;
   [[nodiscard]] Status commit() override;
 

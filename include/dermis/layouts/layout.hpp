@@ -154,12 +154,13 @@ struct Layout {
 /// The same from memory; `name` stands for the path in messages.
 [[nodiscard]] Result<Layout> layout_from_toml(std::string_view text, const std::string& name);
 
-/// Decodes the packets of a device that has one of these layouts: packets of a constant size, without a checksum, that
-/// differ in size and have the same mark.
+/// Decodes the packets of a device that has one of these layouts. Their packets have a constant size and no checksum;
+/// they differ in size and have the same mark.
 [[nodiscard]] std::unique_ptr<Decoder> make_decoder(const std::vector<std::shared_ptr<const Layout>>& layouts);
 
-/// Decodes the frames of one array of the layout. Those of a whole file are put in order where they come up to a second
-/// late, for which each waits, and its last line needs no end. Late frames of a device are dropped. Thread-compatible.
+/// Decodes the frames of one array of the layout. Those of a whole file wait for others that come up to a second
+/// late, and are put in order. The last line of a file needs no end. Late frames of a device are dropped.
+/// Thread-compatible.
 [[nodiscard]] std::unique_ptr<Decoder> make_decoder(std::shared_ptr<const Layout> layout, std::size_t array,
                                                     bool is_whole_file);
 

@@ -18,8 +18,8 @@ class TemperatureField {
   /// The array must be valid. One without sensors is taken to have one in its middle.
   explicit TemperatureField(const ArrayDescription& array);
 
-  /// `sensors` [sensors] -> `taxels` [taxels] [C]. A sensor that is NaN, or no temperature of a sheet, counts as if it
-  /// were not there; on a map its taxel has the mean of its neighbours. false: no sensor reads, or not the right number
+  /// `sensors` [sensors] -> `taxels` [taxels] [C]. A sensor counts as absent where it is NaN, or no temperature that a
+  /// sheet can have. On a map its taxel has the mean of its neighbours. false: no sensor reads, or not the right number
   /// is there; `taxels` is empty then. Allocates nothing where `taxels` has room.
   bool interpolate(std::span<const float> sensors, std::vector<float>& taxels) noexcept;
 

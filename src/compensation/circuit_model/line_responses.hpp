@@ -24,8 +24,8 @@ class LineResponses {
   /// the loop through it [S].
   double drive_floating_line(std::size_t line) noexcept;
 
-  /// While `line` is scanned, a first taxel on another, empty floating line would bring that line to the potential of
-  /// the taxel's other end: no drop.
+  /// While `line` is scanned, another floating line may be without taxels. A first taxel on it would bring it to the
+  /// potential of the taxel's other end: no drop.
   void clear_isolated_lines(std::size_t line, Matrix::RowXpr drops) const noexcept;
 
   /// Out of the head of a tied line.

@@ -102,8 +102,8 @@ DriftingDriverDetector::Pair DriftingDriverDetector::untouched_pair(const Observ
   return pair;
 }
 
-/// Finds where a line or one beside it is touched, or nearly: a taxel reads more than an unloaded one, in this frame or
-/// the last.
+/// Finds where a line or one beside it is touched, or nearly. There a taxel reads more than an unloaded one, in this
+/// frame or the last.
 void DriftingDriverDetector::find_touched(const Observation& seen, std::size_t line) noexcept {
   std::fill(touched_.begin(), touched_.end(), std::uint8_t{0});
   for (std::size_t near = line - std::min<std::size_t>(line, 1); near <= std::min(line + 1, drivers_.size() - 1);

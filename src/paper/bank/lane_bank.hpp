@@ -16,8 +16,8 @@ inline constexpr std::size_t kGroup = 16;
 /// Patterns that go through a group together.
 inline constexpr std::size_t kTilePatterns = 4;
 
-/// Work space of one thread for a tile of patterns of one group: the outputs of each layer and, on the way back, its
-/// deltas, [patterns, units, 16].
+/// Work space of one thread for a tile of patterns of one group. It holds the outputs of each layer and, on the way
+/// back, its deltas, [patterns, units, 16].
 class LaneSpace {
  public:
   explicit LaneSpace(const NetworkShape& shape);

@@ -49,8 +49,8 @@ struct PanelLayer {
 };
 
 /// How the parameters of one network lie in memory: in the order in which evaluating reads them. A layer is cut in
-/// panels of 32 units. A panel is a matrix [fan_in + 1, 32], so that one pass over it, from end to end, serves the
-/// product with one pattern and with many. Padding is 0.
+/// panels of 32 units. A panel is a matrix [fan_in + 1, 32]. One pass over it, from end to end, serves the product with
+/// one pattern and with many. Padding is 0.
 class PanelLayout {
  public:
   explicit PanelLayout(const NetworkShape& shape);
