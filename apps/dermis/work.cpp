@@ -14,7 +14,6 @@
 #include "child_process.hpp"
 #include "commands.hpp"
 #include "dermis/fleet/job_queue.hpp"
-#include "fleet_connection.hpp"
 #include "status_line.hpp"
 #include "stop_flag.hpp"
 
@@ -24,7 +23,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kLook{2};
-constexpr std::chrono::seconds kExtendEvery{5};
+constexpr std::chrono::seconds kExtendEvery = fleet::JobQueue::kLease / 3;  // two may be lost
 constexpr std::chrono::seconds kRetryAfter{1};
 constexpr int kBadInput = 2;  // exit status: another try would end alike
 
@@ -46,6 +45,26 @@ std::string name_of_worker() {
   return fmt::format("{}-{}", host.data(), ::getpid());
 }
 
+std::string absolute(const std::string& path) {
+  return path.empty() ? path : std::filesystem::absolute(path).string();
+}
+
+struct Worker {
+  std::string name;
+  std::string program;
+  fleet::BrokerAddress server;  ///< Its files have absolute paths, as the worker goes to the folder of the jobs.
+};
+
+Result<Worker> worker_of(const std::string& hub) {
+  Result<fleet::BrokerAddress> server = fleet::parse_broker_address(hub);
+  if (!server) return server.error();
+  Result<std::string> program = own_program();
+  if (!program) return program.error();
+  server->ca = absolute(server->ca);
+  server->key = absolute(server->key);
+  return Worker{name_of_worker(), *std::move(program), *std::move(server)};
+}
+
 /// Where the word names a file of the folder or below, or none. `folder`: without links.
 bool stays_in(const std::filesystem::path& folder, const std::string& word) {
   const std::size_t equals = word.starts_with("--") ? word.find('=') : std::string::npos;
@@ -59,13 +78,14 @@ bool stays_in(const std::filesystem::path& folder, const std::string& word) {
 }
 
 /// The job as a process that does not outlive this one. An output that an earlier try has written is replaced.
-Result<ChildProcess> start(const fleet::TakenJob& taken, const std::string& program) {
+Result<ChildProcess> start(const fleet::TakenJob& taken, const Worker& worker) {
   const std::filesystem::path folder = std::filesystem::canonical(".");
+  std::vector<std::string> command = {"setpriv", "--pdeathsig", "KILL", worker.program};
   for (const std::string& word : taken.job.words) {
-    if (!stays_in(folder, word)) return bad_input("'" + word + "' leads out of the folder");
+    const bool is_range = fleet::is_range(word);
+    if (!is_range && !stays_in(folder, word)) return bad_input("'" + word + "' leads out of the folder");
+    command.push_back(is_range ? fleet::range_at(worker.server, word) : word);
   }
-  std::vector<std::string> command = {"setpriv", "--pdeathsig", "KILL", program};
-  command.insert(command.end(), taken.job.words.begin(), taken.job.words.end());
   if (taken.tries > 1) command.emplace_back("--force");
   return ChildProcess::start(command);
 }
@@ -83,12 +103,12 @@ std::optional<int> exit_status_of(ChildProcess& child, fleet::JobQueue& queue, c
   return std::nullopt;
 }
 
-/// The outcome but for its times; empty where the worker is stopped.
-std::optional<fleet::JobOutcome> do_job(fleet::JobQueue& queue, const fleet::TakenJob& taken,
-                                        const std::string& program) {
+/// The outcome but for its seconds; empty where the worker is stopped.
+std::optional<fleet::JobOutcome> do_job(fleet::JobQueue& queue, const fleet::TakenJob& taken, const Worker& worker) {
   fleet::JobOutcome outcome;
   outcome.name = taken.job.name;
-  Result<ChildProcess> child = start(taken, program);
+  outcome.worker = worker.name;
+  Result<ChildProcess> child = start(taken, worker);
   if (!child) {
     outcome.error = child.error().message;
     return outcome;
@@ -109,15 +129,14 @@ void finish(fleet::JobQueue& queue, const fleet::TakenJob& taken, const fleet::J
 }
 
 Status work(const WorkOptions& options) {
-  const Result<std::unique_ptr<fleet::JobQueue>> queue = connect_fleet<fleet::JobQueue>(options.hub);
+  const Result<Worker> worker = worker_of(options.hub);
+  if (!worker) return worker.error();
+  const Result<std::unique_ptr<fleet::JobQueue>> queue = fleet::JobQueue::connect(worker->server);
   if (!queue) return queue.error();
   std::error_code failure;
   std::filesystem::current_path(options.folder, failure);
   if (failure) return bad_input(options.folder + ": " + failure.message());
-  const Result<std::string> program = own_program();
-  if (!program) return program.error();
-  const std::string worker = name_of_worker();
-  print_notice(fmt::format("{} works for {} (Ctrl-C ends it)", worker, fleet::without_password(options.hub)));
+  print_notice(fmt::format("{} works for {} (Ctrl-C ends it)", worker->name, fleet::without_password(options.hub)));
   while (!stop_flag()) {
     const Result<std::optional<fleet::TakenJob>> taken = (*queue)->take();
     if (!taken) {
@@ -127,9 +146,8 @@ Status work(const WorkOptions& options) {
     }
     if (!*taken) continue;
     const Clock::time_point begun = Clock::now();
-    std::optional<fleet::JobOutcome> outcome = do_job(**queue, **taken, *program);
-    if (!outcome) break;  // the lease ends, and another has the job
-    outcome->worker = worker;
+    std::optional<fleet::JobOutcome> outcome = do_job(**queue, **taken, *worker);
+    if (!outcome) return (*queue)->give_back(**taken);
     outcome->seconds = std::chrono::duration<double>(Clock::now() - begun).count();
     if (!outcome->error.empty()) print_notice(fmt::format("{}: {}", outcome->name, outcome->error));
     finish(**queue, **taken, *outcome);

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "dermis/files/config_table.hpp"
+#include "dermis/fleet/stream_address.hpp"
 
 namespace dermis::fleet {
 namespace {
@@ -15,7 +16,8 @@ using Json = nlohmann::json;
 
 constexpr std::size_t kMostWords = 200;
 constexpr std::size_t kMostCharacters = 4096;
-const std::set<std::string, std::less<>> kCommands = {"calibrate", "convert", "evaluate", "run", "simulate"};
+const std::set<std::string, std::less<>> kCommands = {"calibrate", "convert", "dataset", "evaluate", "run", "simulate"};
+constexpr std::string_view kOwnServer = "nats://?";  // that of the worker
 
 bool has_control_characters(std::string_view text) {
   return std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; });
@@ -34,11 +36,20 @@ bool stays_within(std::string_view word) {
   for (const std::string_view way_out : {"..", "=/", ":/", "%", "#/", "//"}) {
     if (word.find(way_out) != std::string_view::npos) return false;
   }
-  for (const std::string_view device :
-       {"serial:", "tcp:", "tcp-listen:", "udp:", "stdin:", "nats:", "tls:", "file:", "sim:"}) {
+  for (const std::string_view device : {"serial:", "tcp:", "tcp-listen:", "udp:", "stdin:", "nats:", "tls:", "dds:",
+                                        "modbus-tcp:", "modbus-rtu:", "file:", "sim:"}) {
     if (word.find(device) != std::string_view::npos) return false;
   }
   return true;
+}
+
+/// A range of frames on the worker's own server, which it reads by its own key.
+Status check_range(const std::string& word) {
+  const Result<StreamAddress> range = parse_stream_address("nats://HUB?" + word.substr(kOwnServer.size()));
+  if (!range) return range.error();
+  if (!range->ends) return bad_input("words: '" + word + "' has no end; add to=");
+  if (range->broker.key.empty() && range->broker.ca.empty()) return Done{};
+  return bad_input("words: '" + word + "' names a key or certificates; the worker has its own");
 }
 
 std::string command_list() {
@@ -74,11 +85,24 @@ Status check_job(const Job& job) {
   }
   for (const std::string& word : job.words) {
     if (word.size() > kMostCharacters) return bad_input("words: one is longer than 4096 characters");
-    if (!stays_within(word)) {
+    if (is_range(word)) {
+      if (Status good = check_range(word); !good) return good;
+    } else if (!stays_within(word)) {
       return bad_input("words: '" + word + "' may lead out of the folder; name files by relative paths");
     }
   }
   return Done{};
+}
+
+bool is_range(std::string_view word) {
+  return word.starts_with(kOwnServer);
+}
+
+std::string range_at(const BrokerAddress& server, std::string_view word) {
+  std::string address = server.url + "?" + std::string(word.substr(kOwnServer.size()));
+  if (!server.ca.empty()) address += "&ca=" + server.ca;
+  if (!server.key.empty()) address += "&key=" + server.key;
+  return address;
 }
 
 Result<std::vector<Job>> read_jobs(const std::string& path) {

@@ -113,6 +113,10 @@ Status JobQueue::extend(const TakenJob& job) {
   return broker_->send(job.lease, "+WPI");
 }
 
+Status JobQueue::give_back(const TakenJob& job) {
+  return broker_->send(job.lease, "-NAK");
+}
+
 Status JobQueue::give_up(const TakenJob& job, const std::string& why) {
   if (Status stored = store_outcome(kGivenUp + job.id, {job.job.name, "", 0.0, why}); !stored) return stored;
   const Result<std::string> away = broker_->ask(job.lease, "+TERM");

@@ -54,6 +54,30 @@ TEST_P(DatasetFiles, replace_nothing) {
   EXPECT_EQ(folder_.file_count(), 1U);
 }
 
+TEST_P(DatasetFiles, replace_a_dataset_where_they_may) {
+  DatasetOptions replacing = options();
+  replacing.replaces = true;
+  for (const DatasetOptions& each : {options(), replacing}) {
+    const auto sink = create_dataset(folder_.file("set"), each);
+    ASSERT_TRUE(sink) << sink.error().message;
+    ASSERT_TRUE(write_dataset(**sink));
+  }
+  EXPECT_FALSE(std::filesystem::is_empty(folder_.file("set")));
+  EXPECT_EQ(folder_.file_count(), 1U);
+}
+
+TEST_P(DatasetFiles, replace_nothing_but_a_dataset_of_dermis) {
+  DatasetOptions replacing = options();
+  replacing.replaces = true;
+  std::filesystem::create_directories(folder_.file("set/meta"));
+  support::write_bytes(folder_.file("set/meta/info.json"), "{}");
+  std::filesystem::create_directory(folder_.file("set/videos"));
+  const auto sink = create_dataset(folder_.file("set"), replacing);
+  ASSERT_FALSE(sink);
+  EXPECT_NE(sink.error().message.find("exists and holds more than a dataset of dermis"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(folder_.file("set/videos")));
+}
+
 INSTANTIATE_TEST_SUITE_P(formats, DatasetFiles, testing::ValuesIn(dataset_formats()));
 
 TEST(DatasetFormats, are_known_by_their_names) {

@@ -94,6 +94,14 @@ TEST_F(Jobs, that_may_not_be_done_are_not_submitted) {
   EXPECT_EQ(queue->counts()->waiting, 0U);
 }
 
+TEST_F(Jobs, that_are_given_back_are_taken_at_once) {
+  ASSERT_TRUE(queue->submit(job_number(1)));
+  ASSERT_TRUE(queue->give_back(take()));
+  const TakenJob again = take();
+  EXPECT_EQ(again.job, job_number(1));
+  EXPECT_EQ(again.tries, 2U);
+}
+
 TEST_F(Jobs, may_be_extended) {
   ASSERT_TRUE(queue->submit(job_number(1)));
   EXPECT_TRUE(queue->extend(take()));

@@ -24,12 +24,50 @@ TEST(Job, other_commands_are_refused) {
 }
 
 TEST(Job, no_word_leads_out_of_the_folder) {
-  for (const char* word :
-       {"/etc/passwd", "../model", "a/../../b", "--out=/etc/cron.d/x", "-o/etc/x", "~/.ssh/id", "serial:///dev/ttyACM0",
-        "tcp://host:1", "nats://hub?robot=r&array=a", "file:/etc/passwd", "sim:contacts?array=/etc/x", "sim:contacts",
-        "--", "--force", "sim:contacts?array=%2Fetc", "stdin:", "a\nb"}) {
+  for (const char* word : {"/etc/passwd",
+                           "../model",
+                           "a/../../b",
+                           "--out=/etc/cron.d/x",
+                           "-o/etc/x",
+                           "~/.ssh/id",
+                           "serial:///dev/ttyACM0",
+                           "tcp://host:1",
+                           "nats://hub?robot=r&array=a",
+                           "file:/etc/passwd",
+                           "sim:contacts?array=/etc/x",
+                           "sim:contacts",
+                           "dds://0/rt/touch",
+                           "modbus-tcp://hand",
+                           "modbus-rtu:a",
+                           "--",
+                           "--force",
+                           "sim:contacts?array=%2Fetc",
+                           "stdin:",
+                           "a\nb"}) {
     EXPECT_FALSE(check_job({"", {"run", "--in", word}})) << word;
   }
+}
+
+TEST(Job, a_range_of_a_stream_is_read_from_the_server_of_the_worker) {
+  const std::string range = "nats://?robot=anna&array=chest&from=1&to=last";
+  EXPECT_TRUE(check_job({"", {"dataset", range, "--out", "touch"}}));
+  EXPECT_TRUE(is_range(range));
+  EXPECT_FALSE(is_range("nats://hub?robot=anna&array=chest&from=1&to=last"));
+  EXPECT_EQ(range_at({.url = "tls://hub", .ca = "/keys/ca.pem", .key = "/keys/worker.seed"}, range),
+            "tls://hub?robot=anna&array=chest&from=1&to=last&ca=/keys/ca.pem&key=/keys/worker.seed");
+  EXPECT_EQ(range_at({.url = "nats://hub:4222"}, range), "nats://hub:4222?robot=anna&array=chest&from=1&to=last");
+}
+
+TEST(Job, a_range_without_an_end_or_with_a_key_is_refused) {
+  const auto message_of = [](const std::string& range) {
+    return check_job({"", {"run", "--in", range}}).error().message;
+  };
+  EXPECT_EQ(message_of("nats://?robot=r&array=a"), "words: 'nats://?robot=r&array=a' has no end; add to=");
+  EXPECT_EQ(message_of("nats://?robot=r&array=a&from=1&to=9&key=/etc/shadow"),
+            "words: 'nats://?robot=r&array=a&from=1&to=9&key=/etc/shadow' names a key or certificates; the worker has "
+            "its own");
+  EXPECT_EQ(message_of("nats://?robot=../a&array=a&from=1&to=9"),
+            "'nats://HUB?robot=../a&array=a&from=1&to=9': robot: '../a' must be 1 to 64 letters, digits, '_' or '-'");
 }
 
 TEST(Job, names_are_of_one_line) {

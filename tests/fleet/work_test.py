@@ -14,6 +14,20 @@ from pathlib import Path
 DERMIS = sys.argv.pop(1)
 JOBS = 30
 MOST_SECONDS = 120
+ARRAY = """[array]
+name = "chest"
+rows = 4
+cols = 4
+taxel_area_mm2 = 38.48
+
+[readout]
+circuit = "divider"
+drive_ohm = 20.0
+load_ohm = 200.0
+adc_bits = 12
+adc_reference_v = 5.0
+supply_v = 5.0
+"""
 
 
 def dermis(folder, *arguments):
@@ -65,6 +79,24 @@ class Work(unittest.TestCase):
         expected = (self.folder / "expected.csv").read_bytes()
         for k in range(JOBS):
             self.assertEqual((self.folder / f"{k}.csv").read_bytes(), expected)
+
+    def test_a_job_of_a_range_of_a_stream_has_the_frames_of_the_robot(self):
+        (self.folder / "array.toml").write_text(ARRAY)
+        served = ["--from", "sim:contacts?rows=4&cols=4&rate=200", "--model", "array.toml", "--port", "0"]
+        robot = self.start([DERMIS, "serve", *served, "--publish", self.hub, "--robot", "anna"])
+        stream = "robot=anna&array=chest&from=1&to="
+        by_hand = ("convert", f"{self.hub}?{stream}last", "expected.csv")
+        end = time.monotonic() + MOST_SECONDS
+        while dermis(self.folder, *by_hand).returncode != 0:
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.2)
+        robot.terminate()
+        robot.wait()
+        self.assertEqual(dermis(self.folder, *by_hand, "--force").returncode, 0)
+        self.assertEqual(self.submit([("convert", f"nats://?{stream}last", "range.csv")]).returncode, 0)
+        self.start([DERMIS, "work", self.hub])
+        self.wait_for("waiting 0, taken 0, done 1, given up 0")
+        self.assertEqual((self.folder / "range.csv").read_bytes(), (self.folder / "expected.csv").read_bytes())
 
     def test_a_job_that_fails_is_given_up_and_said(self):
         self.assertEqual(self.submit([("convert", "missing.mcap", "out.csv")]).returncode, 0)

@@ -7,10 +7,11 @@
 #include <vector>
 
 #include "dermis/core/result.hpp"
+#include "dermis/fleet/stream_address.hpp"
 
 namespace dermis::fleet {
 
-/// Work for any machine of a fleet: a command of dermis on files of its folder.
+/// Work for any machine of a fleet: a command of dermis on files of its folder, or on ranges of streams.
 struct Job {
   std::string name;                ///< Given by the user, for the list of jobs.
   std::vector<std::string> words;  ///< "run", "--in", "a.mcap", ...
@@ -19,8 +20,13 @@ struct Job {
 };
 
 /// Jobs come from others. Fails on all but a few commands, which only read and write files. Also fails on words that
-/// may lead out of the folder: absolute paths, "..", addresses of devices.
+/// may lead out of the folder: absolute paths, "..", addresses of devices. Fails on ranges without an end.
 [[nodiscard]] Status check_job(const Job& job);
+
+/// The word of a job is a range of a stream on the worker's server: "nats://?robot=R&array=A&from=1&to=last".
+[[nodiscard]] bool is_range(std::string_view word);
+/// The address of a range (StreamAddress) that check_job() has accepted.
+[[nodiscard]] std::string range_at(const BrokerAddress& server, std::string_view word);
 
 /// Reads jobs.toml: a table [[job]] with `words`, and a `name` if wanted, for each. Checks each.
 [[nodiscard]] Result<std::vector<Job>> read_jobs(const std::string& path);

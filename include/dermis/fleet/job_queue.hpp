@@ -45,7 +45,7 @@ struct JobCounts {
 class JobQueue {
  public:
   static constexpr std::uint64_t kMostTries = 3;
-  static constexpr std::chrono::seconds kLease{15};
+  static constexpr std::chrono::seconds kLease{9};
 
   /// Makes the streams where they are not there. Fails where no server answers.
   [[nodiscard]] static Result<std::unique_ptr<JobQueue>> connect(const BrokerAddress& address);
@@ -59,6 +59,8 @@ class JobQueue {
   [[nodiscard]] Result<std::optional<TakenJob>> take();
   /// Nobody else gets the job within kLease from now.
   [[nodiscard]] Status extend(const TakenJob& job);
+  /// Another worker gets the job at once.
+  [[nodiscard]] Status give_back(const TakenJob& job);
   /// Stores the outcome; then the job is away. After kMostTries a failed one is given up, before it is tried again.
   [[nodiscard]] Status finish(const TakenJob& job, const JobOutcome& outcome);
 
