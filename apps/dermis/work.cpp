@@ -23,7 +23,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kLook{2};
-constexpr std::chrono::seconds kExtendEvery = fleet::JobQueue::kLease / 3;  // two may be lost
+constexpr std::chrono::seconds kExtendEvery = fleet::JobQueue::kLeases.front() / 4;
 constexpr std::chrono::seconds kRetryAfter{1};
 constexpr int kBadInput = 2;  // exit status: another try would end alike
 
@@ -151,6 +151,8 @@ Status work(const WorkOptions& options) {
     outcome->seconds = std::chrono::duration<double>(Clock::now() - begun).count();
     if (!outcome->error.empty()) print_notice(fmt::format("{}: {}", outcome->name, outcome->error));
     finish(**queue, **taken, *outcome);
+    // Another worker is to get the job, and no bad machine all jobs.
+    if (!outcome->error.empty() && !outcome->is_final) std::this_thread::sleep_for(kRetryAfter);
   }
   return Done{};
 }

@@ -19,7 +19,6 @@ constexpr const char* kJobSubject = "dermis-jobs.job";
 constexpr const char* kOutcomes = "dermis-outcomes";
 constexpr const char* kDone = "dermis-outcomes.done.";  // and the number of the job
 constexpr const char* kGivenUp = "dermis-outcomes.given-up.";
-constexpr const char* kLater = R"(-NAK {"delay": 2000000000})";  // nanoseconds, for another worker
 constexpr std::chrono::nanoseconds kTakeWait = std::chrono::seconds(1);
 constexpr std::size_t kMostOfLease = 4096;
 
@@ -76,7 +75,7 @@ JobQueue::~JobQueue() = default;
 Result<std::unique_ptr<JobQueue>> JobQueue::connect(const BrokerAddress& address) {
   Result<std::unique_ptr<Broker>> broker = connect_broker(address);
   if (!broker) return broker.error();
-  if (const Status made = make_work_queue(**broker, kJobs, kJobSubject, JobQueue::kLease); !made) return made.error();
+  if (const Status made = make_work_queue(**broker, kJobs, kJobSubject, JobQueue::kLeases); !made) return made.error();
   if (const Status made = make_log(**broker, kOutcomes, std::string(kOutcomes) + ".>"); !made) return made.error();
   return std::unique_ptr<JobQueue>(new JobQueue(*std::move(broker)));
 }
@@ -126,7 +125,7 @@ Status JobQueue::give_up(const TakenJob& job, const std::string& why) {
 Status JobQueue::finish(const TakenJob& job, const JobOutcome& outcome) {
   if (!outcome.error.empty()) {
     const bool is_last = outcome.is_final || job.tries >= kMostTries;
-    return is_last ? give_up(job, outcome.error) : broker_->send(job.lease, kLater);
+    return is_last ? give_up(job, outcome.error) : give_back(job);
   }
   if (Status stored = store_outcome(kDone + job.id, outcome); !stored) return stored;
   const Result<std::string> away = broker_->ask(job.lease, "+ACK");

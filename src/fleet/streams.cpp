@@ -8,6 +8,7 @@ namespace dermis::fleet {
 namespace {
 
 constexpr std::int64_t kDuplicatesNanos = 120'000'000'000;
+constexpr int kMostDeliveries = 1000;  // to have leases, a server wants a limit; workers give up a job long before
 constexpr std::uint64_t kStreamNameInUse = 10058;  // one of the name is there, with other settings
 constexpr std::uint64_t kNoStream = 10059;
 constexpr std::uint64_t kConsumerNameInUse = 10013;  // the same
@@ -71,13 +72,13 @@ Result<bool> has_stream(Broker& broker, const std::string& name) {
 }
 
 Status make_work_queue(Broker& broker, const std::string& name, const std::string& subject,
-                       std::chrono::nanoseconds lease) {
+                       std::span<const std::chrono::seconds> leases) {
   Json stream = {{"retention", "workqueue"}};
   stream["subjects"] = Json::array({subject});
   if (Status made = create_stream(broker, name, stream); !made) return made;
-  const Json config = {{"durable_name", name},       {"ack_policy", "explicit"}, {"deliver_policy", "all"},
-                       {"replay_policy", "instant"}, {"max_deliver", -1},        {"max_ack_pending", -1},
-                       {"ack_wait", lease.count()}};
+  Json config = {{"durable_name", name},       {"ack_policy", "explicit"},       {"deliver_policy", "all"},
+                 {"replay_policy", "instant"}, {"max_deliver", kMostDeliveries}, {"max_ack_pending", -1}};
+  for (const std::chrono::nanoseconds lease : leases) config["backoff"].push_back(lease.count());
   return create(broker, "consumer " + name, "$JS.API.CONSUMER.DURABLE.CREATE." + name + "." + name,
                 {{"stream_name", name}, {"config", config}});
 }

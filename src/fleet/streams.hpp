@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include "dermis/core/result.hpp"
@@ -23,9 +24,9 @@ namespace dermis::fleet {
 [[nodiscard]] Result<bool> has_stream(Broker& broker, const std::string& name);
 
 /// A stream from which a message is away when a worker has acknowledged it, and its consumer of the same name. Another
-/// worker gets a message that is not acknowledged within `lease`.
+/// worker gets a message that is not acknowledged within the lease of its try; later tries have the last one.
 [[nodiscard]] Status make_work_queue(Broker& broker, const std::string& name, const std::string& subject,
-                                     std::chrono::nanoseconds lease);
+                                     std::span<const std::chrono::seconds> leases);
 
 /// A stream that keeps the last message of each subject.
 [[nodiscard]] Status make_log(Broker& broker, const std::string& name, const std::string& subjects);

@@ -59,7 +59,6 @@ TEST_F(Jobs, are_taken_once_each) {
 TEST_F(Jobs, that_fail_three_times_are_given_up_with_the_reason) {
   ASSERT_TRUE(queue->submit(job_number(1)));
   for (std::uint64_t tries = 1; tries <= JobQueue::kMostTries; ++tries) {
-    if (tries > 1) std::this_thread::sleep_for(std::chrono::milliseconds(2500));
     const TakenJob taken = take();
     EXPECT_EQ(taken.tries, tries);
     ASSERT_TRUE(queue->finish(taken, {taken.job.name, "w", 0.1, "exit status 2"}));

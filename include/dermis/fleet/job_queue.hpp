@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <memory>
@@ -45,7 +46,9 @@ struct JobCounts {
 class JobQueue {
  public:
   static constexpr std::uint64_t kMostTries = 3;
-  static constexpr std::chrono::seconds kLease{9};
+  /// Of each try. A job whose worker was killed waits little, and one that a slow link has cost once gets more time.
+  static constexpr std::array<std::chrono::seconds, kMostTries> kLeases{
+      std::chrono::seconds(4), std::chrono::seconds(12), std::chrono::seconds(36)};
 
   /// Makes the streams where they are not there. Fails where no server answers.
   [[nodiscard]] static Result<std::unique_ptr<JobQueue>> connect(const BrokerAddress& address);
@@ -57,11 +60,11 @@ class JobQueue {
 
   /// The next job; empty where none comes within a second. A job that nobody can do is given up here.
   [[nodiscard]] Result<std::optional<TakenJob>> take();
-  /// Nobody else gets the job within kLease from now.
+  /// Nobody else gets the job within the lease of its try from now.
   [[nodiscard]] Status extend(const TakenJob& job);
   /// Another worker gets the job at once.
   [[nodiscard]] Status give_back(const TakenJob& job);
-  /// Stores the outcome; then the job is away. After kMostTries a failed one is given up, before it is tried again.
+  /// Stores the outcome; then the job is away. A failed one is given back, after kMostTries or a final error given up.
   [[nodiscard]] Status finish(const TakenJob& job, const JobOutcome& outcome);
 
   [[nodiscard]] Result<JobCounts> counts();
