@@ -24,7 +24,6 @@ struct DatasetCommandOptions {
   std::string format = "lerobot";
   std::uint64_t window = 1;
   std::string task = "touch";
-  bool is_forced = false;
   datasets::EpisodeOptions episodes{};
 };
 
@@ -47,9 +46,8 @@ Status make_dataset(DatasetCommandOptions& options) {
   options.episodes.notice = print_notice;
   options.episodes.loss = note_loss;
   if (Status valid = options.episodes.validate(); !valid) return valid;
-  const auto sink = datasets::create_dataset(
-      options.out,
-      {.format = *format, .fps = options.episodes.fps, .task = options.task, .replaces = options.is_forced});
+  const auto sink =
+      datasets::create_dataset(options.out, {.format = *format, .fps = options.episodes.fps, .task = options.task});
   if (!sink) return sink.error();
   const Result<datasets::EpisodeTally> tally = datasets::make_episodes(options.recordings, options.episodes, **sink);
   if (!tally) return tally.error();
@@ -64,7 +62,6 @@ void add_dataset(Command& command) {
   command.input("recordings", options->recordings, "Recordings, or other files of frames; each is an episode")
       .required();
   command.option("--out", options->out, "Folder to write, which must not exist yet").required();
-  command.flag("--force", options->is_forced, "Replace a dataset that exists");
   command.option("--format", options->format, "Layout: LeRobot v3, HDF5 of ACT or of robomimic, zarr replay buffer")
       .one_of(datasets::dataset_formats())
       .shows_default();

@@ -25,6 +25,8 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kLook{2};
 constexpr std::chrono::seconds kExtendEvery = fleet::JobQueue::kLeases.front() / 4;
 constexpr std::chrono::seconds kRetryAfter{1};
+constexpr std::chrono::seconds kRestAfterFailure{5};  // for each in a row
+constexpr int kMostRests = 12;
 constexpr int kBadInput = 2;  // exit status: another try would end alike
 
 struct WorkOptions {
@@ -62,6 +64,8 @@ Result<Worker> worker_of(const std::string& hub) {
   if (!program) return program.error();
   server->ca = absolute(server->ca);
   server->key = absolute(server->key);
+  const auto range = fleet::parse_stream_address(fleet::range_at(*server, "nats://?robot=r&array=a&from=1&to=last"));
+  if (!range) return range.error();
   return Worker{name_of_worker(), *std::move(program), *std::move(server)};
 }
 
@@ -86,7 +90,7 @@ Result<ChildProcess> start(const fleet::TakenJob& taken, const Worker& worker) {
     if (!is_range && !stays_in(folder, word)) return bad_input("'" + word + "' leads out of the folder");
     command.push_back(is_range ? fleet::range_at(worker.server, word) : word);
   }
-  if (taken.tries > 1) command.emplace_back("--force");
+  if (taken.tries > 1 && taken.job.words.front() != "dataset") command.emplace_back("--force");
   return ChildProcess::start(command);
 }
 
@@ -111,6 +115,7 @@ std::optional<fleet::JobOutcome> do_job(fleet::JobQueue& queue, const fleet::Tak
   Result<ChildProcess> child = start(taken, worker);
   if (!child) {
     outcome.error = child.error().message;
+    outcome.is_final = child.error().kind == ErrorKind::bad_input;
     return outcome;
   }
   const std::optional<int> status = exit_status_of(*child, queue, taken);
@@ -128,6 +133,13 @@ void finish(fleet::JobQueue& queue, const fleet::TakenJob& taken, const fleet::J
   }
 }
 
+/// Another worker gets the job that has failed here, as this machine may lack what it needs.
+void rest(std::chrono::seconds time) {
+  for (const Clock::time_point end = Clock::now() + time; !stop_flag() && Clock::now() < end;) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+}
+
 Status work(const WorkOptions& options) {
   const Result<Worker> worker = worker_of(options.hub);
   if (!worker) return worker.error();
@@ -137,6 +149,7 @@ Status work(const WorkOptions& options) {
   std::filesystem::current_path(options.folder, failure);
   if (failure) return bad_input(options.folder + ": " + failure.message());
   print_notice(fmt::format("{} works for {} (Ctrl-C ends it)", worker->name, fleet::without_password(options.hub)));
+  int failures = 0;  // in a row
   while (!stop_flag()) {
     const Result<std::optional<fleet::TakenJob>> taken = (*queue)->take();
     if (!taken) {
@@ -151,8 +164,9 @@ Status work(const WorkOptions& options) {
     outcome->seconds = std::chrono::duration<double>(Clock::now() - begun).count();
     if (!outcome->error.empty()) print_notice(fmt::format("{}: {}", outcome->name, outcome->error));
     finish(**queue, **taken, *outcome);
-    // Another worker is to get the job, and no bad machine all jobs.
-    if (!outcome->error.empty() && !outcome->is_final) std::this_thread::sleep_for(kRetryAfter);
+    const bool has_failed = !outcome->error.empty() && !outcome->is_final;
+    failures = has_failed ? std::min(failures + 1, kMostRests) : 0;
+    rest(failures * kRestAfterFailure);
   }
   return Done{};
 }

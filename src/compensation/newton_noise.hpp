@@ -37,7 +37,7 @@ class DriverErrors {
 
 /// The variance of every taxel from the noise of its readings and the errors of the drivers.
 ///
-/// Let B = (d x / d ratio) J (d siemens / d x). In units of x it is the sum of squares of each row of
+/// Let B = (d x / d ratio) J (d siemens / d x). In units of x the variance is the sum of squares of each row of
 /// B^-1 (d x / d ratio). A driver that is wrong by s moves all taxels by -B^-1 (d x / d ohm) s, with the readings
 /// fixed.
 class NewtonNoise {

@@ -14,9 +14,9 @@ namespace dermis::compensation {
 ///
 ///   d ln G_ij = (1 + Rd_i sum_k G_ik) (1 + Rl_j sum_k G_kj) d        (without the second factor at virtual ground)
 ///
-/// so that a more loaded line counts more. It is 0.6 to 1.6 times the true change. Tried with drivers up to 50 ohm and
-/// a quarter of the taxels at 200 to 2000 ohm. Lines with resistance and floating lines are taken as if they
-/// were ideal and grounded.
+/// so that a more loaded line counts more. Lines with resistance and floating lines are taken as if they were ideal and
+/// grounded. Then it is 0.6 to 1.6 times the true change, for drivers up to 50 ohm and a quarter of the taxels at
+/// 200 to 2000 ohm.
 class SupplyError {
  public:
   explicit SupplyError(const ArrayDescription& array);

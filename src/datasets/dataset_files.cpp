@@ -28,7 +28,7 @@ Result<DatasetFormat> dataset_format(const std::string& name) {
 }
 
 Result<std::unique_ptr<EpisodeSink>> create_dataset(const std::string& folder, const DatasetOptions& options) {
-  Result<std::unique_ptr<OutputFolder>> created = OutputFolder::create(folder, options.replaces);
+  Result<std::unique_ptr<OutputFolder>> created = OutputFolder::create(folder);
   if (!created) return created.error();
   switch (options.format) {
     case DatasetFormat::lerobot: return lerobot_writer(*std::move(created), options);

@@ -4,7 +4,6 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
@@ -24,39 +23,25 @@ std::string without_slash(const std::string& folder) {
   return folder.substr(0, last == std::string::npos ? 1 : last + 1);
 }
 
-bool is_hdf5(const fs::directory_entry& entry) {
-  return entry.path().extension() == ".hdf5";
-}
-
-/// As dermis writes them, so not one with images.
-bool has_dataset(const std::string& folder) {
-  std::error_code error;
-  const auto has = [&](const char* name) { return fs::exists(fs::path(folder) / name, error); };
-  if (has("meta/info.json")) return !has("videos") && !has("images");
-  return has(".zgroup") || std::all_of(fs::directory_iterator(folder, error), fs::directory_iterator(), is_hdf5);
-}
-
-Status check_target(const std::string& target, bool replaces) {
-  std::error_code error;
-  if (!fs::exists(target, error)) return Done{};
-  if (fs::is_directory(target, error)) {
-    if (fs::is_empty(target, error) || (replaces && has_dataset(target))) return Done{};
-  }
-  const char* what = replaces ? " exists and holds more than a dataset of dermis" : " exists and is no empty folder";
-  return bad_input(files::in_quotes(target) + what + "; name another");
-}
-
 }  // namespace
 
-Result<std::unique_ptr<OutputFolder>> OutputFolder::create(const std::string& folder, bool replaces) {
+Result<std::unique_ptr<OutputFolder>> OutputFolder::create(const std::string& folder) {
   if (folder.empty()) return bad_input("the folder of the dataset has no name");
   std::string target = without_slash(folder);
   std::error_code error;
-  if (Status free = check_target(target, replaces); !free) return free.error();
+  if (fs::exists(target, error) && !(fs::is_directory(target, error) && fs::is_empty(target, error))) {
+    return bad_input(files::in_quotes(folder) + " exists and is no empty folder; name another");
+  }
+  const fs::path parent = fs::path(target).parent_path();
+  if (!parent.empty()) fs::create_directories(parent, error);
+  if (error) return files::cannot_write(parent.string(), error.value());
+  // Files that a killed process has left stay apart.
   std::string unfinished = target + "." + std::to_string(::getpid()) + ".tmp";
-  fs::create_directories(unfinished, error);
-  if (error) return files::cannot_write(unfinished, error.value());
-  return std::unique_ptr<OutputFolder>(new OutputFolder(std::move(target), std::move(unfinished), replaces));
+  while (!fs::create_directory(unfinished, error)) {
+    if (error) return files::cannot_write(unfinished, error.value());
+    unfinished += ".tmp";
+  }
+  return std::unique_ptr<OutputFolder>(new OutputFolder(std::move(target), std::move(unfinished)));
 }
 
 OutputFolder::~OutputFolder() {
@@ -82,17 +67,10 @@ Status OutputFolder::write(const std::string& name, std::string_view bytes) cons
 }
 
 Status OutputFolder::commit() {
-  const std::string replaced = unfinished_ + ".old";
   std::error_code error;
-  std::error_code no_matter;
-  if (replaces_ && fs::exists(target_, error)) fs::rename(target_, replaced, error);
-  if (!error) fs::rename(unfinished_, target_, error);
-  if (error) {
-    if (replaces_) fs::rename(replaced, target_, no_matter);
-    return files::cannot_write(target_, error.value());
-  }
+  fs::rename(unfinished_, target_, error);
+  if (error) return files::cannot_write(target_, error.value());
   unfinished_.clear();
-  fs::remove_all(replaced, no_matter);
   files::synchronise_folder_of(target_);
   return Done{};
 }

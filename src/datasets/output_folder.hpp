@@ -13,8 +13,8 @@ namespace dermis::datasets {
 /// A folder that appears complete or not at all: it grows beside its place under another name. Not thread-safe.
 class OutputFolder {
  public:
-  /// Fails where the folder exists and is not empty. One with a dataset may be, where it `replaces`.
-  [[nodiscard]] static Result<std::unique_ptr<OutputFolder>> create(const std::string& folder, bool replaces);
+  /// Fails where the folder exists and is not empty.
+  [[nodiscard]] static Result<std::unique_ptr<OutputFolder>> create(const std::string& folder);
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
   /// Without commit(), all is removed.
@@ -26,12 +26,11 @@ class OutputFolder {
   [[nodiscard]] Status commit();
 
  private:
-  OutputFolder(std::string target, std::string unfinished, bool replaces)
-      : target_(std::move(target)), unfinished_(std::move(unfinished)), replaces_(replaces) {}
+  OutputFolder(std::string target, std::string unfinished)
+      : target_(std::move(target)), unfinished_(std::move(unfinished)) {}
 
   std::string target_;
   std::string unfinished_;  ///< Empty after commit().
-  bool replaces_;
 };
 
 }  // namespace dermis::datasets

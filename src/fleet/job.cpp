@@ -31,6 +31,7 @@ bool is_option(std::string_view word, std::string_view name) {
 bool stays_within(std::string_view word) {
   if (has_control_characters(word)) return false;
   if (word.starts_with('/') || word.starts_with('~') || word == "--" || is_option(word, "force")) return false;
+  if (word.starts_with('[') || word.find("=[") != std::string_view::npos) return false;  // "[a,b]" are two words
   const bool is_short_option = word.size() > 1 && word[0] == '-' && word[1] != '-';
   if (is_short_option && word.find_first_not_of("0123456789.eE+-") != std::string_view::npos) return false;
   for (const std::string_view way_out : {"..", "=/", ":/", "%", "#/", "//"}) {
@@ -41,6 +42,12 @@ bool stays_within(std::string_view word) {
     if (word.find(device) != std::string_view::npos) return false;
   }
   return true;
+}
+
+/// A word after this one is read, and not written.
+bool names_an_input(std::string_view before) {
+  const bool is_option = before.starts_with('-') && before.find('=') == std::string_view::npos;
+  return !is_option || before == "--in" || before == "--frames";
 }
 
 /// A range of frames on the worker's own server, which it reads by its own key.
@@ -83,9 +90,12 @@ Status check_job(const Job& job) {
   if (job.name.size() > kMostCharacters || has_control_characters(job.name)) {
     return bad_input("name: must be one line of at most 4096 characters");
   }
-  for (const std::string& word : job.words) {
+  for (std::size_t i = 0; i < job.words.size(); ++i) {
+    const std::string& word = job.words[i];
     if (word.size() > kMostCharacters) return bad_input("words: one is longer than 4096 characters");
     if (is_range(word)) {
+      if (i == 0 || !names_an_input(job.words[i - 1]))
+        return bad_input("words: '" + word + "' is no recording to read");
       if (Status good = check_range(word); !good) return good;
     } else if (!stays_within(word)) {
       return bad_input("words: '" + word + "' may lead out of the folder; name files by relative paths");

@@ -117,7 +117,11 @@ Status JobQueue::give_back(const TakenJob& job) {
 }
 
 Status JobQueue::give_up(const TakenJob& job, const std::string& why) {
-  if (Status stored = store_outcome(kGivenUp + job.id, {job.job.name, "", 0.0, why}); !stored) return stored;
+  const Result<std::optional<StoredMessage>> done = broker_->last(kOutcomes, kDone + job.id);
+  if (!done) return done.error();
+  if (!*done) {  // nor by another worker, which had it before or after this one
+    if (Status stored = store_outcome(kGivenUp + job.id, {job.job.name, "", 0.0, why}); !stored) return stored;
+  }
   const Result<std::string> away = broker_->ask(job.lease, "+TERM");
   return away ? Status(Done{}) : Status(away.error());
 }

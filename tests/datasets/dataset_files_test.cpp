@@ -3,6 +3,7 @@
 #include "dermis/datasets/dataset_files.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 
@@ -45,6 +46,17 @@ TEST_P(DatasetFiles, leave_nothing_where_they_are_not_complete) {
   EXPECT_EQ(folder_.file_count(), 0U);
 }
 
+TEST_P(DatasetFiles, hold_nothing_that_another_process_has_left) {
+  const std::string left = folder_.file("set." + std::to_string(::getpid()) + ".tmp");
+  std::filesystem::create_directory(left);
+  support::write_bytes(left + "/old.parquet", "of a process that was killed");
+  const auto sink = create_dataset(folder_.file("set"), options());
+  ASSERT_TRUE(sink) << sink.error().message;
+  ASSERT_TRUE(write_dataset(**sink));
+  EXPECT_FALSE(std::filesystem::exists(folder_.file("set/old.parquet")));
+  EXPECT_TRUE(std::filesystem::exists(left + "/old.parquet"));
+}
+
 TEST_P(DatasetFiles, replace_nothing) {
   std::filesystem::create_directory(folder_.file("set"));
   support::write_bytes(folder_.file("set/thesis.txt"), "years of work");
@@ -52,30 +64,6 @@ TEST_P(DatasetFiles, replace_nothing) {
   ASSERT_FALSE(sink);
   EXPECT_NE(sink.error().message.find("exists and is no empty folder"), std::string::npos);
   EXPECT_EQ(folder_.file_count(), 1U);
-}
-
-TEST_P(DatasetFiles, replace_a_dataset_where_they_may) {
-  DatasetOptions replacing = options();
-  replacing.replaces = true;
-  for (const DatasetOptions& each : {options(), replacing}) {
-    const auto sink = create_dataset(folder_.file("set"), each);
-    ASSERT_TRUE(sink) << sink.error().message;
-    ASSERT_TRUE(write_dataset(**sink));
-  }
-  EXPECT_FALSE(std::filesystem::is_empty(folder_.file("set")));
-  EXPECT_EQ(folder_.file_count(), 1U);
-}
-
-TEST_P(DatasetFiles, replace_nothing_but_a_dataset_of_dermis) {
-  DatasetOptions replacing = options();
-  replacing.replaces = true;
-  std::filesystem::create_directories(folder_.file("set/meta"));
-  support::write_bytes(folder_.file("set/meta/info.json"), "{}");
-  std::filesystem::create_directory(folder_.file("set/videos"));
-  const auto sink = create_dataset(folder_.file("set"), replacing);
-  ASSERT_FALSE(sink);
-  EXPECT_NE(sink.error().message.find("exists and holds more than a dataset of dermis"), std::string::npos);
-  EXPECT_TRUE(std::filesystem::exists(folder_.file("set/videos")));
 }
 
 INSTANTIATE_TEST_SUITE_P(formats, DatasetFiles, testing::ValuesIn(dataset_formats()));

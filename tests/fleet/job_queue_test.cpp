@@ -101,6 +101,17 @@ TEST_F(Jobs, that_are_given_back_are_taken_at_once) {
   EXPECT_EQ(again.tries, 2U);
 }
 
+TEST_F(Jobs, that_another_worker_has_done_are_not_given_up) {
+  ASSERT_TRUE(queue->submit(job_number(1)));
+  const TakenJob first = take();
+  ASSERT_TRUE(queue->give_back(first));
+  const TakenJob second = take();
+  ASSERT_TRUE(queue->finish(second, {second.job.name, "w", 0.1, ""}));
+  EXPECT_TRUE(queue->finish(first, {first.job.name, "v", 0.1, "exit status 2", true}));
+  EXPECT_EQ(queue->counts()->done, 1U);
+  EXPECT_EQ(queue->counts()->given_up, 0U);
+}
+
 TEST_F(Jobs, may_be_extended) {
   ASSERT_TRUE(queue->submit(job_number(1)));
   EXPECT_TRUE(queue->extend(take()));

@@ -39,6 +39,9 @@ TEST(Job, no_word_leads_out_of_the_folder) {
                            "dds://0/rt/touch",
                            "modbus-tcp://hand",
                            "modbus-rtu:a",
+                           "[/etc/passwd]",
+                           "[a,/etc/passwd]",
+                           "--in=[/etc/passwd]",
                            "--",
                            "--force",
                            "sim:contacts?array=%2Fetc",
@@ -56,6 +59,16 @@ TEST(Job, a_range_of_a_stream_is_read_from_the_server_of_the_worker) {
   EXPECT_EQ(range_at({.url = "tls://hub", .ca = "/keys/ca.pem", .key = "/keys/worker.seed"}, range),
             "tls://hub?robot=anna&array=chest&from=1&to=last&ca=/keys/ca.pem&key=/keys/worker.seed");
   EXPECT_EQ(range_at({.url = "nats://hub:4222"}, range), "nats://hub:4222?robot=anna&array=chest&from=1&to=last");
+}
+
+TEST(Job, a_range_is_read_and_not_written) {
+  const std::string range = "nats://?robot=anna&array=chest&from=1&to=last";
+  EXPECT_TRUE(check_job({"", {"run", "--out", "a.csv", "--in", range}}));
+  EXPECT_TRUE(check_job({"", {"calibrate", "--frames", range}}));
+  EXPECT_TRUE(check_job({"", {"dataset", "--out=touch", range}}));
+  EXPECT_EQ(check_job({"", {"dataset", "a.mcap", "--out", range}}).error().message,
+            "words: '" + range + "' is no recording to read");
+  EXPECT_FALSE(check_job({"", {"dataset", "a.mcap", "--out=" + range}}));
 }
 
 TEST(Job, a_range_without_an_end_or_with_a_key_is_refused) {

@@ -29,7 +29,6 @@ struct DatasetOptions {
   DatasetFormat format = DatasetFormat::lerobot;
   double fps = 30.0;
   std::string task = "touch";  ///< LeRobot has one sentence for each episode.
-  bool replaces = false;       ///< A dataset of dermis that is there, but none with images.
 };
 
 /// A dataset in the new folder `folder`, which appears complete or not at all. Fails where it exists and is not empty.

@@ -46,7 +46,7 @@ struct JobCounts {
 class JobQueue {
  public:
   static constexpr std::uint64_t kMostTries = 3;
-  /// Of each try. A job whose worker was killed waits little, and one that a slow link has cost once gets more time.
+  /// Each try has its lease. A killed worker's job waits little. After a slow link has cost a try, there is more time.
   static constexpr std::array<std::chrono::seconds, kMostTries> kLeases{
       std::chrono::seconds(4), std::chrono::seconds(12), std::chrono::seconds(36)};
 
