@@ -46,8 +46,8 @@ bool stays_within(std::string_view word) {
 
 /// A word after this one is read, and not written.
 bool names_an_input(std::string_view before) {
-  const bool is_option = before.starts_with('-') && before.find('=') == std::string_view::npos;
-  return !is_option || before == "--in" || before == "--frames";
+  if (!before.starts_with('-') || before.find('=') != std::string_view::npos) return true;
+  return before.starts_with("--") && (before.substr(2) == "in" || before.substr(2) == "frames");
 }
 
 /// A range of frames on the worker's own server, which it reads by its own key.
