@@ -81,7 +81,7 @@ bool stays_in(const std::filesystem::path& folder, const std::string& word) {
   return end_of_folder == folder.end();
 }
 
-/// The job as a process that does not outlive this one. An output that an earlier try has written is replaced.
+/// The job as a process that does not outlive this one. A later try replaces an output, but no dataset.
 Result<ChildProcess> start(const fleet::TakenJob& taken, const Worker& worker) {
   const std::filesystem::path folder = std::filesystem::canonical(".");
   std::vector<std::string> command = {"setpriv", "--pdeathsig", "KILL", worker.program};

@@ -50,8 +50,9 @@ bool names_an_input(std::string_view before) {
   return before.starts_with("--") && (before.substr(2) == "in" || before.substr(2) == "frames");
 }
 
-/// A range of frames on the worker's own server, which it reads by its own key.
-Status check_range(const std::string& word) {
+/// A range of frames on the worker's own server, which it reads by its own key. `before`: the word before it.
+Status check_range(const std::string& word, const std::string& before) {
+  if (!names_an_input(before)) return bad_input("words: '" + word + "' is no recording to read");
   const Result<StreamAddress> range = parse_stream_address("nats://HUB?" + word.substr(kOwnServer.size()));
   if (!range) return range.error();
   if (!range->ends) return bad_input("words: '" + word + "' has no end; add to=");
@@ -94,9 +95,7 @@ Status check_job(const Job& job) {
     const std::string& word = job.words[i];
     if (word.size() > kMostCharacters) return bad_input("words: one is longer than 4096 characters");
     if (is_range(word)) {
-      if (i == 0 || !names_an_input(job.words[i - 1]))
-        return bad_input("words: '" + word + "' is no recording to read");
-      if (Status good = check_range(word); !good) return good;
+      if (Status good = check_range(word, job.words[i - 1]); !good) return good;  // not the first, a command
     } else if (!stays_within(word)) {
       return bad_input("words: '" + word + "' may lead out of the folder; name files by relative paths");
     }

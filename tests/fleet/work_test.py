@@ -14,20 +14,7 @@ from pathlib import Path
 DERMIS = sys.argv.pop(1)
 JOBS = 30
 MOST_SECONDS = 120
-ARRAY = """[array]
-name = "chest"
-rows = 4
-cols = 4
-taxel_area_mm2 = 38.48
-
-[readout]
-circuit = "divider"
-drive_ohm = 20.0
-load_ohm = 200.0
-adc_bits = 12
-adc_reference_v = 5.0
-supply_v = 5.0
-"""
+ARRAY = Path(__file__).resolve().parents[2] / "examples/chest/array.toml"
 
 
 def dermis(folder, *arguments):
@@ -81,8 +68,7 @@ class Work(unittest.TestCase):
             self.assertEqual((self.folder / f"{k}.csv").read_bytes(), expected)
 
     def test_a_job_of_a_range_of_a_stream_has_the_frames_of_the_robot(self):
-        (self.folder / "array.toml").write_text(ARRAY)
-        served = ["--from", "sim:contacts?rows=4&cols=4&rate=200", "--model", "array.toml", "--port", "0"]
+        served = ["--from", "sim:contacts?rate=200", "--model", ARRAY, "--port", "0"]
         robot = self.start([DERMIS, "serve", *served, "--publish", self.hub, "--robot", "anna"])
         stream = "robot=anna&array=chest&from=1&to="
         by_hand = ("convert", f"{self.hub}?{stream}last", "expected.csv")
