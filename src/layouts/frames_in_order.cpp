@@ -33,15 +33,15 @@ bool FramesInOrder::find_next(RawFrame& frame) {
       ++counts_.repeated_frames;
     } else if (late_ == Late::wait_for) {
       insert(frame);
-      if (release(frame)) return true;
+      if (release(frame, false)) return true;
     } else if (is_late(frame)) {
       ++counts_.late_frames;
     } else {
-      count(frame);
+      deliver(frame, decoder_->frame_end());
       return true;
     }
   }
-  return release(frame);
+  return release(frame, has_ended_);
 }
 
 void FramesInOrder::finish() {
@@ -66,34 +66,36 @@ bool FramesInOrder::is_late(const RawFrame& frame) const noexcept {
 void FramesInOrder::insert(const RawFrame& frame) {
   auto place = waiting_.end();
   while (place != waiting_.begin() &&
-         comes_late(frame.acquisition.device_time, std::prev(place)->acquisition.device_time)) {
+         comes_late(frame.acquisition.device_time, std::prev(place)->frame.acquisition.device_time)) {
     --place;
   }
   if (place != waiting_.end()) ++counts_.late_frames;
-  waiting_.insert(place, frame);
+  waiting_.insert(place, {frame, decoder_->frame_end()});
 }
 
-bool FramesInOrder::release(RawFrame& frame) {
+bool FramesInOrder::release(RawFrame& frame, bool is_all_there) {
   if (waiting_.empty()) return false;
   const bool are_too_many = waiting_.size() * frame.counts.size() > kMostWaitingReadings;
-  const std::optional<Nanos> first = waiting_.front().acquisition.device_time;
-  const std::optional<Nanos> last = waiting_.back().acquisition.device_time;
+  const std::optional<Nanos> first = waiting_.front().frame.acquisition.device_time;
+  const std::optional<Nanos> last = waiting_.back().frame.acquisition.device_time;
   const bool waits = first && last && *last - *first <= kLatest && *first - *last <= kLatest;
-  if (waits && !has_ended_ && !are_too_many) return false;
-  frame = std::move(waiting_.front());
+  if (waits && !is_all_there && !are_too_many) return false;
+  frame = std::move(waiting_.front().frame);
+  const std::uint64_t end = waiting_.front().end;
   waiting_.pop_front();
-  count(frame);
+  deliver(frame, end);
   return true;
 }
 
-/// Counts the frame that is delivered, and those that are missing before it.
-void FramesInOrder::count(RawFrame& frame) {
+/// Counts the frame, and those that are missing before it.
+void FramesInOrder::deliver(RawFrame& frame, std::uint64_t end) {
   Acquisition& now = frame.acquisition;
   const bool goes_on = now.sequence && delivered_number_ && *now.sequence > *delivered_number_;
   const std::uint64_t step = goes_on ? *now.sequence - *delivered_number_ : 1;
   now.lost_before = step <= kMostLost + 1 ? static_cast<std::uint32_t>(step - 1) : 0;
   delivered_number_ = now.sequence;
   delivered_time_ = now.device_time;
+  frame_end_ = end;
   ++counts_.frames;
   counts_.lost_frames += now.lost_before;
 }

@@ -243,6 +243,17 @@ TEST(TextLayout, late_frames_are_put_in_order) {
   for (const RawFrame& frame : frames) EXPECT_EQ(frame.acquisition.lost_before, 0U);
 }
 
+TEST(TextLayout, a_frame_that_is_put_in_order_ends_where_its_own_bytes_end) {
+  const auto decoder =
+      make_decoder(layout_of(std::string(kTwoByTwo) + "line = \"{time_ms} {frame} {values}\"\n"), 0, true);
+  decoder->push(bytes_of("0 0 0 0 0 0\n40 2 5 6 7 8\n20 1 1 2 3 4\n"));
+  decoder->finish();
+  RawFrame frame;
+  std::vector<std::uint64_t> ends;
+  while (decoder->next(frame)) ends.push_back(decoder->frame_end());
+  EXPECT_EQ(ends, (std::vector<std::uint64_t>{12, 38, 25}));
+}
+
 TEST(TextLayout, late_frames_are_counted_and_a_live_reader_drops_them) {
   const auto layout = layout_of(std::string(kTwoByTwo) + "line = \"{time_ms} {frame} {values}\"\n");
   const Bytes bytes = bytes_of("0 0 0 0 0 0\n40 2 5 6 7 8\n20 1 1 2 3 4\n60 3 1 1 1 1\n5000 4 2 2 2 2\n10 5 3 3 3 3\n");
