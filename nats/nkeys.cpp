@@ -28,14 +28,12 @@ constexpr std::size_t kLettersOfASeed = 58;
 
 /// CRC-16 with the polynomial 0x1021, from 0 on (XMODEM).
 std::uint16_t checksum(const Bytes& bytes) {
-  std::uint16_t sum = 0;
-  for (const std::uint8_t byte : bytes) {
-    sum = static_cast<std::uint16_t>(sum ^ (byte << 8U));
-    for (int bit = 0; bit < 8; ++bit) {
-      sum = static_cast<std::uint16_t>((sum & 0x8000U) != 0 ? (sum << 1U) ^ 0x1021U : sum << 1U);
-    }
+  std::uint32_t sum = 0;
+  for (const std::uint32_t byte : bytes) {
+    sum ^= byte << 8U;
+    for (int bit = 0; bit < 8; ++bit) sum = ((sum << 1U) ^ ((sum & 0x8000U) != 0 ? 0x1021U : 0U)) & 0xFFFFU;
   }
-  return sum;
+  return static_cast<std::uint16_t>(sum);
 }
 
 void add_checksum(Bytes& bytes) {

@@ -24,11 +24,13 @@ import sys
 import tokenize
 from pathlib import Path
 
+from source_folders import PRODUCTION
+
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = ("README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/**/*.md", "examples/**/*.md")
 LIMIT, LONG, LONG_SHARE, MEAN = 40, 30, 0.03, 17
 
-CODE_FOLDERS = ("src", "include", "apps", "viewer/src", "c", "dds", "python")
+CODE_FOLDERS = (*PRODUCTION, "viewer/src")
 CODE_SUFFIXES = (".cpp", ".hpp", ".h", ".ts", ".py", ".pyi")
 COMMENT_LIMIT, COMMENT_LONG_SHARE, COMMENT_OBLIQUE, LABEL_WORDS = 25, 0.01, 40, 6
 OBLIQUE = re.compile(r"(What|Of)\b")

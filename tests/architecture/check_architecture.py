@@ -6,6 +6,9 @@ import re
 import sys
 from pathlib import Path
 
+sys.path.append(str(Path(__file__).resolve().parents[2] / "scripts"))
+from source_folders import ALL, PLUGINS
+
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 STANDARD_HEADER = re.compile(r"[a-z_]+")
 OPTION_IN_A_TEXT = re.compile(r'"(?:[^"\\\n]|\\.)*--[a-z](?:[^"\\\n]|\\.)*"')
@@ -54,6 +57,18 @@ def include_violations(root, allowed):
                     yield f"{place}: {module} must not include {parts[1]} ({name})"
             elif bracket == '"' and parts[0] in allowed and parts[0] != module and not is_shared(name, allowed[module]):
                 yield f"{place}: {name} is private to the module {parts[0]}"
+
+
+def plugin_violations(root):
+    """A plugin knows its own headers, those of the module that loads it, and public ones of core."""
+    for plugin, home in PLUGINS.items():
+        for path in sorted((root / plugin).rglob("*.[ch]pp")):
+            for _, name in INCLUDE.findall(path.read_text()):
+                parts = name.split("/")
+                is_public_of_others = parts[0] == "dermis" and parts[1] not in ("core", home)
+                is_private_of_others = (root / "src" / parts[0]).is_dir() and parts[0] != home
+                if is_public_of_others or is_private_of_others:
+                    yield f"{path.relative_to(root)}: a plugin of {home} must not include {name}"
 
 
 def folder_violations(root, architecture):
@@ -105,7 +120,7 @@ def header_violations(root):
 
 
 def licence_violations(root):
-    for folder in ("src", "apps", "c", "dds", "mpi", "python", "tests", "examples", "benchmarks", "fuzz"):
+    for folder in ALL:
         for path in sorted((root / folder).rglob("*.[ch]pp")):
             if not path.read_text().startswith(SPDX):
                 yield f"{path.relative_to(root)}: must begin with the two SPDX lines"
@@ -146,6 +161,7 @@ def violations(root):
     architecture = (root / "ARCHITECTURE.md").read_text()
     allowed = allowed_includes(architecture)
     yield from include_violations(root, allowed)
+    yield from plugin_violations(root)
     yield from folder_violations(root, architecture)
     yield from folder_order_violations(architecture)
     yield from header_violations(root)

@@ -92,6 +92,12 @@ class Rules(unittest.TestCase):
         self.write("apps/dermis/main.cpp", SPDX + '#include "fusion/table.hpp"\n')
         self.expect("private to the module fusion")
 
+    def test_a_plugin_that_knows_more_than_the_module_which_loads_it(self):
+        self.write("nats/broker.cpp", SPDX + '#include "dermis/core/frames.hpp"\n#include "fleet/broker.hpp"\n')
+        self.expect()
+        self.write("nats/broker.cpp", SPDX + '#include "dermis/fusion/force.hpp"\n')
+        self.expect("nats/broker.cpp: a plugin of fleet must not include dermis/fusion/force.hpp")
+
     def test_kernels_are_shared_with_the_modules_whose_row_names_theirs(self):
         self.write("src/fusion/table-inl.hpp", HEADER)
         self.write("src/fusion/fit/fit.cpp", SPDX + '#include "fusion/table.hpp"\n#include "fusion/tables/knots.hpp"\n')

@@ -14,8 +14,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+sys.path.append(str(Path(__file__).resolve().parents[2] / "scripts"))
+from source_folders import PRODUCTION
+
 ROOT = Path(__file__).resolve().parents[2]
-PLACES = ("include", "src", "apps")
 FOLDERS = (ROOT / "include", ROOT / "src", ROOT / "apps/dermis")
 LIBRARIES = ("/usr/include/eigen3", "/usr/include/hdf5/serial")
 FLAGS = ["-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror", "-fsyntax-only", "-x", "c++", "-"]
@@ -28,7 +30,7 @@ def git(*arguments):
 def changed_since_base():
     """Paths below the project; None where there is nothing to compare with."""
     base = git("merge-base", "HEAD", "origin/main") or git("rev-list", "-1", "--before=12 hours ago", "HEAD")
-    return git("diff", "--name-only", base, "--", *PLACES).splitlines() if base else None
+    return git("diff", "--name-only", base, "--", *PRODUCTION).splitlines() if base else None
 
 
 def errors_of(header, compiler, folders):
@@ -45,7 +47,7 @@ def main():
     compiler, *folders = [argument for argument in arguments if argument != "--all"]
     headers = sorted(
         path
-        for place in PLACES
+        for place in PRODUCTION
         for path in (ROOT / place).rglob("*.hpp")
         if changed is None or str(path.relative_to(ROOT)) in changed
     )

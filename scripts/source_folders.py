@@ -1,0 +1,13 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 The dermis authors
+"""The folders with sources in C++, for all that reads them: formatters, linters, checks of words, rules of architecture.
+Prints all, for scripts in bash."""
+
+# Of each plugin, the module that loads it: its header is all that the plugin knows of the project, beside core.
+PLUGINS = {"dds": "dds", "modbus": "buses", "mpi": "paper", "nats": "fleet"}
+PRODUCTION = ("include", "src", "apps", "c", "python", *PLUGINS)
+ALL = (*PRODUCTION, "examples", "benchmarks", "fuzz", "tests")
+
+if __name__ == "__main__":
+    print(*ALL, sep="\n")
