@@ -9,8 +9,8 @@
 /* dermis for C, and for every language that calls C: raw counts of a tactile array in, newtons per taxel out.
  *
  * Handles are opaque. A function that makes one sets it to NULL if it fails. A function that frees one takes NULL.
- * No exception crosses this interface. Errors are a dermis_status; dermis_last_error() gives the line that belongs to it.
- * Shapes are [rows, cols], row-major. Units are SI; temperatures are in Celsius, times in nanoseconds.
+ * No exception crosses this interface. Errors are a dermis_status; dermis_last_error() gives the line that belongs to
+ * it. Shapes are [rows, cols], row-major. Units are SI; temperatures are in Celsius, times in nanoseconds.
  *
  * Threads: a model may be used by several threads at once. Any other handle belongs to one thread at a time, but for
  * dermis_source_stop(). Pointers that a handle gives out are valid until its next call, and until it is freed.
@@ -29,16 +29,17 @@ typedef enum dermis_status {
 
 /* Flags of dermis_force_frame.status; 0 if all is well. */
 enum {
-  DERMIS_FRAME_REJECTED = 1,            /* Wrong shape, not a number, absurd supply, time going backwards. */
-  DERMIS_FRAME_SATURATED = 2,           /* At least one taxel is saturated. */
-  DERMIS_FRAME_ABOVE_RANGE = 4,         /* At least one taxel is beyond its heaviest calibrated load. */
-  DERMIS_FRAME_DEAD_TAXELS = 8,         /* The array has dead taxels. */
+  DERMIS_FRAME_REJECTED = 1,             /* Wrong shape, not a number, absurd supply, time going backwards. */
+  DERMIS_FRAME_SATURATED = 2,            /* At least one taxel is saturated. */
+  DERMIS_FRAME_ABOVE_RANGE = 4,          /* At least one taxel is beyond its heaviest calibrated load. */
+  DERMIS_FRAME_DEAD_TAXELS = 8,          /* The array has dead taxels. */
   DERMIS_FRAME_TEMPERATURE_UNKNOWN = 16, /* The mean of the calibration is taken. */
   DERMIS_FRAME_TEMPERATURE_CLAMPED = 32, /* Outside the calibrated temperatures. */
-  DERMIS_FRAME_NOT_CONVERGED = 64,      /* The crosstalk inversion did not reach its tolerance. */
-  DERMIS_FRAME_LINE_FAULT = 128,        /* A line or taxel is faulty and masked. */
-  DERMIS_FRAME_SUPPLY_CLAMPED = 256,    /* Outside the supplies of the calibration: the nearest is used. */
-  DERMIS_FRAME_SUPPLY_IMPLAUSIBLE = 512 /* More than 20 % from nominal, too: that is used. */
+  DERMIS_FRAME_NOT_CONVERGED = 64,       /* The crosstalk inversion did not reach its tolerance. */
+  DERMIS_FRAME_LINE_FAULT = 128,         /* A line or taxel is faulty and masked. */
+  DERMIS_FRAME_SUPPLY_CLAMPED = 256,     /* Outside the supplies of the calibration: the nearest is used. */
+  DERMIS_FRAME_SUPPLY_IMPLAUSIBLE = 512, /* More than 20 % from nominal, too: that is used. */
+  DERMIS_FRAME_DOUBTFUL = 1024           /* A reading jumped, and may be no press: the sigma of its force says so. */
 };
 
 /* Values of dermis_force_frame.taxels. */
@@ -54,8 +55,8 @@ enum {
 /* "0.1.0" */
 const char* dermis_version(void);
 
-/* One line that names the place and the mend: of the last call of this thread that did not return DERMIS_OK or DERMIS_END.
- * Valid until the next such call. "" before the first. */
+/* One line that names the place and the mend: of the last call of this thread that did not return DERMIS_OK or
+ * DERMIS_END. Valid until the next such call. "" before the first. */
 const char* dermis_last_error(void);
 
 /* ---- models ---- */
@@ -102,7 +103,8 @@ void dermis_pipeline_free(dermis_pipeline* pipeline);
 
 /* Counts to newtons. Errors of a frame are in its status; only NULL pointers are an error. Allocates nothing after
  * the first frame. */
-dermis_status dermis_pipeline_process(dermis_pipeline* pipeline, const dermis_raw_frame* raw, dermis_force_frame* force);
+dermis_status dermis_pipeline_process(dermis_pipeline* pipeline, const dermis_raw_frame* raw,
+                                      dermis_force_frame* force);
 
 /* A sum of forces. */
 typedef struct dermis_total {
@@ -111,13 +113,14 @@ typedef struct dermis_total {
   size_t left_out;      /* Taxels without a force, which are not in the sum */
 } dermis_total;
 
-/* The force of the last frame on the taxels whose byte in `mask` [rows, cols] is not 0, or on all where it is NULL. Use it
- * in place of a sum of newtons. These are cut at zero, so noise does not cancel in their sum. `count`: rows * cols. */
+/* The force of the last frame on the taxels whose byte in `mask` [rows, cols] is not 0, or on all where it is NULL. Use
+ * it in place of a sum of newtons. These are cut at zero, so noise does not cancel in their sum. `count`: rows * cols.
+ */
 dermis_status dermis_pipeline_total(const dermis_pipeline* pipeline, const uint8_t* mask, size_t count,
                                     dermis_total* total);
 
-/* Takes the next second, at least 10 frames, for unloaded. Refused where a load stands on the array: zero is as it was, and
- * dermis_pipeline_tare_refused() says why. */
+/* Takes the next second, at least 10 frames, for unloaded. Refused where a load stands on the array: zero is as it was,
+ * and dermis_pipeline_tare_refused() says why. */
 dermis_status dermis_pipeline_tare(dermis_pipeline* pipeline);
 
 /* The same, whatever stands there: it reads 0 N from then on. */
@@ -140,8 +143,8 @@ typedef enum dermis_contact_phase { DERMIS_ONSET = 0, DERMIS_HELD = 1, DERMIS_RE
 
 /* x along the columns, y along the rows, from the centre of r0c0. */
 typedef struct dermis_contact {
-  uint32_t id;     /* From 1 on; the same from onset to release. */
-  uint32_t phase;  /* dermis_contact_phase */
+  uint32_t id;    /* From 1 on; the same from onset to release. */
+  uint32_t phase; /* dermis_contact_phase */
   int64_t onset_ns;
   double x_m, y_m;
   double sigma_x_m, sigma_y_m;
@@ -156,15 +159,15 @@ dermis_status dermis_tracker_create(const dermis_model* model, dermis_tracker** 
 void dermis_tracker_free(dermis_tracker* tracker);
 
 /* The contacts of the frame that `pipeline` processed last. */
-dermis_status dermis_tracker_process(dermis_tracker* tracker, const dermis_pipeline* pipeline, const dermis_contact** contacts,
-                                     size_t* count);
+dermis_status dermis_tracker_process(dermis_tracker* tracker, const dermis_pipeline* pipeline,
+                                     const dermis_contact** contacts, size_t* count);
 
 /* ---- sources ---- */
 
 typedef struct dermis_source dermis_source;
 
-/* A device or the simulator by its URI (docs/devices.md), or a file of frames by its path. `model`: whose shape the frames
- * must have; NULL: any. */
+/* A device or the simulator by its URI (docs/devices.md), or a file of frames by its path. `model`: whose shape the
+ * frames must have; NULL: any. */
 dermis_status dermis_source_open(const char* uri, const dermis_model* model, dermis_source** source);
 void dermis_source_free(dermis_source* source);
 

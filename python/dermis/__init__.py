@@ -43,6 +43,7 @@ class FrameStatus(_enum.IntFlag):
     LINE_FAULT = 128
     SUPPLY_CLAMPED = 256
     SUPPLY_IMPLAUSIBLE = 512
+    DOUBTFUL = 1024
 
 
 class TaxelStatus(_enum.IntEnum):

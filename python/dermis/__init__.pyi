@@ -38,6 +38,7 @@ class FrameStatus(enum.IntFlag):
     LINE_FAULT = 128  # a line or taxel is faulty and masked
     SUPPLY_CLAMPED = 256  # outside the supplies of the calibration: the nearest is used
     SUPPLY_IMPLAUSIBLE = 512  # more than 20 % from nominal, too: that is used
+    DOUBTFUL = 1024  # a reading jumped, and may be no press: the sigma of its force says so
 
 class TaxelStatus(enum.IntEnum):
     OK = 0

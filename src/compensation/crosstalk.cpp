@@ -162,12 +162,13 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
   }
   faults_->start_frame(conditioned.time);
   const InversionResult result = invert_possible(conditioned, conductance);
+  if (spikes_->any_doubt()) conductance.status |= FrameStatus::doubtful;
   conductance.residual_sigma = result.residual_ratio / conditioned.sigma_ratio;
   if (result.solved) {
     inversion_->propagate_noise(conditioned.sigma_ratio, conductance.sigma_siemens);
     follow_slopes(conditioned.noise_gain, conductance.sigma_siemens);
     note_errors(conditioned, conductance);
-    faults_->add_doubt(conductance.siemens, conductance.sigma_siemens);
+    faults_->add_doubt(conductance.errors.doubt_siemens, conductance.siemens, conductance.sigma_siemens);
   } else {
     std::fill(conductance.sigma_siemens.begin(), conductance.sigma_siemens.end(), 0.0);
   }
@@ -179,15 +180,15 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
     std::fill(conductance.taxels.begin(), conductance.taxels.end(), TaxelStatus::invalid);
   }
   if (faults_->any()) mask_faulty_taxels(conductance);
+  spikes_->remember(conditioned, conductance);
 }
 
-/// Without the readings that no conductances explain. As long as there is no solution, without the largest of lines
-/// that have little left of the supply, then without these lines.
+/// Without the readings that no conductances explain, and spikes. As long as there is no solution, without the largest
+/// of lines that have little left of the supply, then without these lines.
 InversionResult Compensator::invert_possible(const ConditionedFrame& conditioned,
                                              ConductanceFrame& conductance) noexcept {
   if (faults_->keeps_bounds()) {
     possible_->check(conditioned.ratio, conditioned.sigma_ratio, conductance.taxels);
-    spikes_->check(conditioned, conductance.taxels);
   } else {
     possible_->forget();
     spikes_->forget();
@@ -198,16 +199,22 @@ InversionResult Compensator::invert_possible(const ConditionedFrame& conditioned
     if (attempt == 2 && !possible_->take_full_lines(conditioned.ratio, conductance.taxels)) break;
     if (are_most_taken(conditioned.taxels, conductance.taxels)) break;
     inversion_->start_frame(attempt == 0 ? 1.0 : kRetryShare);
-    result = invert(conditioned.ratio, conductance);
-    result.solved = result.solved || result.residual_ratio <= kGoodEnoughSigmas * conditioned.sigma_ratio;
+    result = invert(conditioned, conductance);
+    if (attempt == 0 && spikes_->take(conditioned, result.solved, conductance)) {
+      inversion_->start_frame();
+      result = invert(conditioned, conductance);
+    }
   }
   if (std::all_of(conductance.taxels.begin(), conductance.taxels.end(), is_invalid)) result.solved = false;
   return result;
 }
 
-InversionResult Compensator::invert(std::span<const double> ratio, ConductanceFrame& conductance) noexcept {
-  return faults_->concerns(conductance.taxels) ? faults_->invert(*inversion_, ratio, conductance.siemens)
-                                               : inversion_->invert(ratio, conductance.siemens);
+InversionResult Compensator::invert(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept {
+  InversionResult result = faults_->concerns(conductance.taxels)
+                               ? faults_->invert(*inversion_, conditioned.ratio, conductance.siemens)
+                               : inversion_->invert(conditioned.ratio, conductance.siemens);
+  result.solved = result.solved || result.residual_ratio <= kGoodEnoughSigmas * conditioned.sigma_ratio;
+  return result;
 }
 
 /// A first frame without a solution has their size, too.
@@ -226,6 +233,7 @@ void Compensator::note_errors(const ConditionedFrame& conditioned, ConductanceFr
     errors.noise_siemens.assign(conductance.sigma_siemens.begin(), conductance.sigma_siemens.end());
   }
   faults_->find_doubt(conductance.siemens, errors.doubt_siemens);
+  spikes_->add_doubt(errors.doubt_siemens);
   errors.sigma_ratio = conditioned.sigma_ratio * mean_noise_gain(conditioned.noise_gain);
   errors.supply_doubt = conditioned.supply_doubt;
 }

@@ -172,12 +172,14 @@ void FaultInversion::add_to_circuit(const LineFault& fault, LumpedCircuit& circu
 
 /// A conductance of a driven line k and a sensed line j that is wrong by d changes the others to first order. Their
 /// share is Rd_k d, or RL_j d.
-void FaultInversion::add_doubt(std::span<const double> siemens, std::span<double> sigma_siemens) const noexcept {
-  if (array_.readout.circuit == Circuit::none || lines_are_faulty_ || !missing_.any()) return;
+void FaultInversion::add_doubt(std::span<const float> doubt_siemens, std::span<const double> siemens,
+                               std::span<double> sigma_siemens) const noexcept {
+  if (array_.readout.circuit == Circuit::none) return;
   const Axis driven = driven_axis(array_);
   for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
-    if (!missing_.is_missing(taxel)) continue;
-    const double error = missing_.doubt(taxel) * siemens[taxel];
+    const auto error = static_cast<double>(doubt_siemens[taxel]);
+    if (error == 0.0) continue;
+    sigma_siemens[taxel] = std::hypot(sigma_siemens[taxel], error);
     for (const Axis axis : kAxes) {
       const std::size_t line = line_of(array_, axis, taxel);
       const double ohm = axis == driven ? array_.readout.drive_ohm[line] : sensed_line(array_.readout, line).rho;

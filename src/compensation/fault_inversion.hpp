@@ -46,8 +46,9 @@ class FaultInversion {
   /// Frames that follow each other in time give the last values of taxels.
   void start_frame(Nanos time) noexcept { missing_.start_frame(time); }
 
-  /// Adds to the standard deviations what the others of a line owe to a taxel whose conductance is only estimated.
-  void add_doubt(std::span<const double> siemens, std::span<double> sigma_siemens) const noexcept;
+  /// Adds to the standard deviations these of taxels in doubt, and what the others of their lines owe to them.
+  void add_doubt(std::span<const float> doubt_siemens, std::span<const double> siemens,
+                 std::span<double> sigma_siemens) const noexcept;
 
   /// The standard deviation of taxels that are only estimated, 0 of the others [taxels] [S].
   void find_doubt(std::span<const double> siemens, std::span<float> doubt_siemens) const noexcept;

@@ -239,7 +239,9 @@ double SharedErrors::estimated_taxels(const ConductanceErrors& errors, const Fra
   double variance = 0.0;
   for (const std::size_t taxel : frame.doubted) {
     const auto [i, j] = lines_[taxel];
-    const double shift = sum.driven_weighted[i] + sensed_ohm_[j] * sum.sensed_weighted[j];
+    double shift = sum.driven_weighted[i] + sensed_ohm_[j] * sum.sensed_weighted[j];
+    const auto own = std::find(sum.of.taxels.begin(), sum.of.taxels.end(), taxel);
+    if (own != sum.of.taxels.end()) shift += sum.of.weight[static_cast<std::size_t>(own - sum.of.taxels.begin())];
     variance += std::pow(static_cast<double>(errors.doubt_siemens[taxel]) * shift, 2);
   }
   return variance;

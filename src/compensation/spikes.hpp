@@ -2,8 +2,10 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,49 +15,99 @@
 
 namespace dermis::compensation {
 
-/// Readings that jump from one frame to the next while the others of their line do not answer. A taxel that is pressed
-/// takes from the others: with what the line has left of the supply, 1 - s, their readings fall by
+/// Readings that jump from one frame to the next though nothing pressed. A taxel that is taken as x where it is X makes
+/// all others of its line, as the circuit solves them, s times what they are (see MissingTaxels):
 ///
-///   f = (1 - s) / (1 - s_last)
+///   s = (g + x) / (g + X),   g the load of the line, x = G / (1 + R G) behind the resistance R of the crossing line
 ///
-/// where s is the sum of the readings of a column (dividers with grounded rows), or Rd sum_j I_kj of a row (virtual
-/// ground). Where those that were loaded, or the unloaded ones together, should fall and none does, the largest jump is
-/// a spike. A jump that stays is believed after some frames.
+/// So after a press the conductances of the others are what they were, and after a spike their readings are. They are
+/// witnesses: each is what it was, or something of its own happened to it, and then it tells nothing. So a press on
+/// many taxels is none of its witnesses. Every set of the line's jumps may be the spikes; a set beside presses leaves
+/// the others s_set / s_all of their readings. Its probability follows by Bayes' theorem, from that of no spike. One
+/// that is not certain is a doubt, the jump times the root of its probability. Where circuits give no evidence, nothing
+/// is ever taken or doubted.
 class Spikes {
  public:
   explicit Spikes(const ArrayDescription& array);
 
-  /// Spikes become invalid in `taxels`, where frames follow each other within 50 ms. Allocates nothing.
-  void check(const ConditionedFrame& frame, std::span<TaxelStatus> taxels) noexcept;
+  /// Spikes among the readings become invalid in `conductance`, which solves them or is the best attempt; whether there
+  /// are any. Frames are compared that follow each other within 50 ms. Allocates nothing.
+  [[nodiscard]] bool take(const ConditionedFrame& frame, bool is_solved, ConductanceFrame& conductance) noexcept;
 
-  void forget() noexcept { has_last_ = false; }
+  /// Whether a taxel of this frame may be a spike, but is not taken.
+  [[nodiscard]] bool any_doubt() const noexcept { return !doubts_.empty(); }
+
+  /// Adds the standard deviations of these taxels [taxels] [S].
+  void add_doubt(std::span<float> doubt_siemens) const noexcept;
+
+  /// The frame is solved without its spikes. Allocates nothing.
+  void remember(const ConditionedFrame& frame, const ConductanceFrame& conductance) noexcept;
+
+  void forget() noexcept;
 
  private:
-  [[nodiscard]] bool any_jump(std::span<const double> ratio) const noexcept;
-  [[nodiscard]] bool follows_last(std::span<const double> ratio, double sigma_ratio) const noexcept;
-  void renew(std::span<const double> ratio, std::span<const TaxelStatus> taxels) noexcept;
-  void follow(std::span<const double> ratio, double sigma_ratio, std::span<const TaxelStatus> taxels) noexcept;
-  void check_line(std::size_t line, std::span<const double> ratio, double sigma_ratio,
-                  std::span<TaxelStatus> taxels) noexcept;
-  [[nodiscard]] bool others_answer(std::size_t line, std::size_t jumping, double fall, std::span<const double> ratio,
-                                   double sigma_ratio, std::span<const TaxelStatus> taxels) const noexcept;
+  static constexpr std::size_t kMostJumps = 4;  // of a line: beyond, they are a press
+
+  struct Doubt {
+    std::size_t taxel;
+    double siemens;
+  };
+
+  /// A taxel of the line, behind the crossing line [S].
+  struct Witness {
+    bool is_known;
+    bool tells;
+    double now;
+    double before;
+    double sigma_of_press;  // of their difference
+    double reads;           // with crosstalk
+    double has_read;        // likewise, in the line as it is now
+    double sigma_of_spike;  // likewise
+  };
+
+  struct Jumps {
+    std::array<std::size_t, kMostJumps> places{};
+    std::size_t count = 0;
+  };
+
   [[nodiscard]] std::size_t taxel_of(std::size_t line, std::size_t place) const noexcept {
     return axis_ == Axis::row ? line * cols_ + place : place * cols_ + line;
   }
+  [[nodiscard]] double behind(std::size_t taxel, double siemens) const noexcept {
+    return siemens / (1.0 + crossing_ohm_[axis_ == Axis::row ? taxel % cols_ : taxel / cols_] * siemens);
+  }
+  [[nodiscard]] bool any_jump(std::span<const double> ratio) const noexcept;
+  [[nodiscard]] bool is_jump(std::size_t taxel, std::span<const double> ratio) const noexcept;
+  [[nodiscard]] bool is_among_jumps(std::size_t taxel, std::span<const double> ratio) const noexcept;
+  [[nodiscard]] std::optional<Jumps> jumps_of(std::size_t line, const ConditionedFrame& frame,
+                                              std::span<const TaxelStatus> taxels) const noexcept;
+  void find_line(std::size_t line, const ConditionedFrame& frame, const ConductanceFrame& conductance,
+                 bool is_solved) noexcept;
+  [[nodiscard]] std::array<double, kMostJumps> probabilities(std::size_t line, const Jumps& jumps) const noexcept;
+  [[nodiscard]] double log_likelihood_of_presses() const noexcept;
+  [[nodiscard]] double log_likelihood_of_spikes(double left) const noexcept;
+  [[nodiscard]] bool take_line(std::size_t line, const ConditionedFrame& frame, bool is_solved,
+                               ConductanceFrame& conductance) noexcept;
+  void follow(std::size_t taxel, double ratio, double siemens, double noise) noexcept;
+  void follow_all(std::span<const double> ratio, std::span<const double> siemens, double noise) noexcept;
 
+  std::size_t rows_;
   std::size_t cols_;
-  Axis axis_;                  // of the lines whose readings share a supply
-  std::vector<double> taken_;  // of it by a reading of 1, [places, lines]; empty: nothing is known of the circuit
+  Axis axis_;  // of the lines whose readings share a supply
   std::size_t lines_;
   std::size_t places_;
+  std::vector<double> load_siemens_;  // g [lines]; empty: nothing is known of the circuit, 0: no evidence
+  std::vector<double> crossing_ohm_;  // R [places]
+  std::vector<double> share_;         // x / (g + sum of x) of a reading of 1 [taxels]
+  bool is_next_ = false;              // after the frame that is remembered
   bool has_last_ = false;
   Nanos last_time_{};
-  bool any_stale_ = false;
-  std::vector<double> last_;          // readings; the mean of those that stay [taxels]
-  std::vector<double> change_;        // since then [taxels]
-  std::vector<double> jumped_;        // 1: in the last frame, and it was believed [taxels]
-  std::vector<std::uint8_t> frames_;  // for which it has not been believed [taxels]
-  std::vector<std::uint8_t> stale_;   // last_ is older than the last frame [taxels]
+  std::vector<double> last_;          // readings; the mean of those that stay; NaN: unknown [taxels]
+  std::vector<double> last_siemens_;  // likewise
+  std::vector<std::uint8_t> frames_;  // for which a jump has not been believed [taxels]
+  bool any_taken_ = false;            // of the last frame or this one
+  std::vector<Witness> witnesses_;    // [places]
+  std::vector<Doubt> doubts_;
 };
 
 }  // namespace dermis::compensation

@@ -8,7 +8,7 @@
 namespace dermis {
 
 std::string to_string(FrameStatus status) {
-  static constexpr std::array<std::pair<FrameStatus, const char*>, 10> kNames{{
+  static constexpr std::array<std::pair<FrameStatus, const char*>, 11> kNames{{
       {FrameStatus::rejected, "rejected"},
       {FrameStatus::saturated, "saturated"},
       {FrameStatus::above_range, "above_range"},
@@ -19,6 +19,7 @@ std::string to_string(FrameStatus status) {
       {FrameStatus::line_fault, "line_fault"},
       {FrameStatus::supply_clamped, "supply_clamped"},
       {FrameStatus::supply_implausible, "supply_implausible"},
+      {FrameStatus::doubtful, "doubtful"},
   }};
   std::string text;
   for (const auto& [flag, name] : kNames) {

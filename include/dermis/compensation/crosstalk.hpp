@@ -117,7 +117,7 @@ class Compensator {
  private:
   Compensator(const ArrayDescription& array, std::unique_ptr<CrosstalkInversion> inversion,
               const ReferenceConductances& references);
-  InversionResult invert(std::span<const double> ratio, ConductanceFrame& conductance) noexcept;
+  InversionResult invert(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept;
   InversionResult invert_possible(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept;
   void prepare_errors(std::size_t taxels, ConductanceErrors& errors) const noexcept;
   void note_errors(const ConditionedFrame& conditioned, ConductanceFrame& conductance) const noexcept;

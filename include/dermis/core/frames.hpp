@@ -41,6 +41,7 @@ enum class FrameStatus : std::uint16_t {
   line_fault = 1U << 7U,      ///< A line or taxel is faulty: masked, the rest is solved with the fault in the model.
   supply_clamped = 1U << 8U,  ///< Outside the supplies of the calibration: the nearest is used, sigma grows.
   supply_implausible = 1U << 9U,  ///< More than 20 % from nominal, too: the nominal supply is used, sigma grows.
+  doubtful = 1U << 10U,  ///< A reading jumped, and may be no press: its force is given with a sigma that says so.
 };
 
 [[nodiscard]] constexpr FrameStatus operator|(FrameStatus a, FrameStatus b) noexcept {
