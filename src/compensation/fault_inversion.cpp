@@ -23,10 +23,6 @@ constexpr double kOpenSiemens = 1e-9;   // of a taxel that is counted elsewhere
 constexpr double kMostStretch = 5.0;
 constexpr std::size_t kMostLines = 256;  // rows and columns together: beyond, the dense equations are too slow
 
-bool is_in(const std::vector<std::size_t>& taxels, std::size_t taxel) {
-  return std::find(taxels.begin(), taxels.end(), taxel) != taxels.end();
-}
-
 bool is_modelled(const ArrayDescription& array) {
   const Readout& readout = array.readout;
   return array.rows + array.cols <= kMostLines && readout.circuit != Circuit::none && !has_resistive_lines(readout) &&
@@ -53,12 +49,14 @@ FaultInversion::FaultInversion(const ArrayDescription& array, double tolerance_r
       missing_(array_, references),
       measured_(array.taxel_count()),
       equivalent_(array.taxel_count()),
+      lines_(array.rows, array.cols),
       correction_(array.taxel_count()) {
   if (is_modelled(array)) circuits_ = Circuits{LumpedCircuit(array), LumpedCircuit(array)};
   supplied_rows_.reserve(array.rows);
   crossings_.taxels.reserve(array.taxel_count());
   crossings_.in_first.reserve(array.taxel_count());
-  shorted_.reserve(array.rows + array.cols);
+  crossings_.spanning.reserve(array.taxel_count());
+  for (const Axis axis : kAxes) is_shorted_to_next_[axis].resize(line_count(array, axis));
 }
 
 void FaultInversion::set_faults(std::span<const LineFault> faults, CrosstalkInversion& healthy) {
@@ -69,8 +67,13 @@ void FaultInversion::set_faults(std::span<const LineFault> faults, CrosstalkInve
   std::fill(is_.masked.begin(), is_.masked.end(), std::uint8_t{0});
   std::fill(is_.hidden.begin(), is_.hidden.end(), std::uint8_t{0});
   supplied_rows_.clear();
-  shorted_.clear();
+  for (const Axis axis : kAxes) {
+    std::fill(is_shorted_to_next_[axis].begin(), is_shorted_to_next_[axis].end(), std::uint8_t{0});
+  }
+  lines_.separate();
   crossings_.taxels.clear();
+  crossings_.spanning.clear();
+  crossings_.in_first.clear();
   if (circuits_) {
     circuits_->healthy.restore();
     circuits_->faulty.restore();
@@ -91,9 +94,8 @@ void FaultInversion::add(const LineFault& fault) {
   if (fault.kind == LineFaultKind::supplied_row) supplied_rows_.push_back(fault.place);
   if (fault.kind == LineFaultKind::shorted_crossing && !silences_row(fault, array_))
     crossings_.taxels.push_back(fault.place);
-  if (traits.effect == LineFaultEffect::shorted) {
-    shorted_.push_back({*traits.axis, fault.place, ratio_of_shorted_lines(array_, *traits.axis, fault.place)});
-  }
+  if (traits.effect == LineFaultEffect::shorted) is_shorted_to_next_[*traits.axis][fault.place] = 1;
+  lines_.join(fault, array_);
   keeps_bounds_ =
       keeps_bounds_ && traits.effect != LineFaultEffect::shorted && traits.effect != LineFaultEffect::supplied;
   lines_are_faulty_ =
@@ -102,21 +104,49 @@ void FaultInversion::add(const LineFault& fault) {
   add_to_circuit(fault, circuits_->faulty);
 }
 
-/// Rows that touch one column are one row, and columns that touch one row: what each of their taxels is, no reading
-/// tells.
+/// Lines that touch are one line, with all that either touches.
 void FaultInversion::add_crossings(CrosstalkInversion& healthy) {
-  const bool are_solved = healthy.set_shorted(crossings_.taxels);
+  if (!crossings_.taxels.empty()) find_crossings();
+  const bool are_solved = healthy.set_shorted(crossings_.spanning);
   crossings_.are_corrected = !are_solved && circuits_ && has_grounded_idle_lines(array_.readout);
   crossings_.are_kept = !are_solved && !crossings_.are_corrected;
-  crossings_.in_first.clear();
   lines_are_faulty_ = lines_are_faulty_ || crossings_.are_corrected;
-  for (std::size_t a = 0; a < crossings_.taxels.size(); ++a) {
-    const std::size_t taxel = crossings_.taxels[a];
-    for (std::size_t b = 0; b < a; ++b) join(taxel, crossings_.taxels[b]);
+  if (!crossings_.taxels.empty()) mask_joined(are_solved);
+  for (const std::size_t taxel : crossings_.spanning) {
     if (crossings_.are_corrected) hide_sensed_line(taxel);
     if (!circuits_) continue;
     circuits_->faulty.join_crossing(taxel);
     if (!crossings_.are_corrected) circuits_->healthy.join_crossing(taxel);
+  }
+}
+
+/// All crossings of lines that are one, and those of the first row and the first column, which join them all.
+void FaultInversion::find_crossings() noexcept {
+  crossings_.taxels.clear();
+  for (std::size_t row = 0; row < array_.rows; ++row) {
+    for (std::size_t col = 0; col < array_.cols; ++col) {
+      const std::size_t first = lines_.first_of(row);
+      if (lines_.first_of(array_.rows + col) != first) continue;
+      const std::size_t taxel = array_.index(row, col);
+      const bool is_in_first = row == first || lines_.is_first_column(col);
+      crossings_.taxels.push_back(taxel);
+      if (is_in_first) crossings_.spanning.push_back(taxel);
+    }
+  }
+}
+
+/// Of the taxels of lines that are one no reading tells, nor of the two between two nodes.
+void FaultInversion::mask_joined(bool are_solved) noexcept {
+  for (std::size_t taxel = 0; taxel < is_.masked.size(); ++taxel) {
+    const std::size_t row = taxel / array_.cols;
+    const std::size_t col = taxel % array_.cols;
+    const bool is_crossing = lines_.first_of(row) == lines_.first_of(array_.rows + col);
+    const bool is_between = lines_.crosses(row) && lines_.crosses(array_.rows + col);
+    const bool is_joined = lines_.has_other_row(row) || lines_.has_other_column(col);
+    if (is_between || is_joined) is_.masked[taxel] = 1;
+    const bool is_second = (lines_.crosses(row) && lines_.first_of(row) != row) ||
+                           (lines_.crosses(array_.rows + col) && !lines_.is_first_column(col));
+    if (!are_solved && is_second && !is_crossing) crossings_.in_first.push_back(taxel);
   }
 }
 
@@ -126,25 +156,6 @@ void FaultInversion::hide_sensed_line(std::size_t taxel) noexcept {
   const std::size_t line = line_of(array_, sensed, taxel);
   for (std::size_t k = 0; k < line_length(array_, sensed); ++k) {
     is_.masked[taxel_on_line(array_, sensed, line, k)] = is_.hidden[taxel_on_line(array_, sensed, line, k)] = 1;
-  }
-}
-
-/// Two taxels are between the two nodes, and only their sum is determined.
-void FaultInversion::join(std::size_t a, std::size_t b) noexcept {
-  const std::size_t cols = array_.cols;
-  if (a / cols == b / cols) mask_pair(Axis::column, a % cols, b % cols);
-  if (a % cols == b % cols) mask_pair(Axis::row, a / cols, b / cols);
-  is_.masked[array_.index(a / cols, b % cols)] = 1;
-  is_.masked[array_.index(b / cols, a % cols)] = 1;
-}
-
-void FaultInversion::mask_pair(Axis axis, std::size_t first, std::size_t second) noexcept {
-  for (std::size_t k = 0; k < line_length(array_, axis); ++k) {
-    for (const std::size_t line : {first, second}) is_.masked[taxel_on_line(array_, axis, line, k)] = 1;
-    const std::size_t taxel = taxel_on_line(array_, axis, second, k);
-    const bool is_solved = !crossings_.are_kept && !crossings_.are_corrected;
-    const bool is_known = is_in(crossings_.taxels, taxel) || is_in(crossings_.in_first, taxel);
-    if (!is_solved && !is_known) crossings_.in_first.push_back(taxel);
   }
 }
 
@@ -290,16 +301,34 @@ double FaultInversion::correct(bool first) noexcept {
   return std::isfinite(sum) ? change : std::numeric_limits<double>::infinity();
 }
 
-/// Two lines that are one node give the same reading twice, in a known ratio; what differs is noise.
+/// Lines that are one node give the same reading several times, in known ratios; what differs is noise.
 void FaultInversion::average_shorted_lines() noexcept {
-  for (const ShortedLines& pair : shorted_) {
-    for (std::size_t k = 0; k < line_length(array_, pair.axis); ++k) {
-      double& first = measured_[taxel_on_line(array_, pair.axis, pair.first, k)];
-      double& second = measured_[taxel_on_line(array_, pair.axis, pair.first + 1, k)];
-      const double fitted = (pair.ratio * first + second) / (pair.ratio * pair.ratio + 1.0);
-      first = pair.ratio * fitted;
-      second = fitted;
+  for (const Axis axis : kAxes) {
+    for (std::size_t first = 0; first < line_count(array_, axis); ++first) {
+      const std::size_t start = first;
+      while (is_shorted_to_next_[axis][first] != 0) ++first;
+      if (first > start) average(axis, start, first);
     }
+  }
+}
+
+void FaultInversion::average(Axis axis, std::size_t first, std::size_t last) noexcept {
+  for (std::size_t k = 0; k < line_length(array_, axis); ++k) {
+    double share = 1.0;
+    double sum = 0.0;
+    double squares = 0.0;
+    const auto for_each = [&](const auto& visit) {
+      share = 1.0;
+      for (std::size_t line = first; line <= last; ++line) {
+        visit(measured_[taxel_on_line(array_, axis, line, k)]);
+        if (line < last) share /= ratio_of_shorted_lines(array_, axis, line);
+      }
+    };
+    for_each([&](double reading) {
+      sum += share * reading;
+      squares += share * share;
+    });
+    for_each([&](double& reading) { reading = share * sum / squares; });
   }
 }
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "compensation/joined_lines.hpp"
 #include "compensation/lumped_circuit.hpp"
 #include "compensation/missing_taxels.hpp"
 #include "dermis/compensation/crosstalk.hpp"
@@ -79,16 +80,11 @@ class FaultInversion {
   /// Taxels whose row and column touch. Where `healthy` does not solve them they are kept at a large conductance, or,
   /// where idle rows are grounded, corrected as other faults are.
   struct Crossings {
-    std::vector<std::size_t> taxels;
+    std::vector<std::size_t> taxels;    // all of lines that are one
+    std::vector<std::size_t> spanning;  // as few of them as join these lines
     std::vector<std::size_t> in_first;  // taxels of joined lines, whose conductance stands in the first of them
     bool are_kept = false;
     bool are_corrected = false;
-  };
-
-  struct ShortedLines {
-    Axis axis;
-    std::size_t first;
-    double ratio;  ///< Reading of the first line over that of the second.
   };
 
   /// Work space of a round [taxels].
@@ -103,13 +99,14 @@ class FaultInversion {
   };
 
   void add(const LineFault& fault);
-  void join(std::size_t a, std::size_t b) noexcept;
+  void find_crossings() noexcept;
+  void mask_joined(bool are_solved) noexcept;
   void hide_sensed_line(std::size_t taxel) noexcept;
-  void mask_pair(Axis axis, std::size_t first, std::size_t second) noexcept;
   void add_crossings(CrosstalkInversion& healthy);
   void add_to_circuit(const LineFault& fault, LumpedCircuit& circuit) const;
   void subtract_supplied_rows(std::span<const double> ratio) noexcept;
   void average_shorted_lines() noexcept;
+  void average(Axis axis, std::size_t first, std::size_t last) noexcept;
   InversionResult keep_estimates(CrosstalkInversion& healthy, std::span<double> siemens) noexcept;
   void keep_crossings(std::span<double> siemens) noexcept;
   double correct(bool first) noexcept;
@@ -125,9 +122,10 @@ class FaultInversion {
   MissingTaxels missing_;
   Crossings crossings_;
   std::vector<std::size_t> supplied_rows_;
-  std::vector<ShortedLines> shorted_;
-  std::vector<double> measured_;    // T without what supplied rows add [taxels]
-  std::vector<double> equivalent_;  // T' [taxels]
+  PerAxis<std::vector<std::uint8_t>> is_shorted_to_next_;  // [lines]
+  std::vector<double> measured_;                           // T without what supplied rows add [taxels]
+  std::vector<double> equivalent_;                         // T' [taxels]
+  JoinedLines lines_;
   Correction correction_;
 };
 

@@ -24,6 +24,10 @@ constexpr double kShortShare = 0.005;   // as kAllowedShare; a mistake costs one
 constexpr double kStillShort = 4.0;     // times as many ohm, where the last reading was not believed
 constexpr double kStillShare = 0.03;    // likewise, of the supply
 constexpr double kLeastOfShort = 0.25;  // of the supply: where up to three short one column
+constexpr double kLeastOfNode = 0.1;    // of the supply: where up to six lines are one
+constexpr double kMostOfShare = 1.5;    // the current of a short over its line's share of the load
+constexpr double kImplied = 3.0;        // times the limits, where other shorts already join two lines
+constexpr double kMostly = 0.7;         // of a line's current
 constexpr double kLittleLeft = 0.6;     // readings of a line together, over what a taxel of 0 ohm reads alone
 
 /// Most impossible readings of a line of so many taxels: with more, none of its readings counts.
@@ -38,12 +42,15 @@ PossibleReadings::PossibleReadings(const ArrayDescription& array)
       rows_are_driven_(driven_axis(array) == Axis::row),
       one_loaded_(!rows_are_driven_ || array.readout.idle_columns == IdleColumns::floating),
       sums_are_bounded_(has_grounded_idle_lines(array.readout)),
+      lines_may_be_joined_(array.readout.circuit != Circuit::transimpedance),
       most_ratio_(array.taxel_count(), std::numeric_limits<double>::infinity()) {
   if (array.readout.circuit == Circuit::none) return;
   drive_ohm_ = array.readout.drive_ohm;
   taken_.resize(array.taxel_count());
   last_taken_.resize(array.taxel_count());
   verdicts_.resize(array.taxel_count());
+  joined_.resize(array.taxel_count());
+  totals_.resize(array.driven_lines());
   sums_.resize(array.sensed_lines());
   line_.resize(array.sensed_lines());
   beyond_.resize(array.sensed_lines());
@@ -84,18 +91,21 @@ void PossibleReadings::check(std::span<const double> ratio, double sigma_ratio,
 bool PossibleReadings::any_may_exceed(std::span<const double> ratio) noexcept {
   std::fill(sums_.begin(), sums_.end(), 0.0);
   std::fill(beyond_.begin(), beyond_.end(), 0.0);
+  double least_left = 1.0;
   for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
-    find_beyond(driven, readings_of(driven, ratio));
+    least_left = std::min(least_left, find_beyond(driven, readings_of(driven, ratio)));
   }
   bool any = *std::max_element(beyond_.begin(), beyond_.end()) > 0.0;
   for (std::size_t sensed = 0; sensed < heads_.size() && sums_are_bounded_; ++sensed) {
-    any = any || sums_[sensed] > heads_[sensed].most_sum;
+    const Head& head = heads_[sensed];
+    any = any || sums_[sensed] > head.most_sum ||
+          sums_[sensed] * (1.0 + kShortShare + head.short_ohm / head.ohm) > least_left;
   }
   return any;
 }
 
-/// How far readings of the line are beyond their limits, as they and their sum show.
-DERMIS_PROCESSOR_CLONES void PossibleReadings::find_beyond(std::size_t driven, const double* readings) noexcept {
+/// How far readings of the line are beyond their limits, as they and their sum show. Returns what the driver leaves.
+DERMIS_PROCESSOR_CLONES double PossibleReadings::find_beyond(std::size_t driven, const double* readings) noexcept {
   const std::size_t sensed_lines = heads_.size();
   const double* const current = limits_.current.data();
   const double* const offset = limits_.offset.data();
@@ -117,6 +127,7 @@ DERMIS_PROCESSOR_CLONES void PossibleReadings::find_beyond(std::size_t driven, c
     const double more = (taken > 0.0 ? taken : 0.0) - left;
     beyond[sensed] = more > beyond[sensed] ? more : beyond[sensed];
   }
+  return left;
 }
 
 /// One after the other.
@@ -127,9 +138,12 @@ const double* PossibleReadings::readings_of(std::size_t driven, std::span<const 
 }
 
 void PossibleReadings::doubt_bad_lines(std::span<ReadingVerdict> verdicts) const noexcept {
+  const auto is_bad = [&](std::size_t taxel) {
+    return verdicts[taxel] >= ReadingVerdict::shorted && joined_[taxel] == 0;
+  };
   const auto doubt = [&](std::size_t size, const auto& taxel_at) {
     std::size_t bad = 0;
-    for (std::size_t k = 0; k < size; ++k) bad += verdicts[taxel_at(k)] >= ReadingVerdict::shorted ? 1 : 0;
+    for (std::size_t k = 0; k < size; ++k) bad += is_bad(taxel_at(k)) ? 1 : 0;
     for (std::size_t k = 0; k < size && bad > most_bad(size); ++k) verdicts[taxel_at(k)] = ReadingVerdict::unknown;
   };
   for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
@@ -146,10 +160,12 @@ void PossibleReadings::forget() noexcept {
 }
 
 void PossibleReadings::judge(std::span<const double> ratio, double sigma_ratio, std::span<const TaxelStatus> taxels,
-                             std::span<ReadingVerdict> verdicts) const noexcept {
+                             std::span<ReadingVerdict> verdicts) noexcept {
   std::transform(taxels.begin(), taxels.end(), verdicts.begin(), [](TaxelStatus status) {
     return status == TaxelStatus::invalid ? ReadingVerdict::unknown : ReadingVerdict::possible;
   });
+  std::fill(joined_.begin(), joined_.end(), std::uint8_t{0});
+  if (lines_may_be_joined_) judge_joined(ratio, sigma_ratio, verdicts);
   for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
     judge_driven(driven, ratio, sigma_ratio, verdicts);
   }
@@ -157,6 +173,70 @@ void PossibleReadings::judge(std::span<const double> ratio, double sigma_ratio, 
     judge_sensed(sensed, ratio, sigma_ratio, verdicts);
   }
   doubt_bad_lines(verdicts);
+}
+
+void PossibleReadings::judge_joined(std::span<const double> ratio, double sigma_ratio,
+                                    std::span<ReadingVerdict> verdicts) noexcept {
+  std::fill(totals_.begin(), totals_.end(), 0.0);
+  std::fill(sums_.begin(), sums_.end(), 0.0);
+  for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
+    for (std::size_t sensed = 0; sensed < heads_.size(); ++sensed) {
+      const std::size_t taxel = taxel_of(driven, sensed);
+      if (verdicts[taxel] == ReadingVerdict::unknown) continue;
+      totals_[driven] += current(sensed, ratio[taxel]);
+      sums_[sensed] += ratio[taxel];
+    }
+  }
+  for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
+    for (std::size_t sensed = 0; sensed < heads_.size(); ++sensed) {
+      const std::size_t taxel = taxel_of(driven, sensed);
+      if (verdicts[taxel] == ReadingVerdict::unknown || ratio[taxel] < kLeastOfNode) continue;
+      joined_[taxel] = are_joined(driven, sensed, ratio, sigma_ratio) ? 1 : 0;
+    }
+  }
+  for (std::size_t taxel = 0; taxel < verdicts.size(); ++taxel) {
+    if (joined_[taxel] != 0) verdicts[taxel] = ReadingVerdict::shorted;
+  }
+}
+
+/// They are one node, and so are all that either is joined with: each such driven line with each such sensed one.
+/// Little of their current goes or comes elsewhere.
+bool PossibleReadings::are_joined(std::size_t driven, std::size_t sensed, std::span<const double> ratio,
+                                  double sigma_ratio) const noexcept {
+  const auto are_one = [&](std::size_t line, std::size_t other, double allowed) {
+    return are_one_node(line, other, ratio, sigma_ratio, allowed);
+  };
+  if (!are_one(driven, sensed, 1.0)) return false;
+  double sum = 0.0;
+  for (std::size_t line = 0; line < drive_ohm_.size(); ++line) {
+    if (are_one(line, sensed, kImplied)) sum += ratio[taxel_of(line, sensed)];
+  }
+  if (sums_are_bounded_ && sum < kMostly * sums_[sensed]) return false;
+  double total = 0.0;
+  for (std::size_t other = 0; other < heads_.size(); ++other) {
+    if (!are_one(driven, other, kImplied)) continue;
+    total += current(other, ratio[taxel_of(driven, other)]);
+    if (!are_one(driven, other, 1.0)) continue;
+    for (std::size_t line = 0; line < drive_ohm_.size(); ++line) {
+      if (are_one(line, sensed, 1.0) && !are_one(line, other, kImplied)) return false;
+    }
+  }
+  return one_loaded_ || total >= kMostly * totals_[driven];
+}
+
+/// Both stand at the same voltage with all driven, or in their own scan.
+bool PossibleReadings::are_one_node(std::size_t driven, std::size_t sensed, std::span<const double> ratio,
+                                    double sigma_ratio, double allowed) const noexcept {
+  const std::size_t taxel = taxel_of(driven, sensed);
+  const double own = ratio[taxel];
+  if (!(own >= kLeastOfNode)) return false;
+  const Head& head = heads_[sensed];
+  const double left = 1.0 - drive_ohm_[driven] * (one_loaded_ ? current(sensed, own) : totals_[driven]);
+  const double stands = sums_are_bounded_ ? sums_[sensed] : own;
+  const double noise = 0.5 * kAllowedSigmas * sigma_ratio * std::sqrt(static_cast<double>(drive_ohm_.size()));
+  const double short_ohm = head.short_ohm * (was_taken(taxel) ? kStillShort : 1.0);
+  const double drop = short_ohm / head.ohm * std::min(stands, kMostOfShare * own);
+  return std::abs(left - stands) <= allowed * (drop + kShortShare * stands + noise);
 }
 
 void PossibleReadings::judge_driven(std::size_t driven, std::span<const double> ratio, double sigma_ratio,

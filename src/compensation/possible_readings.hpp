@@ -40,7 +40,7 @@ class PossibleReadings {
   /// The worst of a line is judged first: the current of an impossible reading is not there, that of a short is.
   /// `verdicts` [taxels]. Allocates nothing.
   void judge(std::span<const double> ratio, double sigma_ratio, std::span<const TaxelStatus> taxels,
-             std::span<ReadingVerdict> verdicts) const noexcept;
+             std::span<ReadingVerdict> verdicts) noexcept;
 
   /// A reading over that of a taxel of 0 ohm alone.
   [[nodiscard]] double share_of_most(std::size_t taxel, double ratio) const noexcept {
@@ -83,8 +83,13 @@ class PossibleReadings {
   }
   [[nodiscard]] bool was_taken(std::size_t taxel) const noexcept { return last_taken_[taxel] != 0; }
   [[nodiscard]] bool any_may_exceed(std::span<const double> ratio) noexcept;
-  void find_beyond(std::size_t driven, const double* readings) noexcept;
+  double find_beyond(std::size_t driven, const double* readings) noexcept;
   [[nodiscard]] const double* readings_of(std::size_t driven, std::span<const double> ratio) noexcept;
+  void judge_joined(std::span<const double> ratio, double sigma_ratio, std::span<ReadingVerdict> verdicts) noexcept;
+  [[nodiscard]] bool are_joined(std::size_t driven, std::size_t sensed, std::span<const double> ratio,
+                                double sigma_ratio) const noexcept;
+  [[nodiscard]] bool are_one_node(std::size_t driven, std::size_t sensed, std::span<const double> ratio,
+                                  double sigma_ratio, double allowed) const noexcept;
   void judge_driven(std::size_t driven, std::span<const double> ratio, double sigma_ratio,
                     std::span<ReadingVerdict> verdicts) const noexcept;
   void judge_sensed(std::size_t sensed, std::span<const double> ratio, double sigma_ratio,
@@ -105,6 +110,7 @@ class PossibleReadings {
   bool rows_are_driven_;
   bool one_loaded_;
   bool sums_are_bounded_;           // of the readings of a column
+  bool lines_may_be_joined_;        // driven with sensed ones, so that it shows
   std::vector<double> most_ratio_;  // [taxels]; infinite where nothing limits it
   std::vector<double> drive_ohm_;   // [driven]; empty: the circuit is not known
   std::vector<Head> heads_;         // [sensed]
@@ -112,7 +118,9 @@ class PossibleReadings {
   std::vector<double> sums_;              // of readings [sensed]
   std::vector<double> beyond_;            // the supply, the most of a frame [sensed]
   std::vector<double> line_;              // readings of a driven line [sensed]
+  std::vector<double> totals_;            // currents of the driven lines [driven]
   std::vector<ReadingVerdict> verdicts_;  // [taxels]
+  std::vector<std::uint8_t> joined_;      // lines, by the taxels where they cross [taxels]
   std::vector<std::uint8_t> taken_;       // from this frame [taxels]
   std::vector<std::uint8_t> last_taken_;  // from the one before [taxels]
   bool any_taken_ = false;

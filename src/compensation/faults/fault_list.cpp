@@ -28,6 +28,7 @@ std::uint8_t cause_of(const LineFaultTraits& traits) {
 
 FaultList::FaultList(const ArrayDescription& array)
     : array_(array),
+      lines_(array.rows, array.cols),
       causes_(array.taxel_count()),
       witnesses_{std::vector<float>(array.taxel_count(), 1.0F), std::vector<float>(array.taxel_count(), 1.0F)} {
   suspected_.reserve(array.taxel_count());
@@ -57,12 +58,25 @@ void FaultList::remove(LineFaultKind kind, std::size_t place) noexcept {
   count_change();
 }
 
+/// The taxels of lines that touch one line together.
+void FaultList::mark_joined_lines() noexcept {
+  if (!contains(LineFaultKind::shorted_crossing)) return;
+  lines_.separate();
+  for (const LineFault& fault : faults_) lines_.join(fault, array_);
+  for (std::size_t taxel = 0; taxel < causes_.size(); ++taxel) {
+    if (lines_.has_other_row(taxel / array_.cols) || lines_.has_other_column(taxel % array_.cols)) {
+      causes_[taxel] |= kStuckCause;
+    }
+  }
+}
+
 void FaultList::mask_taxels() noexcept {
   std::fill(causes_.begin(), causes_.end(), std::uint8_t{0});
   for (const LineFault& fault : faults_) {
     const std::uint8_t cause = cause_of(traits_of(fault.kind));
     for_each_masked_taxel(fault, array_, [&](std::size_t taxel) { causes_[taxel] |= cause; });
   }
+  mark_joined_lines();
   for (const Axis axis : kAxes) {
     const int own = kLineCause[axis] | kDeadCause;
     for (std::size_t taxel = 0; taxel < causes_.size(); ++taxel) {

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "compensation/joined_lines.hpp"
 #include "dermis/compensation/line_fault.hpp"
 #include "dermis/core/axis.hpp"
 #include "dermis/core/frames.hpp"
@@ -65,9 +66,11 @@ class FaultList {
  private:
   void forget_dead_taxels(const LineFault& line) noexcept;
   void mask_taxels() noexcept;
+  void mark_joined_lines() noexcept;
 
   const ArrayDescription& array_;
   std::vector<LineFault> faults_;
+  JoinedLines lines_;
   std::vector<std::uint8_t> causes_;       // [taxels]
   PerAxis<std::vector<float>> witnesses_;  // [taxels]
   std::vector<std::size_t> suspected_;     // taxels

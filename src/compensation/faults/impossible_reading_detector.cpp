@@ -18,9 +18,9 @@ namespace dermis::compensation {
 namespace {
 
 constexpr int kFrames = 10;
-constexpr std::size_t kMostFound = 8;  // in one frame, and at once: more have a cause in common
+constexpr std::size_t kMostFound = 12;  // in one frame, and at once: more have a cause in common
 constexpr double kPerFrame = kEvidence / kFrames;
-constexpr double kStillShorted = 0.5;     // of what a taxel of 0 ohm reads alone
+constexpr double kStillShorted = 0.15;    // of what a taxel of 0 ohm reads alone: where up to six lines are one
 constexpr double kMostRepetitions = 0.8;  // of the frames; a reading that repeats more in spite of noise is stuck
 constexpr double kNoiseThatShows = 0.7;   // counts; below it good readings repeat, too
 constexpr double kSame = 1e-3;            // standard deviations

@@ -18,13 +18,15 @@ constexpr std::size_t kColumnsForEach = 4;  // that is at the supply; where more
 
 bool reads_full_scale(const Observation& seen, const ArrayDescription& array, std::size_t col,
                       const FaultList& faults) {
+  bool any = false;
   for (std::size_t row = 0; row < array.rows; ++row) {
     const std::size_t taxel = array.index(row, col);
     if ((faults.causes(taxel) & (kRowCause | kStuckCause)) != 0) continue;
     const bool is_saturated = seen.conditioned.taxels[taxel] == TaxelStatus::saturated;
     if (!is_saturated && seen.conditioned.ratio[taxel] < kFullScale) return false;
+    any = true;
   }
-  return true;
+  return any;
 }
 
 /// True with an amplifier at its rail, with rows that float, and without another row that holds the column down.
