@@ -234,9 +234,8 @@ bool PossibleReadings::are_one_node(std::size_t driven, std::size_t sensed, std:
   const double left = 1.0 - drive_ohm_[driven] * (one_loaded_ ? current(sensed, own) : totals_[driven]);
   const double stands = sums_are_bounded_ ? sums_[sensed] : own;
   const double noise = 0.5 * kAllowedSigmas * sigma_ratio * std::sqrt(static_cast<double>(drive_ohm_.size()));
-  const double short_ohm = head.short_ohm * (was_taken(taxel) ? kStillShort : 1.0);
-  const double drop = short_ohm / head.ohm * std::min(stands, kMostOfShare * own);
-  return std::abs(left - stands) <= allowed * (drop + kShortShare * stands + noise);
+  const double drop = head.short_ohm / head.ohm * std::min(stands, kMostOfShare * own);
+  return std::abs(left - stands) <= allowed * drop - kShortShare * stands - noise;
 }
 
 void PossibleReadings::judge_driven(std::size_t driven, std::span<const double> ratio, double sigma_ratio,

@@ -26,7 +26,7 @@ struct Checked {
     return static_cast<std::size_t>(std::count(taxels.begin(), taxels.end(), TaxelStatus::invalid));
   }
 
-  ReadingVerdict verdict(std::size_t taxel) const {
+  ReadingVerdict verdict(std::size_t taxel) {
     std::vector<ReadingVerdict> verdicts(ratio.size());
     possible.judge(ratio, kSigma, taxels, verdicts);
     return verdicts[taxel];
