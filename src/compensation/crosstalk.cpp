@@ -136,6 +136,7 @@ Compensator::~Compensator() = default;
 
 void Compensator::set_faults(std::span<const LineFault> faults) {
   faults_->set_faults(faults, *inversion_);
+  possible_->set_shorted(faults_->shorted_crossings());
 }
 
 void Compensator::forget() noexcept {

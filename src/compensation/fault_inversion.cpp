@@ -63,6 +63,7 @@ void FaultInversion::set_faults(std::span<const LineFault> faults, CrosstalkInve
   any_ = std::any_of(faults.begin(), faults.end(),
                      [](const LineFault& fault) { return fault.kind != LineFaultKind::drifting_driver; });
   keeps_bounds_ = true;
+  has_crossings_ = false;
   lines_are_faulty_ = false;
   std::fill(is_.masked.begin(), is_.masked.end(), std::uint8_t{0});
   std::fill(is_.hidden.begin(), is_.hidden.end(), std::uint8_t{0});
@@ -92,8 +93,7 @@ void FaultInversion::add(const LineFault& fault) {
   });
   if (array_.readout.circuit == Circuit::none) return;  // nothing to subtract or to solve
   if (fault.kind == LineFaultKind::supplied_row) supplied_rows_.push_back(fault.place);
-  if (fault.kind == LineFaultKind::shorted_crossing && !silences_row(fault, array_))
-    crossings_.taxels.push_back(fault.place);
+  has_crossings_ = has_crossings_ || fault.kind == LineFaultKind::shorted_crossing;
   if (traits.effect == LineFaultEffect::shorted) is_shorted_to_next_[*traits.axis][fault.place] = 1;
   lines_.join(fault, array_);
   keeps_bounds_ =
@@ -106,12 +106,12 @@ void FaultInversion::add(const LineFault& fault) {
 
 /// Lines that touch are one line, with all that either touches.
 void FaultInversion::add_crossings(CrosstalkInversion& healthy) {
-  if (!crossings_.taxels.empty()) find_crossings();
+  if (has_crossings_) find_crossings();
   const bool are_solved = healthy.set_shorted(crossings_.spanning);
   crossings_.are_corrected = !are_solved && circuits_ && has_grounded_idle_lines(array_.readout);
   crossings_.are_kept = !are_solved && !crossings_.are_corrected;
   lines_are_faulty_ = lines_are_faulty_ || crossings_.are_corrected;
-  if (!crossings_.taxels.empty()) mask_joined(are_solved);
+  if (has_crossings_) mask_joined(are_solved);
   for (const std::size_t taxel : crossings_.spanning) {
     if (crossings_.are_corrected) hide_sensed_line(taxel);
     if (!circuits_) continue;
@@ -120,9 +120,9 @@ void FaultInversion::add_crossings(CrosstalkInversion& healthy) {
   }
 }
 
-/// All crossings of lines that are one, and those of the first row and the first column, which join them all.
+/// All crossings of lines that are one, and those of the first row and the first column, which join them all. At
+/// virtual ground the rows read nothing, and join none.
 void FaultInversion::find_crossings() noexcept {
-  crossings_.taxels.clear();
   for (std::size_t row = 0; row < array_.rows; ++row) {
     for (std::size_t col = 0; col < array_.cols; ++col) {
       const std::size_t first = lines_.first_of(row);
@@ -130,7 +130,7 @@ void FaultInversion::find_crossings() noexcept {
       const std::size_t taxel = array_.index(row, col);
       const bool is_in_first = row == first || lines_.is_first_column(col);
       crossings_.taxels.push_back(taxel);
-      if (is_in_first) crossings_.spanning.push_back(taxel);
+      if (is_in_first && array_.readout.circuit != Circuit::transimpedance) crossings_.spanning.push_back(taxel);
     }
   }
 }
@@ -206,8 +206,13 @@ void FaultInversion::find_doubt(std::span<const double> siemens, std::span<float
   std::fill(doubt_siemens.begin(), doubt_siemens.end(), 0.0F);
   if (array_.readout.circuit == Circuit::none || lines_are_faulty_ || !missing_.any()) return;
   for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
-    if (missing_.is_missing(taxel)) doubt_siemens[taxel] = static_cast<float>(missing_.doubt(taxel) * siemens[taxel]);
+    if (is_doubtful(taxel)) doubt_siemens[taxel] = static_cast<float>(missing_.doubt(taxel) * siemens[taxel]);
   }
+}
+
+/// Only its estimate is known; a short is what it is.
+bool FaultInversion::is_doubtful(std::size_t taxel) const noexcept {
+  return missing_.is_missing(taxel) && !std::binary_search(crossings_.taxels.begin(), crossings_.taxels.end(), taxel);
 }
 
 bool FaultInversion::concerns(std::span<const TaxelStatus> taxels) noexcept {
@@ -266,7 +271,7 @@ InversionResult FaultInversion::keep_estimates(CrosstalkInversion& healthy, std:
 /// Their readings count where the inversion solves them; else they are what they are.
 void FaultInversion::keep_crossings(std::span<double> siemens) noexcept {
   for (const std::size_t taxel : crossings_.in_first) siemens[taxel] = kOpenSiemens;
-  if (crossings_.are_corrected) return;
+  if (crossings_.are_corrected || crossings_.spanning.empty()) return;
   for (const std::size_t taxel : crossings_.in_first) equivalent_[taxel] = kNothing;
   for (const std::size_t taxel : crossings_.taxels) {
     equivalent_[taxel] = crossings_.are_kept ? kNothing : measured_[taxel];

@@ -38,6 +38,9 @@ class FaultInversion {
   /// The bounds on the readings of a line together still hold: none is at the supply or joined with another.
   [[nodiscard]] bool keeps_bounds() const noexcept { return keeps_bounds_; }
 
+  /// All taxels whose row and column are one line.
+  [[nodiscard]] std::span<const std::size_t> shorted_crossings() const noexcept { return crossings_.taxels; }
+
   /// The taxel has no force of its own to report.
   [[nodiscard]] bool is_masked(std::size_t taxel) const noexcept { return is_.masked[taxel] != 0; }
 
@@ -110,12 +113,14 @@ class FaultInversion {
   InversionResult keep_estimates(CrosstalkInversion& healthy, std::span<double> siemens) noexcept;
   void keep_crossings(std::span<double> siemens) noexcept;
   double correct(bool first) noexcept;
+  [[nodiscard]] bool is_doubtful(std::size_t taxel) const noexcept;
   [[nodiscard]] double misfit(std::span<const double> siemens) const noexcept;
 
   ArrayDescription array_;
   double tolerance_;
   bool any_ = false;
   bool keeps_bounds_ = true;
+  bool has_crossings_ = false;     // that are shorted
   bool lines_are_faulty_ = false;  // so that the circuit is another one
   std::optional<Circuits> circuits_;
   Masks is_;

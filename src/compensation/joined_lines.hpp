@@ -25,11 +25,11 @@ class JoinedLines {
     std::replace(first_.begin(), first_.end(), other, first);
   }
 
-  /// The lines that the fault joins. A row that touches a column at virtual ground stands at 0 V, and joins none.
+  /// The lines that the fault joins.
   void join(const LineFault& fault, const ArrayDescription& array) noexcept {
     if (fault.kind == LineFaultKind::shorted_rows) join(fault.place, fault.place + 1);
     if (fault.kind == LineFaultKind::shorted_columns) join(rows_ + fault.place, rows_ + fault.place + 1);
-    if (fault.kind == LineFaultKind::shorted_crossing && !silences_row(fault, array)) {
+    if (fault.kind == LineFaultKind::shorted_crossing) {
       join(fault.place / array.cols, rows_ + fault.place % array.cols);
     }
   }

@@ -49,6 +49,7 @@ PossibleReadings::PossibleReadings(const ArrayDescription& array)
   taken_.resize(array.taxel_count());
   last_taken_.resize(array.taxel_count());
   verdicts_.resize(array.taxel_count());
+  known_.resize(array.taxel_count());
   joined_.resize(array.taxel_count());
   totals_.resize(array.driven_lines());
   sums_.resize(array.sensed_lines());
@@ -154,6 +155,11 @@ void PossibleReadings::doubt_bad_lines(std::span<ReadingVerdict> verdicts) const
   }
 }
 
+void PossibleReadings::set_shorted(std::span<const std::size_t> taxels) noexcept {
+  std::fill(known_.begin(), known_.end(), std::uint8_t{0});
+  for (const std::size_t taxel : taxels) known_[taxel] = 1;
+}
+
 void PossibleReadings::forget() noexcept {
   any_taken_ = false;
   std::fill(taken_.begin(), taken_.end(), std::uint8_t{0});
@@ -164,7 +170,7 @@ void PossibleReadings::judge(std::span<const double> ratio, double sigma_ratio, 
   std::transform(taxels.begin(), taxels.end(), verdicts.begin(), [](TaxelStatus status) {
     return status == TaxelStatus::invalid ? ReadingVerdict::unknown : ReadingVerdict::possible;
   });
-  std::fill(joined_.begin(), joined_.end(), std::uint8_t{0});
+  std::copy(known_.begin(), known_.end(), joined_.begin());
   if (lines_may_be_joined_) judge_joined(ratio, sigma_ratio, verdicts);
   for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
     judge_driven(driven, ratio, sigma_ratio, verdicts);
@@ -191,11 +197,11 @@ void PossibleReadings::judge_joined(std::span<const double> ratio, double sigma_
     for (std::size_t sensed = 0; sensed < heads_.size(); ++sensed) {
       const std::size_t taxel = taxel_of(driven, sensed);
       if (verdicts[taxel] == ReadingVerdict::unknown || ratio[taxel] < kLeastOfNode) continue;
-      joined_[taxel] = are_joined(driven, sensed, ratio, sigma_ratio) ? 1 : 0;
+      if (are_joined(driven, sensed, ratio, sigma_ratio)) joined_[taxel] = 1;
     }
   }
   for (std::size_t taxel = 0; taxel < verdicts.size(); ++taxel) {
-    if (joined_[taxel] != 0) verdicts[taxel] = ReadingVerdict::shorted;
+    if (joined_[taxel] != 0 && verdicts[taxel] != ReadingVerdict::unknown) verdicts[taxel] = ReadingVerdict::shorted;
   }
 }
 

@@ -32,6 +32,9 @@ class PossibleReadings {
  public:
   explicit PossibleReadings(const ArrayDescription& array);
 
+  /// From the next frame on, the row and the column of each of these taxels are known to be one. Allocates nothing.
+  void set_shorted(std::span<const std::size_t> taxels) noexcept;
+
   /// Taxels become invalid whose reading the circuit cannot give, or only where row and column touch. The worst of a
   /// line are first; all of a line where they are many. `sigma_ratio` is the noise of a reading. Allocates nothing.
   void check(std::span<const double> ratio, double sigma_ratio, std::span<TaxelStatus> taxels) noexcept;
@@ -120,6 +123,7 @@ class PossibleReadings {
   std::vector<double> line_;              // readings of a driven line [sensed]
   std::vector<double> totals_;            // currents of the driven lines [driven]
   std::vector<ReadingVerdict> verdicts_;  // [taxels]
+  std::vector<std::uint8_t> known_;       // to be shorted [taxels]
   std::vector<std::uint8_t> joined_;      // lines, by the taxels where they cross [taxels]
   std::vector<std::uint8_t> taken_;       // from this frame [taxels]
   std::vector<std::uint8_t> last_taken_;  // from the one before [taxels]

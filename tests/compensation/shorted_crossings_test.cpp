@@ -134,6 +134,50 @@ TEST(ShortedCrossings, on_a_driver_of_no_resistance_the_others_are_solved) {
   }
 }
 
+/// Each crossing but the first is on the row or the column of one before it.
+std::vector<std::size_t> random_chain(const ArrayDescription& array, std::size_t length, Random& random) {
+  std::vector<std::size_t> chain = {random.below(array.taxel_count())};
+  while (chain.size() < length) {
+    const std::size_t last = chain[random.below(chain.size())];
+    const bool on_row = random.below(2) == 0;
+    const std::size_t next = on_row ? array.index(last / array.cols, random.below(array.cols))
+                                    : array.index(random.below(array.rows), last % array.cols);
+    if (std::find(chain.begin(), chain.end(), next) == chain.end()) chain.push_back(next);
+  }
+  return chain;
+}
+
+TEST(ShortedCrossings, zzdebug) {
+  for (const support::NamedCircuit& circuit : circuits_with_faults()) {
+    if (circuit.circuit != Circuit::divider || circuit.idle_rows != IdleRows::floating) continue;
+    const ArrayDescription array = small_array(circuit);
+    for (const std::vector<std::size_t>& chain : {std::vector<std::size_t>{36, 18}, {36, 18, 0}, {0,1,2}}) {
+    std::cout << circuit << testing::PrintToString(chain) << "\n";
+    const Solved solved = solve(array, chain);
+    for (std::size_t t = 0; t < solved.siemens.size(); ++t) {
+      std::printf("%c%8.3f%s", "?siol????"[0] + 0, solved.conductance.siemens[t] / solved.siemens[t], t % 6 == 5 ? "\n" : " ");
+    }
+    for (std::size_t t = 0; t < solved.siemens.size(); ++t) std::printf("%d%s", int(solved.conductance.taxels[t]), t % 6 == 5 ? "\n" : " ");
+    }
+  }
+}
+
+TEST(ShortedCrossings, of_any_chain_the_taxels_off_its_lines_are_solved) {
+  Random random(kSeed);
+  for (const support::NamedCircuit& circuit : circuits_with_faults()) {
+    const ArrayDescription array = small_array(circuit);
+    for (std::size_t trial = 0; trial < 12; ++trial) {
+      const std::vector<std::size_t> chain = random_chain(array, 2 + trial % 4, random);
+      SCOPED_TRACE(testing::Message() << circuit << ", seed " << kSeed << ", chain " << testing::PrintToString(chain));
+      const Solved solved = solve(array, chain);
+      expect_right(solved, merges_lines(circuit) ? 2e-3 : 0.05);
+      for (const std::size_t taxel : chain) {
+        EXPECT_EQ(solved.conductance.taxels[taxel], TaxelStatus::line_fault) << taxel;
+      }
+    }
+  }
+}
+
 TEST(ShortedCrossings, a_reading_that_is_missing_on_a_joined_row_costs_no_other) {
   for (const std::size_t row : {2U, 6U}) {
     const ArrayDescription array = support::reference_circuit(7, 6);
