@@ -106,6 +106,9 @@ InversionResult GroundedRows::invert(std::span<const double> ratio, std::span<do
   for (std::size_t row = 0; row < state_.rows; ++row) {
     std::copy_n(&state_.siemens[row * state_.stride], state_.cols, &siemens[row * state_.cols]);
   }
+  for (const auto& [row, col, is_second] : state_.shorted) {
+    siemens[row * state_.cols + col] = (1.0 / state_.column_part[col] - 1.0) / state_.column_ohm[col];
+  }
   if (!solved) {
     std::replace_if(
         siemens.begin(), siemens.end(), [](double value) { return !std::isfinite(value); }, 0.0);

@@ -147,21 +147,6 @@ std::vector<std::size_t> random_chain(const ArrayDescription& array, std::size_t
   return chain;
 }
 
-TEST(ShortedCrossings, zzdebug) {
-  for (const support::NamedCircuit& circuit : circuits_with_faults()) {
-    if (circuit.circuit != Circuit::divider || circuit.idle_rows != IdleRows::floating) continue;
-    const ArrayDescription array = small_array(circuit);
-    for (const std::vector<std::size_t>& chain : {std::vector<std::size_t>{36, 18}, {36, 18, 0}, {0,1,2}}) {
-    std::cout << circuit << testing::PrintToString(chain) << "\n";
-    const Solved solved = solve(array, chain);
-    for (std::size_t t = 0; t < solved.siemens.size(); ++t) {
-      std::printf("%c%8.3f%s", "?siol????"[0] + 0, solved.conductance.siemens[t] / solved.siemens[t], t % 6 == 5 ? "\n" : " ");
-    }
-    for (std::size_t t = 0; t < solved.siemens.size(); ++t) std::printf("%d%s", int(solved.conductance.taxels[t]), t % 6 == 5 ? "\n" : " ");
-    }
-  }
-}
-
 TEST(ShortedCrossings, of_any_chain_the_taxels_off_its_lines_are_solved) {
   Random random(kSeed);
   for (const support::NamedCircuit& circuit : circuits_with_faults()) {
