@@ -127,6 +127,24 @@ TEST(ShortedLineDetector, forgets_the_presses_of_a_short_that_is_found) {
   EXPECT_EQ(learned.evidence(4), before);
 }
 
+TEST(ShortedLineDetector, finds_three_rows_that_are_one) {
+  Bench bench;
+  EqualPresses learned;
+  ShortedLineDetector detector(bench.array(), learned);
+  for (int press = 0; press < 8; ++press) {
+    const std::size_t col = press % 2 == 0 ? 1 : 6;
+    bench.release();
+    bench.reading(0, col) = bench.reading(4, col) = 0.1;
+    for (const std::size_t row : {1U, 2U, 3U}) bench.reading(row, col) = 0.5;
+    bench.show_to(detector);
+    bench.release();
+    bench.show_to(detector);
+  }
+  EXPECT_EQ(bench.faults().all().size(), 2U);
+  EXPECT_TRUE(bench.faults().contains(LineFaultKind::shorted_rows, 1));
+  EXPECT_TRUE(bench.faults().contains(LineFaultKind::shorted_rows, 2));
+}
+
 /// Noise on all taxels, a press beside the stuck one, which reads `stuck_counts`.
 void read_with_noise(Bench& bench, Random& random, double stuck_counts) {
   for (std::size_t row = 0; row < 6; ++row) {

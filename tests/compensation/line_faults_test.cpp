@@ -187,6 +187,46 @@ TEST(LineFaultMonitor, finds_and_locates_every_fault_and_sees_it_heal) {
   }
 }
 
+/// So many rows and columns that shorted crossings join, each by one.
+LineFaults random_node(const ArrayDescription& array, std::size_t rows, std::size_t cols, Random& random,
+                       std::vector<std::size_t>& crossings) {
+  const std::size_t first_row = random.below(array.rows);
+  const std::size_t first_col = random.below(array.cols);
+  LineFaults faults;
+  for (std::size_t k = 0; k < rows; ++k) {
+    for (std::size_t l = 0; l < cols; ++l) {
+      const std::size_t taxel = array.index((first_row + 3 * k) % array.rows, (first_col + 5 * l) % array.cols);
+      crossings.push_back(taxel);
+      if (k == 0 || l == cols - 1) faults.shorted_taxels.push_back(array.taxel_name(taxel));
+    }
+  }
+  return faults;
+}
+
+TEST(LineFaultMonitor, names_all_crossings_of_lines_that_are_one_and_nothing_else) {
+  constexpr std::uint64_t kSeed = 55;
+  Random random(kSeed);
+  for (const IdleRows idle_rows : {IdleRows::grounded, IdleRows::floating}) {
+    for (const auto& [rows, cols] : {std::pair{1U, 3U}, {3U, 1U}, {2U, 2U}, {2U, 3U}, {3U, 3U}}) {
+      ArrayDescription array = reference_circuit(12, 12);
+      array.readout.idle_rows = idle_rows;
+      std::vector<std::size_t> crossings;
+      const LineFaults faults = random_node(array, rows, cols, random, crossings);
+      SCOPED_TRACE(testing::Message() << rows << " rows, " << cols << " columns, seed " << kSeed);
+      Rig rig(array, "multitouch", kSeed, 120, faults);
+      while (rig.next()) continue;
+      const auto present = rig.monitor().faults();
+      EXPECT_EQ(present.size(), crossings.size()) << describe(present, array);
+      for (const std::size_t taxel : crossings) {
+        const bool is_named = std::any_of(present.begin(), present.end(), [&](const LineFault& fault) {
+          return fault.kind == LineFaultKind::shorted_crossing && fault.place == taxel;
+        });
+        EXPECT_TRUE(is_named) << array.taxel_name(taxel) << " of " << describe(present, array);
+      }
+    }
+  }
+}
+
 TEST(LineFaultMonitor, names_readings_that_are_stuck_high_and_the_others_keep_theirs) {
   constexpr std::size_t kTaxel = 2 * 16 + 5;
   for (const double ratio : {1.0, 0.999, 0.9, 0.8, 0.6}) {

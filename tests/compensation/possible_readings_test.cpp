@@ -144,6 +144,30 @@ TEST(PossibleReadings, a_wide_press_is_no_short_in_any_circuit_and_load) {
   }
 }
 
+TEST(PossibleReadings, heavy_loads_on_several_rows_and_columns_join_none) {
+  constexpr std::uint64_t kSeed = 55;
+  Random random(kSeed);
+  ArrayDescription array = support::reference_circuit(10, 10);
+  for (int trial = 0; trial < 300; ++trial) {
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed << ", trial " << trial);
+    std::fill(array.readout.drive_ohm.begin(), array.readout.drive_ohm.end(), random.uniform(1.0, 30.0));
+    std::fill(array.readout.load_ohm.begin(), array.readout.load_ohm.end(), random.uniform(100.0, 300.0));
+    std::vector<double> siemens(array.taxel_count(), 1e-5);
+    for (std::size_t press = 0; press < 1 + random.below(3); ++press) {
+      const std::size_t height = 1 + random.below(10);
+      const std::size_t width = 1 + random.below(10);
+      const std::size_t row = random.below(11 - height);
+      const std::size_t col = random.below(11 - width);
+      for (std::size_t k = 0; k < height * width; ++k) {
+        siemens[array.index(row + k / width, col + k % width)] = 1.0 / random.uniform(60.0, 80.0);
+      }
+    }
+    Checked checked(array);
+    simulation::ReadoutCircuit::create(array).value().ratios(siemens, checked.ratio);
+    EXPECT_EQ(checked.invalid(), 0U);
+  }
+}
+
 TEST(Compensator, solves_a_hard_frame_after_easy_ones) {
   constexpr std::uint64_t kSeed = 5;
   Random random(kSeed);

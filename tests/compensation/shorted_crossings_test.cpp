@@ -25,16 +25,20 @@ struct Solved {
 };
 
 /// Without noise, what an array of these conductances reads with these shorted crossings.
-ConditionedFrame frame_with(const ArrayDescription& array, const std::vector<std::size_t>& shorted,
+ConditionedFrame frame_with(const ArrayDescription& array, const simulation::LineFaults& faults,
                             const std::vector<double>& siemens, double sigma_ratio) {
-  simulation::LineFaults faults;
-  for (const std::size_t taxel : shorted) faults.shorted_taxels.push_back(array.taxel_name(taxel));
   ConditionedFrame frame;
   frame.sigma_ratio = sigma_ratio;
   frame.ratio.resize(array.taxel_count());
   frame.taxels.resize(array.taxel_count());
   simulation::FaultyCircuit::create(array, faults).value().ratios(siemens, 0, frame.ratio);
   return frame;
+}
+
+simulation::LineFaults shorts_at(const ArrayDescription& array, const std::vector<std::size_t>& shorted) {
+  simulation::LineFaults faults;
+  for (const std::size_t taxel : shorted) faults.shorted_taxels.push_back(array.taxel_name(taxel));
+  return faults;
 }
 
 std::vector<LineFault> faults_at(const std::vector<std::size_t>& shorted) {
@@ -45,13 +49,12 @@ std::vector<LineFault> faults_at(const std::vector<std::size_t>& shorted) {
   return faults;
 }
 
-/// An array of 7 x 6 taxels with these shorted crossings, that the compensator knows of.
-Solved solve(const ArrayDescription& array, const std::vector<std::size_t>& shorted) {
+/// An array of 7 x 6 taxels with these faults, that the compensator knows of.
+Solved solve(const ArrayDescription& array, const simulation::LineFaults& faults, const std::vector<LineFault>& known) {
   Random random(kSeed);
   Solved solved;
   solved.siemens = support::random_siemens(array, random, 1e3, 1e5);
-  const std::vector<LineFault> known = faults_at(shorted);
-  const ConditionedFrame frame = frame_with(array, shorted, solved.siemens, 1e-6);
+  const ConditionedFrame frame = frame_with(array, faults, solved.siemens, 1e-6);
   auto compensator = Compensator::create(array).value();
   compensator.set_faults(known);
   compensator.process(frame, solved.conductance);
@@ -60,6 +63,10 @@ Solved solve(const ArrayDescription& array, const std::vector<std::size_t>& shor
   compensator.process(frame, solved.conductance);
   EXPECT_EQ(guard.count(), 0U);
   return solved;
+}
+
+Solved solve(const ArrayDescription& array, const std::vector<std::size_t>& shorted) {
+  return solve(array, shorts_at(array, shorted), faults_at(shorted));
 }
 
 /// The taxels that have a conductance have the right one. Returns how many have none.
@@ -163,11 +170,27 @@ TEST(ShortedCrossings, of_any_chain_the_taxels_off_its_lines_are_solved) {
   }
 }
 
+TEST(ShortedCrossings, of_four_neighbouring_lines_that_are_one_no_taxel_is_solved_and_all_others_are) {
+  for (const support::NamedCircuit& circuit : circuits_with_faults()) {
+    SCOPED_TRACE(testing::Message() << circuit << ", seed " << kSeed);
+    const ArrayDescription array = small_array(circuit);
+    simulation::LineFaults rows;
+    simulation::LineFaults columns;
+    rows.rows.shorted = columns.columns.shorted = {1, 2, 3};
+    std::vector<LineFault> known;
+    for (const std::size_t line : {2U, 1U, 3U}) known.push_back({.kind = LineFaultKind::shorted_rows, .place = line});
+    EXPECT_EQ(expect_right(solve(array, rows, known), 0.01), 4 * array.cols);
+    for (LineFault& fault : known) fault.kind = LineFaultKind::shorted_columns;
+    EXPECT_EQ(expect_right(solve(array, columns, known), 0.01), 4 * array.rows);
+  }
+}
+
 TEST(ShortedCrossings, a_reading_that_is_missing_on_a_joined_row_costs_no_other) {
   for (const std::size_t row : {2U, 6U}) {
     const ArrayDescription array = support::reference_circuit(7, 6);
     const std::vector<std::size_t> shorted = {array.index(2, 4), array.index(6, 4)};
-    ConditionedFrame frame = frame_with(array, shorted, std::vector<double>(array.taxel_count(), 1e-4), 1e-4);
+    ConditionedFrame frame =
+        frame_with(array, shorts_at(array, shorted), std::vector<double>(array.taxel_count(), 1e-4), 1e-4);
     frame.ratio[array.index(row, 2)] = 0.0;
     frame.taxels[array.index(row, 2)] = TaxelStatus::invalid;
     auto compensator = Compensator::create(array).value();

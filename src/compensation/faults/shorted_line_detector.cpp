@@ -178,7 +178,7 @@ ShortedLineDetector::Comparison ShortedLineDetector::compare_with_next(const Obs
     taxels += 1.0;
     if (std::abs(at.difference) > kEqualSigmas || at.largest < hardest) continue;
     if (!seen.is_pressed(taxel_on_line(array_, axis, line, place))) continue;
-    if (!stands_out(seen, axis, line, place, at.deviation)) continue;
+    if (!stands_out(seen, axis, line, place, at.deviation, faults)) continue;
     hardest = at.largest;
     found.equal_place = place;
   }
@@ -208,19 +208,39 @@ PressComparison ShortedLineDetector::compare_beside(const Observation& seen, Axi
   return press;
 }
 
-/// The pair reads differently there from the lines beside it, and much more than one of them: presses end there.
+/// The pair reads differently there from the lines beside it, and much more than one of them: presses end there. Lines
+/// that are alike everywhere may be shorted to the pair.
 bool ShortedLineDetector::stands_out(const Observation& seen, Axis axis, std::size_t line, std::size_t place,
-                                     double deviation) const noexcept {
+                                     double deviation, const FaultList& faults) const noexcept {
   const std::span<const double> ratio = seen.conditioned.ratio;
   const double own = ratio[taxel_on_line(array_, axis, line, place)];
+  const auto is_same = [&](std::size_t other) {
+    return std::abs(ratio[taxel_on_line(array_, axis, other, place)] - own) <= kDifferentSigmas * deviation;
+  };
+  std::size_t first = line;
+  std::size_t last = line + 1;
+  while (first > 0 && is_same(first - 1) && are_alike(seen, axis, first - 1, faults)) --first;
+  while (last + 1 < line_count(array_, axis) && is_same(last + 1) && are_alike(seen, axis, last, faults)) ++last;
   bool is_alone = false;
-  for (const std::size_t beside : {line - 1, line + 2}) {  // line 0 has none before it: wraps round to the largest
+  for (const std::size_t beside : {first - 1, last + 1}) {  // line 0 has none before it: wraps round to the largest
     if (beside >= line_count(array_, axis)) continue;
-    const double other = ratio[taxel_on_line(array_, axis, beside, place)];
-    if (std::abs(other - own) <= kDifferentSigmas * deviation) return false;
-    is_alone = is_alone || kStandsOut * other < own;
+    if (is_same(beside)) return false;
+    is_alone = is_alone || kStandsOut * ratio[taxel_on_line(array_, axis, beside, place)] < own;
   }
   return is_alone;
+}
+
+/// The line and the next one differ by no more than noise, all along.
+bool ShortedLineDetector::are_alike(const Observation& seen, Axis axis, std::size_t line,
+                                    const FaultList& faults) const noexcept {
+  double squares = 0.0;
+  double taxels = 0.0;
+  for (std::size_t place = 0; place < line_length(array_, axis); ++place) {
+    const PlaceComparison at = compare_at(seen, axis, line, place, faults);
+    squares += at.is_judged ? square(at.difference) : 0.0;
+    taxels += at.is_judged ? 1.0 : 0.0;
+  }
+  return taxels > 0.0 && squares <= most_by_noise(taxels);
 }
 
 }  // namespace dermis::compensation

@@ -69,7 +69,9 @@ class ShortedLineDetector {
                                 std::size_t b) const noexcept;
   void forget(Pair& pair) noexcept;
   [[nodiscard]] bool stands_out(const Observation& seen, Axis axis, std::size_t line, std::size_t place,
-                                double deviation) const noexcept;
+                                double deviation, const FaultList& faults) const noexcept;
+  [[nodiscard]] bool are_alike(const Observation& seen, Axis axis, std::size_t line,
+                               const FaultList& faults) const noexcept;
 
   const ArrayDescription& array_;
   EqualPresses& equal_presses_;
