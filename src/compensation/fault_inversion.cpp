@@ -112,6 +112,7 @@ void FaultInversion::add_crossings(CrosstalkInversion& healthy) {
   crossings_.are_kept = !are_solved && !crossings_.are_corrected;
   lines_are_faulty_ = lines_are_faulty_ || crossings_.are_corrected;
   if (has_crossings_) mask_joined(are_solved);
+  if (array_.readout.idle_rows == IdleRows::floating && circuits_) put_in_first_rows();
   for (const std::size_t taxel : crossings_.spanning) {
     if (crossings_.are_corrected) hide_sensed_line(taxel);
     if (!circuits_) continue;
@@ -147,6 +148,14 @@ void FaultInversion::mask_joined(bool are_solved) noexcept {
     const bool is_second = (lines_.crosses(row) && lines_.first_of(row) != row) ||
                            (lines_.crosses(array_.rows + col) && !lines_.is_first_column(col));
     if (!are_solved && is_second && !is_crossing) crossings_.in_first.push_back(taxel);
+  }
+}
+
+/// Where idle rows float, rows that are one are the first of them, and the others nothing.
+void FaultInversion::put_in_first_rows() noexcept {
+  for (std::size_t taxel = 0; taxel < is_.masked.size(); ++taxel) {
+    const std::size_t row = taxel / array_.cols;
+    if (!lines_.crosses(row) && lines_.first_of(row) != row) crossings_.in_first.push_back(taxel);
   }
 }
 
@@ -288,7 +297,8 @@ double FaultInversion::correct(bool first) noexcept {
   double square = 0.0;
   for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) {
     const double known = missing_.is_missing(taxel) ? 0.0 : measured_[taxel] - correction_.faulty_ratio[taxel];
-    const double difference = correction_.healthy_ratio[taxel] + known - equivalent_[taxel];
+    const bool is_kept = std::isnan(equivalent_[taxel]);
+    const double difference = is_kept ? 0.0 : correction_.healthy_ratio[taxel] + known - equivalent_[taxel];
     change = std::max(change, std::abs(difference));
     sum += difference;
     const double turn = difference - correction_.last_difference[taxel];

@@ -104,6 +104,7 @@ class FaultInversion {
   void add(const LineFault& fault);
   void find_crossings() noexcept;
   void mask_joined(bool are_solved) noexcept;
+  void put_in_first_rows() noexcept;
   void hide_sensed_line(std::size_t taxel) noexcept;
   void add_crossings(CrosstalkInversion& healthy);
   void add_to_circuit(const LineFault& fault, LumpedCircuit& circuit) const;
