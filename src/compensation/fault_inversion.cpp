@@ -136,7 +136,7 @@ void FaultInversion::find_crossings() noexcept {
   }
 }
 
-/// Of the taxels of lines that are one no reading tells, nor of the two between two nodes.
+/// No reading tells of the taxels of lines that are one, nor of the two between two nodes.
 void FaultInversion::mask_joined(bool are_solved) noexcept {
   for (std::size_t taxel = 0; taxel < is_.masked.size(); ++taxel) {
     const std::size_t row = taxel / array_.cols;

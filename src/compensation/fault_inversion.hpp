@@ -23,10 +23,11 @@ namespace dermis::compensation {
 ///
 /// Taxels whose conductance no reading determines (on a silent line, stuck, without a reading in this frame) are
 /// estimated (MissingTaxels). Without faults of lines, the healthy inversion keeps those estimates. An open row still
-/// couples the columns through them: eliminating it adds -g g^T / sum(g) to their equations. Shorted crossings are in
-/// both circuits: the inversion solves them, or keeps their taxels at a large conductance. For resistive lines,
-/// switches, real amplifiers, `none` and arrays of more than 256 lines there is no faulty circuit. There the readings
-/// of faulty lines are replaced by those of their neighbours, and the rest is solved as if healthy.
+/// couples the columns through them: eliminating it adds -g g^T / sum(g) to their equations. Lines that
+/// touch are one node with all that either touches. Shorted crossings are in both circuits: the inversion solves them,
+/// or keeps their taxels at a large conductance. For resistive lines, switches, real amplifiers, `none` and arrays of
+/// more than 256 lines there is no faulty circuit. There the readings of faulty lines are replaced by those of their
+/// neighbours, and the rest is solved as if healthy.
 class FaultInversion {
  public:
   FaultInversion(const ArrayDescription& array, double tolerance_ratio, const ReferenceConductances& references);

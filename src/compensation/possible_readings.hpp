@@ -26,8 +26,11 @@ enum class ReadingVerdict { possible, unknown, shorted, impossible };
 ///
 ///   Rd_k + 1 / G_kj  =  RL_j (1 - sum_k' r_k'j) / r_kj
 ///
-/// and with others it is near that while drivers are strong. A reading that was taken away in the last frame must stay
-/// further from its limits.
+/// and with others it is near that while drivers are strong. A driven and a sensed line are one node if both stand at
+/// the same voltage with all driven, U_k = 1 - Rd_k sum_j I_kj and W_j = sum_k r_kj, whatever else conducts. Taxels of
+/// many ohm can have that by chance, too. So each driven line of the node must be one with each sensed line, and most
+/// of their current must be their own: then the taxels between them are a few ohm. A reading that was taken away in the
+/// last frame must stay further from its limits.
 class PossibleReadings {
  public:
   explicit PossibleReadings(const ArrayDescription& array);

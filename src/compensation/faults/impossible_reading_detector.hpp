@@ -19,7 +19,7 @@ namespace dermis::compensation {
 ///
 /// Where idle rows are grounded, a taxel that reads T leaves the others of its column 1 - T of what they read. A high
 /// reading beside which most of the column reads as unloaded is impossible, too; that takes twenty frames. At most
-/// eight readings are named at once: more are a fault of a line, or of the array.
+/// twelve readings are named at once: more are a fault of a line, or of the array.
 class ImpossibleReadingDetector {
  public:
   explicit ImpossibleReadingDetector(const ArrayDescription& array);
