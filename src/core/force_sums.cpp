@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/core/force_sums.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -19,6 +20,10 @@ constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 double square(double value) {
   return value * value;
+}
+
+double sum_of_squares(std::span<const double> values) {
+  return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
 }
 
 /// The total of a frame with forces and standard deviations alone: errors count as independent.
@@ -101,6 +106,7 @@ TotalForce material_total(const ForceSums& sums, Region region, ConductanceSums&
     conductances.add(taxel, static_cast<double>(sums.newtons_per_siemens[taxel]));
   }
   variance += square(per_celsius * sums.temperature_sigma) + square(sums.gain_sigma * total.newtons);
+  if (sums.gains) variance += sums.gains->variance(sums.newtons, region);
   total.sigma_newtons = std::sqrt(variance);
   return total;
 }
@@ -117,6 +123,33 @@ void find_signed_totals(const ForceSums& sums, std::span<const Region> regions, 
 }
 
 }  // namespace
+
+double GainErrors::variance(std::span<const float> newtons, std::span<const std::size_t> taxels) const noexcept {
+  thread_local std::vector<double> of_rows;
+  thread_local std::vector<double> of_columns;
+  of_rows.assign(sigma.size() / cols, 0.0);
+  of_columns.assign(cols, 0.0);
+  double of_sheet = 0.0;
+  double own = 0.0;
+  for (const std::size_t taxel : taxels) {
+    if (std::isnan(newtons[taxel])) continue;
+    const double shift = static_cast<double>(sigma[taxel]) * static_cast<double>(newtons[taxel]);
+    of_rows[taxel / cols] += shift;
+    of_columns[taxel % cols] += shift;
+    of_sheet += shift;
+    own += square(shift);
+  }
+  return sheet_share * square(of_sheet) + row_share * sum_of_squares(of_rows) +
+         column_share * sum_of_squares(of_columns) + (1.0 - sheet_share - row_share - column_share) * own;
+}
+
+bool GainErrors::is_consistent(std::size_t taxels) const noexcept {
+  if (sigma.empty()) return true;
+  const auto is_sigma = [](float value) { return std::isfinite(value) && value >= 0.0F; };
+  const double shared = sheet_share + row_share + column_share;
+  return sigma.size() == taxels && std::all_of(sigma.begin(), sigma.end(), is_sigma) && cols > 0 &&
+         taxels % cols == 0 && sheet_share >= 0.0 && row_share >= 0.0 && column_share >= 0.0 && shared <= 1.0;
+}
 
 TotalForce ForceFrame::total() const noexcept {
   thread_local std::vector<std::size_t> all;

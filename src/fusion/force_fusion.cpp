@@ -86,8 +86,8 @@ bool ForceNetworks::is_consistent() const noexcept {
          temperature_sigma_celsius >= 0.0 && all(offset_sigma_siemens, taxels, is_not_negative) &&
          all(relative_sigma, kSigmaKnots * taxels, is_positive) &&
          std::all_of(sigma_knots_newtons.begin(), sigma_knots_newtons.end(), is_positive) &&
-         sigma_knots_newtons[0] < sigma_knots_newtons[1] && tables.is_consistent(taxels) &&
-         rises_with_conductance(shape, parameters, taxels);
+         sigma_knots_newtons[0] < sigma_knots_newtons[1] && gain_errors.is_consistent(taxels) &&
+         tables.is_consistent(taxels) && rises_with_conductance(shape, parameters, taxels);
 }
 
 float ForceNetworks::sigma_place(float log_newtons) const noexcept {
@@ -99,6 +99,8 @@ float ForceNetworks::sigma_place(float log_newtons) const noexcept {
 
 ForceFusion::ForceFusion(ForceNetworks networks)
     : networks_(std::move(networks)),
+      gain_errors_(networks_.gain_errors.sigma.empty() ? nullptr
+                                                       : std::make_shared<const GainErrors>(networks_.gain_errors)),
       bank_(networks_.shape, networks_.taxel_count(), networks_.parameters),
       temperatures_{{},
                     std::vector<double>(networks_.taxel_count()),
@@ -162,14 +164,22 @@ void ForceFusion::find_temperatures(const ConductanceFrame& conductance, ForceFr
   temperatures_.of_array = temperature(conductance.temperature_celsius, force);
   std::fill(temperatures_.offset.begin(), temperatures_.offset.end(), temperatures_.of_array.offset);
   std::fill(temperatures_.sigma.begin(), temperatures_.sigma.end(), static_cast<float>(temperatures_.of_array.sigma));
-  std::fill(temperatures_.unlearned_variance.begin(), temperatures_.unlearned_variance.end(),
+  std::fill(temperatures_.gain_variance.begin(), temperatures_.gain_variance.end(),
             temperatures_.of_array.unlearned_variance());
-  if (conductance.taxel_celsius.size() != taxels) return;
+  if (conductance.taxel_celsius.size() == taxels) find_own_temperatures(conductance, force);
+  if (!gain_errors_) return;
+  for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
+    temperatures_.gain_variance[taxel] += gain_errors_->sigma[taxel] * gain_errors_->sigma[taxel];
+  }
+}
+
+void ForceFusion::find_own_temperatures(const ConductanceFrame& conductance, ForceFrame& force) noexcept {
+  const std::size_t taxels = networks_.taxel_count();
   for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
     const Temperature own = temperature(conductance.celsius(taxel), force);
     temperatures_.offset[taxel] = own.offset;
     temperatures_.sigma[taxel] = static_cast<float>(own.sigma);
-    temperatures_.unlearned_variance[taxel] = own.unlearned_variance();
+    temperatures_.gain_variance[taxel] = own.unlearned_variance();
     temperatures_.of_array.sigma = std::max(temperatures_.of_array.sigma, own.sigma);
     temperatures_.of_array.outside = std::max(std::abs(temperatures_.of_array.outside), std::abs(own.outside));
   }
@@ -256,13 +266,14 @@ void ForceFusion::compute_forces(ForceFrame& force) noexcept {
   if (uses_temperature()) {
     sources.temperature_per_celsius = static_cast<float>(1.0 / networks_.unloaded.temperature.half_span_celsius);
   }
-  sources.unlearned_variance = temperatures_.unlearned_variance;
+  sources.gain_variance = temperatures_.gain_variance;
   sources.log_first_knot = first;
   sources.knots_per_log = static_cast<float>(kSigmaKnots - 1) / (last - first);
   ForceSums& sums = force.sums;
   forces(sources, {force.newtons, force.sigma_newtons, noise_newtons_, sums.newtons, sums.own_variance,
                    sums.newtons_per_siemens, sums.newtons_per_celsius});
   sums.temperature_sigma = temperatures_.of_array.sigma;
+  sums.gains = gain_errors_;
   sums.gain_sigma = std::sqrt(static_cast<double>(temperatures_.of_array.unlearned_variance()));
 }
 

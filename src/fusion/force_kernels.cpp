@@ -104,7 +104,7 @@ void compute_forces(const ForceSources sources, const FusedForces fused) {
     const auto law_below = hn::Mul(hn::Set(d, kExponentSigmaBelow), below);
     const auto of_material = hn::Add(material_variance(d, sources, log_reached, first), load(sources.table_variance));
     const auto of_law = hn::MulAdd(law_below, law_below, of_material);
-    auto variance = hn::Add(of_law, load(sources.unlearned_variance));
+    auto variance = hn::Add(of_law, load(sources.gain_variance));
     variance = hn::MulAdd(noise, noise, variance);
     variance = hn::MulAdd(drift, drift, variance);
     const auto at_reached = hn::Exp(d, hn::Min(log_reached, hn::Set(d, kLargestLog)));

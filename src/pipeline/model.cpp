@@ -26,6 +26,7 @@ using preprocessing::SupplyRange;
 
 constexpr const char* kFormatWithoutSigma = "dermis model 1";
 constexpr const char* kTemperatureGap = "networks.temperature_gap_celsius";
+constexpr const char* kGainErrors = "gain_errors";
 constexpr const char* kProvenancePrefix = "provenance.";
 constexpr std::size_t kMaxBaselines = 16;
 
@@ -83,6 +84,27 @@ fusion::ForceTables get_tables(const SafetensorsFile& file, TensorReader& reader
   return tables;
 }
 
+/// Only where there are some: files without them stay as they always were.
+void put_gain_errors(SafetensorsFile& file, const GainErrors& errors) {
+  if (errors.sigma.empty()) return;
+  file.metadata[kGainErrors] = "sigma";
+  put_tensor(file, "gain_errors.sigma", {errors.sigma.size()}, errors.sigma);
+  put_tensor<double>(file, "gain_errors.shares", {3}, {errors.sheet_share, errors.row_share, errors.column_share});
+}
+
+GainErrors get_gain_errors(std::size_t taxels, std::size_t cols, TensorReader& reader) {
+  GainErrors errors;
+  errors.cols = cols;
+  std::vector<double> shares;
+  reader.get("gain_errors.sigma", {taxels}, errors.sigma);
+  reader.get("gain_errors.shares", {3}, shares);
+  if (shares.size() != 3) return errors;
+  errors.sheet_share = shares[0];
+  errors.row_share = shares[1];
+  errors.column_share = shares[2];
+  return errors;
+}
+
 void put_networks(SafetensorsFile& file, const ForceNetworks& networks) {
   const std::size_t taxels = networks.taxel_count();
   file.metadata["networks.inputs"] = std::to_string(networks.shape.inputs);
@@ -104,6 +126,7 @@ void put_networks(SafetensorsFile& file, const ForceNetworks& networks) {
                     {networks.sigma_knots_newtons.begin(), networks.sigma_knots_newtons.end()});
   put_tensor(file, "networks.parameters", {networks.shape.parameter_count(), taxels}, networks.parameters);
   put_tables(file, networks.tables);
+  put_gain_errors(file, networks.gain_errors);
 }
 
 ForceNetworks get_networks(const SafetensorsFile& file, std::size_t taxels, TensorReader& reader) {
@@ -270,6 +293,9 @@ Result<Model> read_model(const std::string& path) {
   const std::size_t taxels = model.array.taxel_count();
   TensorReader reader(*file);
   model.networks = get_networks(*file, taxels, reader);
+  if (file->metadata.contains(kGainErrors)) {
+    model.networks.gain_errors = get_gain_errors(taxels, model.array.cols, reader);
+  }
   const std::size_t baselines = metadata_count(*file, "baselines");
   if (metadata(*file, "baselines") != std::to_string(baselines)) {
     return bad_input(path + ": does not say how many baselines it holds");

@@ -21,6 +21,7 @@ namespace {
 
 constexpr std::size_t kLines = 4;
 constexpr std::size_t kTaxels = kLines * kLines;
+constexpr FrameShape kShape{kLines, kLines};
 
 KnownPress press_of(std::size_t taxel, double log_ratio, double sigma) {
   return {{taxel}, {1.0}, log_ratio, sigma};
@@ -28,19 +29,19 @@ KnownPress press_of(std::size_t taxel, double log_ratio, double sigma) {
 
 TEST(GainChange, one_weight_moves_the_whole_sheet_as_far_as_it_is_sure) {
   const std::vector<KnownPress> sure{press_of(3, -0.095, 0.005)};
-  const GainChange change = change_of(sure, kTaxels);
+  const GainChange change = change_of(sure, kShape);
   EXPECT_NEAR(change.sheet, -0.095, 0.001);
   EXPECT_NEAR(change.sheet_sigma, 0.005, 1e-4);
   EXPECT_EQ(change.spread, 0.0);
   for (const double taxel : change.taxels) EXPECT_EQ(taxel, change.sheet);
   const std::vector<KnownPress> unsure{press_of(3, -0.095, 0.1)};
-  EXPECT_NEAR(change_of(unsure, kTaxels).sheet, -0.095 / 2.0, 1e-9);  // as likely as what was known before
+  EXPECT_NEAR(change_of(unsure, kShape).sheet, -0.095 / 2.0, 1e-9);  // as likely as what was known before
 }
 
 TEST(GainChange, some_weights_tell_taxels_apart_and_leave_the_others_with_the_sheet) {
   std::vector<KnownPress> presses;
   for (std::size_t taxel = 0; taxel < 8; ++taxel) presses.push_back(press_of(taxel, taxel % 2 == 0 ? 0.2 : 0.0, 0.01));
-  const GainChange change = change_of(presses, kTaxels);
+  const GainChange change = change_of(presses, kShape);
   EXPECT_NEAR(change.sheet, 0.1, 0.02);
   EXPECT_NEAR(change.spread, 0.1, 0.03);
   for (std::size_t taxel = 0; taxel < 8; ++taxel) EXPECT_NEAR(change.taxels[taxel], taxel % 2 == 0 ? 0.2 : 0.0, 0.01);
@@ -52,7 +53,7 @@ TEST(GainChange, differences_within_the_scatter_of_presses_leave_the_taxels_alik
   for (std::size_t taxel = 0; taxel < 8; ++taxel) {
     presses.push_back(press_of(taxel, taxel % 2 == 0 ? 0.13 : 0.07, 0.06));
   }
-  const GainChange change = change_of(presses, kTaxels);
+  const GainChange change = change_of(presses, kShape);
   EXPECT_EQ(change.spread, 0.0);
   for (const double taxel : change.taxels) EXPECT_EQ(taxel, change.sheet);
 }
@@ -72,7 +73,7 @@ Errors errors_of(std::size_t presses, double common, double spread, double sigma
     for (double& gain : gains) gain = change + spread * random.normal();
     std::vector<KnownPress> known;
     for (std::size_t k = 0; k < presses; ++k) known.push_back(press_of(k, gains[k] + sigma * random.normal(), sigma));
-    const GainChange found = change_of(known, kTaxels);
+    const GainChange found = change_of(known, kShape);
     for (std::size_t k = 0; k < kTaxels; ++k) {
       errors.before += gains[k] * gains[k];
       errors.after += std::pow(gains[k] - found.taxels[k], 2);
@@ -95,6 +96,120 @@ TEST(GainChange, few_weights_make_aged_sheets_better_and_not_worse) {
         last = errors.after / errors.before;
       }
     }
+  }
+}
+
+/// How gains of a sheet change, as standard deviations.
+struct SheetChange {
+  double sheet = 0.1;
+  double rows = 0.0;
+  double columns = 0.0;
+  double taxels = 0.0;
+
+  [[nodiscard]] std::vector<double> play(const FrameShape& shape, Random& random) const {
+    const double common = sheet * random.normal();
+    std::vector<double> of_rows(shape.rows);
+    std::vector<double> of_columns(shape.cols);
+    for (double& row : of_rows) row = rows * random.normal();
+    for (double& column : of_columns) column = columns * random.normal();
+    std::vector<double> gains;
+    for (std::size_t k = 0; k < shape.taxel_count(); ++k) {
+      gains.push_back(common + of_rows[k / shape.cols] + of_columns[k % shape.cols] + taxels * random.normal());
+    }
+    return gains;
+  }
+};
+
+/// Shares of errors within one and two standard deviations, in per cent.
+struct Covered {
+  double taxels_1 = 0.0;
+  double taxels_2 = 0.0;
+  double sums_1 = 0.0;
+  double sums_2 = 0.0;
+};
+
+/// Of taxels, and of sums over squares of 3 x 3, on 10 x 10 taxels. Each press lies on another row and column.
+Covered covered(const SheetChange& by, std::size_t presses, Random& random) {
+  constexpr FrameShape kSheet{10, 10};
+  constexpr double kSigma = 0.007;
+  constexpr int kSheets = 300;
+  Covered covered;
+  for (int sheet = 0; sheet < kSheets; ++sheet) {
+    const std::vector<double> gains = by.play(kSheet, random);
+    std::vector<KnownPress> known;
+    for (std::size_t k = 0; k < presses; ++k) {
+      const std::size_t taxel = (k % 10) * 10 + (3 * k + k / 10) % 10;
+      known.push_back(press_of(taxel, gains[taxel] + kSigma * random.normal(), kSigma));
+    }
+    const GainChange found = change_of(known, kSheet);
+    const auto count = [&](double error, double sigma, double& one, double& two) {
+      one += std::abs(error) < sigma ? 100.0 / kSheets : 0.0;
+      two += std::abs(error) < 2.0 * sigma ? 100.0 / kSheets : 0.0;
+    };
+    const std::size_t taxel = static_cast<std::size_t>(random.uniform() * 100.0);
+    const double sigma = std::hypot(kSigma, found.left.sigma[taxel]);
+    count(found.taxels[taxel] - gains[taxel] + kSigma * random.normal(), sigma, covered.taxels_1, covered.taxels_2);
+    const std::vector<float> newtons(kSheet.taxel_count(), 1.0F);
+    std::vector<std::size_t> square;
+    double error = 0.0;
+    const std::size_t corner = static_cast<std::size_t>(random.uniform() * 8.0) * 11;
+    for (std::size_t k = 0; k < 9; ++k) {
+      square.push_back(corner + k / 3 * 10 + k % 3);
+      error += found.taxels[square.back()] - gains[square.back()];
+    }
+    count(error, std::sqrt(found.left.variance(newtons, square)), covered.sums_1, covered.sums_2);
+  }
+  return covered;
+}
+
+TEST(GainChange, what_weights_did_not_mend_is_in_the_standard_deviations) {
+  constexpr std::uint64_t kSeed = 9;
+  SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+  Random random(kSeed);
+  const std::vector<SheetChange> changes{{.rows = 0.1}, {.columns = 0.1}, {.taxels = 0.1}, {.rows = 0.03}};
+  for (const SheetChange& change : changes) {
+    for (const std::size_t presses : {5U, 10U, 30U}) {
+      const Covered share = covered(change, presses, random);
+      SCOPED_TRACE(testing::Message() << change.rows << " " << change.columns << " " << change.taxels << ", " << presses
+                                      << " presses: " << share.taxels_1 << "/" << share.taxels_2 << ", sums "
+                                      << share.sums_1 << "/" << share.sums_2);
+      EXPECT_GT(share.taxels_1, 58.0);
+      EXPECT_GT(share.taxels_2, 87.0);
+      EXPECT_GT(share.sums_1, 55.0);
+      EXPECT_GT(share.sums_2, 85.0);
+      EXPECT_LT(share.taxels_1, 80.0);
+    }
+  }
+}
+
+TEST(GainChange, weights_on_a_sheet_that_has_not_changed_widen_it_by_no_more_than_they_scatter) {
+  constexpr std::uint64_t kSeed = 10;
+  SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+  Random random(kSeed);
+  double sum = 0.0;
+  for (int sheet = 0; sheet < 200; ++sheet) {
+    std::vector<KnownPress> known;
+    for (std::size_t k = 0; k < 5; ++k) known.push_back(press_of(3 * k, 0.01 * random.normal(), 0.01));
+    sum += std::pow(change_of(known, kShape).left.sigma[1], 2) / 200.0;
+  }
+  EXPECT_LT(std::sqrt(sum), 0.012);
+}
+
+TEST(GainChange, rows_that_weights_prove_are_mended_where_nothing_pressed) {
+  constexpr std::uint64_t kSeed = 11;
+  SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+  Random random(kSeed);
+  const SheetChange by_rows{.rows = 0.1};
+  const std::vector<double> gains = by_rows.play(kShape, random);
+  std::vector<KnownPress> known;
+  for (const std::size_t taxel : {0U, 1U, 2U, 4U, 6U, 7U, 8U, 9U, 11U, 12U, 13U, 15U}) {
+    known.push_back(press_of(taxel, gains[taxel] + 0.005 * random.normal(), 0.005));
+  }
+  const GainChange found = change_of(known, kShape);
+  EXPECT_GE(found.row_share, 0.9);
+  for (const std::size_t taxel : {3U, 5U, 10U, 14U}) {
+    EXPECT_NEAR(found.taxels[taxel], gains[taxel], 0.02);
+    EXPECT_LT(found.left.sigma[taxel], 0.06F);
   }
 }
 
@@ -210,6 +325,23 @@ TEST(Recalibration, weights_on_several_taxels_mend_each) {
   ASSERT_TRUE(made) << made.error().message;
   EXPECT_EQ(made->taxels, 8U);
   for (std::size_t k = 0; k < 8; ++k) EXPECT_NEAR(made->model.networks.gain[k] * played.gains[k], 1.0, 0.01);
+}
+
+TEST(Recalibration, writes_what_is_left_into_the_model_and_forgets_it_when_weights_agree) {
+  PlayedPresses played;
+  for (std::size_t k = 0; k < kTaxels; ++k) played.gains[k] = (k * 7) % 3 == 0 ? 1.12 : 0.9;
+  for (const std::size_t k : {0U, 5U, 10U, 15U, 2U}) played.weigh(k, 5.0);
+  const Result<Recalibration> made = recalibrate(played.model, played.frames, played.loads);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_GT(made->model.networks.gain_errors.sigma[7], 0.06F);
+  EXPECT_LT(made->model.networks.gain_errors.sigma[5], 0.02F);
+  EXPECT_NE(describe(*made).find("forces are"), std::string::npos) << describe(*made);
+
+  PlayedPresses one;
+  one.weigh(7, 5.0);
+  const Result<Recalibration> with_one = recalibrate(made->model, one.frames, one.loads);
+  ASSERT_TRUE(with_one);
+  EXPECT_GE(with_one->model.networks.gain_errors.sigma[7], made->model.networks.gain_errors.sigma[7]);
 }
 
 TEST(Recalibration, a_press_with_several_labels_is_one_and_two_presses_in_a_place_are_two) {

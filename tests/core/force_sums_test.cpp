@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -51,6 +52,48 @@ TEST(ForceSums, noise_below_zero_counts) {
   EXPECT_DOUBLE_EQ(total.newtons, 3.5);
   EXPECT_NEAR(total.sigma_newtons, 0.5, 1e-7);
   EXPECT_EQ(total.left_out, 0U);
+}
+
+/// Variance of the sum of two taxels of 3 and 1 N whose gains are each wrong by 10 %.
+double variance_of_pair(std::size_t first, std::size_t second, const GainErrors& shares) {
+  GainErrors errors = shares;
+  errors.sigma.assign(6, 0.1F);
+  errors.cols = 3;
+  std::vector<float> newtons(6);
+  newtons[first] = 3.0F;
+  newtons[second] = 1.0F;
+  return errors.variance(newtons, std::vector<std::size_t>{first, second});
+}
+
+TEST(GainErrors, add_up_where_a_line_shares_them) {
+  const GainErrors own;
+  GainErrors rows;
+  rows.row_share = 1.0;
+  GainErrors columns;
+  columns.column_share = 1.0;
+  GainErrors sheet;
+  sheet.sheet_share = 1.0;
+  GainErrors mixed;
+  mixed.sheet_share = mixed.row_share = mixed.column_share = 0.25;
+  const std::size_t in_row = 1;
+  const std::size_t in_column = 3;
+  EXPECT_NEAR(variance_of_pair(0, in_row, own), 0.1, 1e-7);
+  EXPECT_NEAR(variance_of_pair(0, in_row, rows), 0.16, 1e-7);
+  EXPECT_NEAR(variance_of_pair(0, in_column, rows), 0.1, 1e-7);
+  EXPECT_NEAR(variance_of_pair(0, in_column, columns), 0.16, 1e-7);
+  EXPECT_NEAR(variance_of_pair(0, in_row, columns), 0.1, 1e-7);
+  EXPECT_NEAR(variance_of_pair(0, 4, sheet), 0.16, 1e-7);
+  EXPECT_NEAR(variance_of_pair(0, in_row, mixed), 0.13, 1e-7);
+}
+
+TEST(ForceSums, errors_of_gains_widen_the_total) {
+  ForceFrame force = signed_frame();
+  auto errors = std::make_shared<GainErrors>();
+  errors->sigma = {0.1F, 0.1F, 0.1F};
+  errors->cols = 3;
+  errors->row_share = 1.0;
+  force.sums.gains = errors;
+  EXPECT_NEAR(std::pow(force.total().sigma_newtons, 2), 0.25 + std::pow(0.1 * 3.5, 2), 1e-6);
 }
 
 TEST(ForceSums, a_region_is_the_sum_of_its_taxels) {

@@ -614,6 +614,19 @@ TEST(ForceNetworks, every_broken_field_is_found) {
       {"offset sigma negative", [](auto& n) { n.offset_sigma_siemens[1] = -1e-9F; }},
       {"offset sigma size", [](auto& n) { n.offset_sigma_siemens.pop_back(); }},
       {"relative sigma 0", [](auto& n) { n.relative_sigma[1] = 0.0F; }},
+      {"gain error NaN",
+       [](auto& n) {
+         n.gain_errors = {std::vector<float>(n.taxel_count(), kNanF), 1};
+       }},
+      {"gain errors of other taxels",
+       [](auto& n) {
+         n.gain_errors = {{0.1F, 0.1F, 0.1F, 0.1F, 0.1F}, 1};
+       }},
+      {"gain errors without columns", [](auto& n) { n.gain_errors.sigma.assign(n.taxel_count(), 0.1F); }},
+      {"more shares than a whole",
+       [](auto& n) {
+         n.gain_errors = {std::vector<float>(n.taxel_count(), 0.1F), 1, 0.5, 0.5, 0.5};
+       }},
       {"relative sigma NaN", [](auto& n) { n.relative_sigma[1] = kNanF; }},
       {"relative sigma size", [](auto& n) { n.relative_sigma.pop_back(); }},
       {"sigma knots not rising",

@@ -55,6 +55,7 @@ Model make_model() {
   model.array.readout.drive_error_ohm = {0.5, 1.0 / 3.0};
   model.array.readout.drive_error_correlation = 0.25;
   model.array.readout.load_ohm = {200.0, 201.25, 1.0 / 3.0};
+  model.networks.gain_errors = {{0.1F, 0.0F, 0.01F, 0.2F, 1.0F / 3.0F, 0.05F}, 3, 0.25, 1.0 / 3.0, 0.125};
   model.array.readout.adc_bits = 14;
   model.array.readout.adc_noise_counts = 1.0 / 3.0;
   model.array.readout.supply_noise = 1.0 / 700.0;
@@ -112,6 +113,7 @@ void expect_equal(const Model& a, const Model& b) {
   EXPECT_EQ(a.networks.offset_sigma_siemens, b.networks.offset_sigma_siemens);
   EXPECT_EQ(a.networks.relative_sigma, b.networks.relative_sigma);
   EXPECT_EQ(a.networks.sigma_knots_newtons, b.networks.sigma_knots_newtons);
+  EXPECT_EQ(a.networks.gain_errors, b.networks.gain_errors);
   EXPECT_EQ(a.networks.tables.taxels, b.networks.tables.taxels);
   EXPECT_EQ(a.networks.tables.knots, b.networks.tables.knots);
   EXPECT_EQ(a.networks.tables.siemens, b.networks.tables.siemens);

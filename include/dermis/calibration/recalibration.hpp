@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "dermis/core/force_sums.hpp"
+#include "dermis/core/frame_source.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/loads.hpp"
 #include "dermis/core/result.hpp"
@@ -27,18 +29,26 @@ struct GainChange {
   double sheet = 0.0;          ///< Of all taxels,
   double sheet_sigma = 0.0;    ///< and its standard deviation.
   double spread = 0.0;         ///< Standard deviation over the taxels besides; 0: not distinguished.
+  double row_share = 0.0;      ///< Share of its square that rows were found to have in common,
+  double column_share = 0.0;   ///< and columns.
   std::vector<double> taxels;  ///< Change of each taxel, that of the sheet included [taxels].
+  GainErrors left;             ///< How wrong `taxels` may still be.
 };
 
 /// Derives the change of gains from presses. Each taxel has changed by x + y: x is common to the sheet, 0 ± 0.1 before
 /// any press; y is its own, 0 ± spread. The most likely values are those of a linear model (Gauss and Markov; kriging).
-/// Little evidence moves a gain little, and a taxel that nothing pressed gets x. The spread is the likeliest one, and 0
-/// with fewer than 5 presses or pressed taxels. Deterministic, thread-safe.
-[[nodiscard]] GainChange change_of(std::span<const KnownPress> presses, std::size_t taxels);
+/// Little evidence moves a gain little, and a taxel that nothing pressed gets x. The spread is the root mean square of
+/// those that the presses leave likely. It is 0 where none makes the presses likelier, and with fewer than 3 presses or
+/// pressed taxels.
+///
+/// Parts of y may be those of rows or columns. They are fitted if presses foretell others better by it, by 6 in the
+/// logarithm of the odds (leave-one-out). Otherwise y is each taxel's own, and `left` shares the spread between rows,
+/// columns and taxels as likely as each is. Deterministic, thread-safe.
+[[nodiscard]] GainChange change_of(std::span<const KnownPress> presses, const FrameShape& shape);
 
 /// A model with gains of today.
 struct Recalibration {
-  pipeline::Model model;  ///< The model with other gains; its provenance says why.
+  pipeline::Model model;  ///< The model with other gains and their errors; its provenance says why.
   GainChange change;
   std::size_t presses = 0;
   std::size_t taxels = 0;    ///< That were pressed.

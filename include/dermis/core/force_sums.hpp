@@ -49,17 +49,35 @@ class CircuitErrors {
                          std::span<double> variances) const noexcept = 0;
 };
 
+/// Relative errors of gains that stay as they are from frame to frame.
+struct GainErrors {
+  std::vector<float> sigma;   ///< Standard deviation of each gain [taxels]; empty: none is known.
+  std::size_t cols = 0;       ///< Of the array; a taxel is row * cols + col.
+  double sheet_share = 0.0;   ///< Share of the variance that all gains have in common,
+  double row_share = 0.0;     ///< those of a row,
+  double column_share = 0.0;  ///< and those of a column; the rest is each taxel's own.
+
+  bool operator==(const GainErrors&) const = default;
+
+  /// Of the sum of `newtons` over `taxels` [N^2]. Allocates nothing after the first call of a thread.
+  [[nodiscard]] double variance(std::span<const float> newtons, std::span<const std::size_t> taxels) const noexcept;
+
+  /// Empty, or of `taxels` finite numbers of at least 0, with shares of a whole.
+  [[nodiscard]] bool is_consistent(std::size_t taxels) const noexcept;
+};
+
 /// The data that sums of forces need beside the forces. Each vector has the size taxels, or all are empty.
 ///
 /// Forces are cut at zero, so the noise of unloaded taxels adds up in their sum. Here the law continues below zero,
 /// F(-e) = -F(e), and noise of either sign cancels.
 struct ForceSums {
-  std::vector<float> newtons;              ///< Signed force [N]; NaN where there is none.
-  std::vector<float> own_variance;         ///< Variance that taxels do not share: material, zero [N^2].
-  std::vector<float> newtons_per_siemens;  ///< d newtons / d conductance [N/S].
-  std::vector<float> newtons_per_celsius;  ///< d newtons / d temperature at a fixed conductance [N/C].
-  double temperature_sigma = 0.0;          ///< Standard deviation of the temperature [C].
-  double gain_sigma = 0.0;                 ///< Relative standard deviation that all forces share.
+  std::vector<float> newtons;               ///< Signed force [N]; NaN where there is none.
+  std::vector<float> own_variance;          ///< Variance that taxels do not share: material, zero [N^2].
+  std::vector<float> newtons_per_siemens;   ///< d newtons / d conductance [N/S].
+  std::vector<float> newtons_per_celsius;   ///< d newtons / d temperature at a fixed conductance [N/C].
+  double temperature_sigma = 0.0;           ///< Standard deviation of the temperature [C].
+  double gain_sigma = 0.0;                  ///< Relative standard deviation that all forces share.
+  std::shared_ptr<const GainErrors> gains;  ///< Null: none are known.
   ConductanceErrors conductances;
 };
 

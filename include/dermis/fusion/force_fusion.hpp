@@ -4,10 +4,12 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "dermis/core/force_sums.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/unloaded_law.hpp"
 #include "dermis/fusion/force_tables.hpp"
@@ -59,6 +61,8 @@ struct ForceNetworks {
   std::vector<float> relative_sigma;                       ///< [kSigmaKnots, taxels]
   std::array<float, 2> sigma_knots_newtons{0.1F, 100.0F};  ///< First and last of the forces [N], > 0, rising.
 
+  GainErrors gain_errors;  ///< What a recalibration saw of changed gains and left; empty: nothing.
+
   [[nodiscard]] std::size_t taxel_count() const noexcept { return gain.size(); }
 
   /// Position of a force between the knots of relative_sigma: 0 at the first (and below), kSigmaKnots - 1 at the last.
@@ -75,8 +79,9 @@ struct ForceNetworks {
 ///
 ///   (sigma_newtons / newtons)^2 = (p / e)^2 (sigma_siemens^2 + offset_sigma^2) + (q sigma_T)^2 + relative_sigma^2
 ///
-/// The square of 0.5 %/C times the distance from the calibrated temperatures is added. Pressure-sensitive rubber drifts
-/// by 0.2 to 1 %/C (FlexiForce: 0.36), and how this rubber drifts there is not measured.
+/// The square of gain_errors is added. The square of 0.5 %/C times the distance from the calibrated temperatures is
+/// added. Pressure-sensitive rubber drifts by 0.2 to 1 %/C (FlexiForce: 0.36), and how this rubber drifts there is not
+/// measured.
 ///
 /// Outside the calibrated loads further squares are added. Beyond the heaviest load F_h it is that of x sqrt(0.2^2 +
 /// (0.3 x)^2), x = ln(newtons / F_h). Below the first of sigma_knots_newtons it is that of 0.1 ln(first / newtons). On
@@ -125,11 +130,12 @@ class ForceFusion {
     Temperature of_array{};
     std::vector<double> offset;
     std::vector<float> sigma;
-    std::vector<float> unlearned_variance;  // ForceSources::unlearned_variance
+    std::vector<float> gain_variance;  // ForceSources::gain_variance
   };
   [[nodiscard]] bool uses_temperature() const noexcept { return networks_.shape.inputs == kInputsWithTemperature; }
   [[nodiscard]] Temperature temperature(std::optional<double> celsius, ForceFrame& force) const noexcept;
   void find_temperatures(const ConductanceFrame& conductance, ForceFrame& force) noexcept;
+  void find_own_temperatures(const ConductanceFrame& conductance, ForceFrame& force) noexcept;
   void prepare_inputs(const ConductanceFrame& conductance) noexcept;
   void look_up() noexcept;
   void compute_forces(ForceFrame& force) noexcept;
@@ -140,6 +146,7 @@ class ForceFusion {
   void extrapolate(std::size_t taxel, float& newtons, float& sigma) const noexcept;
 
   ForceNetworks networks_;
+  std::shared_ptr<const GainErrors> gain_errors_;  // null: there are none
   network::PerceptronBank bank_;
   Temperatures temperatures_;
   std::vector<float> per_reference_siemens_;  // [taxels]

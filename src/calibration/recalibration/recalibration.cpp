@@ -5,24 +5,29 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "calibration/labels/label_check.hpp"
 #include "calibration/labels/labels.hpp"
 #include "calibration/labels/reading_check.hpp"
 #include "calibration/recalibration/known_presses.hpp"
+#include "dermis/core/quantile.hpp"
 #include "dermis/pipeline/pipeline.hpp"
 
 namespace dermis::calibration {
 namespace {
 
-Result<KnownPresses> gather(const pipeline::Model& model, std::span<const RawFrame> frames,
-                            std::span<const Load> loads) {
+/// Presses are as sure as calibration made them: what an earlier recalibration left is looked for anew.
+Result<KnownPresses> gather(pipeline::Model model, std::span<const RawFrame> frames, std::span<const Load> loads,
+                            const ArrayDescription& array) {
+  model.networks.gain_errors = {};
   Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(model);
   if (!pipeline) return pipeline.error();
   pipeline->drift().set_options({.track = true});
   const LoadsOfFrames of_frames(loads, frames.size());
-  KnownPresses presses(model.array);
+  KnownPresses presses(array);
   ForceFrame force;
   for (std::size_t frame = 0; frame < frames.size(); ++frame) {
     pipeline->process(frames[frame], force);
@@ -46,6 +51,26 @@ void scale(const std::vector<double>& log_factors, fusion::ForceNetworks& networ
   }
 }
 
+/// Too few presses tell nothing of taxels that differ: then they differ as before.
+GainErrors joined(const GainErrors& before, GainChange change) {
+  if (change.spread > 0.0 || before.sigma.empty()) return change.left;
+  GainErrors joined = before;
+  for (std::size_t taxel = 0; taxel < joined.sigma.size(); ++taxel) {
+    joined.sigma[taxel] = std::hypot(joined.sigma[taxel], change.left.sigma[taxel]);
+  }
+  return joined;
+}
+
+std::string spread_text(const GainChange& change) {
+  const char* who = "taxels";
+  if (change.row_share > 0.0 || change.column_share > 0.0) {
+    who = change.column_share == 0.0 ? "rows" : (change.row_share == 0.0 ? "columns" : "rows and columns");
+  }
+  std::vector<float> sigma = change.left.sigma;
+  return fmt::format("; its {} differed by {:.0f} %: forces are \u00b1 {:.1f} % for that", who, 100.0 * change.spread,
+                     100.0 * static_cast<double>(upper_median(std::move(sigma))));
+}
+
 }  // namespace
 
 Result<Recalibration> recalibrate(const pipeline::Model& model, std::span<const RawFrame> frames,
@@ -53,7 +78,7 @@ Result<Recalibration> recalibrate(const pipeline::Model& model, std::span<const 
   if (Status checked = check_loads(model.array, frames.size(), loads); !checked) return checked.error();
   if (Status checked = check_readings(model.array, frames, loads); !checked) return checked.error();
   if (const auto turn = check_labels(model.array, frames, loads, {}).turn) return bad_input(*turn);
-  const Result<KnownPresses> gathered = gather(model, frames, loads);
+  const Result<KnownPresses> gathered = gather(model, frames, loads, model.array);
   if (!gathered) return gathered.error();
   const std::vector<KnownPress>& presses = gathered->presses();
   if (presses.empty()) return bad_input("no load above zero has a force: a known weight is needed");
@@ -63,11 +88,12 @@ Result<Recalibration> recalibrate(const pipeline::Model& model, std::span<const 
   }
   Recalibration recalibration;
   recalibration.model = model;
-  recalibration.change = change_of(presses, model.networks.taxel_count());
+  recalibration.change = change_of(presses, {model.array.rows, model.array.cols});
   recalibration.presses = presses.size();
   recalibration.left_out = gathered->left_out();
   recalibration.taxels = pressed_taxels(presses);
   scale(recalibration.change.taxels, recalibration.model.networks);
+  recalibration.model.networks.gain_errors = joined(model.networks.gain_errors, recalibration.change);
   recalibration.model.provenance["recalibration"] = describe(recalibration);
   return recalibration;
 }
@@ -80,7 +106,7 @@ std::string describe(const Recalibration& recalibration) {
       read > 0.0 ? "too much" : "too little", 100.0 * change.sheet_sigma,
       recalibration.presses == 1 ? "one press"
                                  : fmt::format("{} presses on {} taxels", recalibration.presses, recalibration.taxels));
-  if (change.spread > 0.0) text += fmt::format("; its taxels differed by {:.0f} %", 100.0 * change.spread);
+  if (change.spread > 0.0) text += spread_text(change);
   if (recalibration.left_out > 0) text += fmt::format("; {} presses without a force left out", recalibration.left_out);
   return text;
 }
