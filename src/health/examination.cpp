@@ -19,9 +19,11 @@
 #include "dermis/pipeline/standing_load.hpp"
 #include "dermis/preprocessing/missing_readings.hpp"
 #include "health/findings.hpp"
+#include "health/line_gains.hpp"
 #include "health/mute_taxels.hpp"
 #include "health/noise_meter.hpp"
 #include "health/offset_meter.hpp"
+#include "health/supply_dips.hpp"
 #include "health/unloaded_taxels.hpp"
 
 namespace dermis::health {
@@ -86,7 +88,9 @@ class Examination::Implementation {
         mute_(model),
         unloaded_(model),
         offsets_(model.array.taxel_count()),
+        dips_(model.array.taxel_count()),
         ageing_(model),
+        line_gains_{LineGains(model, Axis::row), LineGains(model, Axis::column)},
         standing_(model),
         troubles_(model.array, ""),
         raw_({model.array.rows, model.array.cols}, model.array.readout),
@@ -94,6 +98,7 @@ class Examination::Implementation {
 
   void add(const RawFrame& raw, const ForceFrame& force, const pipeline::Pipeline& pipeline) {
     ageing_.add(force);
+    for (const Axis axis : kAxes) line_gains_[axis].add(force);
     troubles_.add(raw, force, pipeline);
     const std::size_t frame = counted_.frames++;
     const ConductanceFrame& conductance = pipeline.conductance();
@@ -139,6 +144,11 @@ class Examination::Implementation {
     diagnosis.ageing = ageing_.evidence();
     diagnosis.blind_lines = blind_lines(pipeline.line_faults(), model_.array);
     diagnosis.findings = findings_of(diagnosis, model_);
+    for (const Axis axis : kAxes) {
+      const auto finding = line_gains_[axis].finding(diagnosis.ageing.calibrated_spread);
+      if (finding) diagnosis.findings.push_back(*finding);
+    }
+    if (const auto dips = dips_.finding()) diagnosis.findings.push_back(*dips);
     for (const std::string& finding : mute_.findings()) diagnosis.findings.push_back(finding);
     if (const auto load = standing_.load()) {
       diagnosis.findings.push_back(pipeline::describe_never_released(*load, model_.array));
@@ -181,12 +191,19 @@ class Examination::Implementation {
   /// Frames in which neither the taxel nor one of its neighbours is touched tell what it conducts unloaded, where that
   /// is more than noise.
   void follow_offsets(const ConductanceFrame& conductance) {
+    bool is_untouched = true;
     for (std::size_t taxel = 0; taxel < deviation_.size(); ++taxel) {
       if (conductance.taxels[taxel] != TaxelStatus::ok) continue;
+      if (!(unloaded_.expected(taxel) > conductance.sigma_siemens[taxel])) continue;
+      if (unloaded_.is_near_touch(conductance, taxel, kTouchedSigmas)) {
+        is_untouched = false;
+        continue;
+      }
+      dips_.add(taxel, conductance.siemens[taxel], conductance.sigma_siemens[taxel]);
       if (!(unloaded_.expected(taxel) > kTouchedSigmas * conductance.sigma_siemens[taxel])) continue;
-      if (unloaded_.is_near_touch(conductance, taxel, kTouchedSigmas)) continue;
       offsets_.add(taxel, conductance.siemens[taxel] / unloaded_.expected(taxel));
     }
+    dips_.end_frame(is_untouched);
   }
 
   [[nodiscard]] double saturated_share() const {
@@ -205,7 +222,9 @@ class Examination::Implementation {
   UnloadedTaxels unloaded_;
   NoiseMeter noise_;
   OffsetMeter offsets_;
+  SupplyDips dips_;
   AgeingMonitor ageing_;
+  PerAxis<LineGains> line_gains_;
   pipeline::StandingLoadWatch standing_;
   pipeline::FrameTroubles troubles_;
   RawExamination raw_;

@@ -12,10 +12,11 @@
 namespace dermis::health {
 namespace {
 
-constexpr double kMuchNoise = 1.5;          // times what the model says
-constexpr double kMuchOffsetDrift = 0.3;    // of the unloaded conductance, common to the array
-constexpr double kMuchSaturation = 0.01;    // of all readings
-constexpr double kTemperatureMargin = 1.0;  // sensor noise [C]
+constexpr double kMuchNoise = 1.5;           // times what the model says
+constexpr double kMuchOffsetDrift = 0.3;     // of the unloaded conductance, of few taxels
+constexpr double kCommonOffsetDrift = 0.15;  // and where many have moved alike
+constexpr double kMuchSaturation = 0.01;     // of all readings
+constexpr double kTemperatureMargin = 1.0;   // sensor noise [C]
 
 bool leaves_calibrated_range(const TemperatureRange& temperature, const fusion::ForceNetworks& networks) {
   if (networks.shape.inputs != fusion::kInputsWithTemperature) return false;
@@ -28,6 +29,14 @@ bool leaves_calibrated_range(const TemperatureRange& temperature, const fusion::
 bool leaves_trusted_range(const preprocessing::SupplyRange& supply, const pipeline::Model& model) {
   const preprocessing::SupplyRange trusted = preprocessing::SupplyBounds(model.array.readout, model.supply).trusted();
   return !trusted.contains(supply.least_v) || !trusted.contains(supply.most_v);
+}
+
+/// Many taxels tell less, if most have moved the same way: memory and touches move some.
+bool has_drifted(const Diagnosis& diagnosis) {
+  if (!diagnosis.offset_drift) return false;
+  const double drift = std::abs(*diagnosis.offset_drift);
+  const bool is_common = diagnosis.offset_spread && drift > 2.0 * *diagnosis.offset_spread;
+  return drift > (is_common ? kCommonOffsetDrift : kMuchOffsetDrift);
 }
 
 bool is_same(const FaultHistory& a, const FaultHistory& b) {
@@ -78,9 +87,12 @@ std::vector<std::string> findings_of(const Diagnosis& diagnosis, const pipeline:
     found.push_back(fmt::format("{:.1f} % of the readings stand at the end of the ADC: forces there are lower bounds",
                                 100.0 * diagnosis.saturated_share));
   }
-  if (diagnosis.offset_drift && std::abs(*diagnosis.offset_drift) > kMuchOffsetDrift) {
-    found.push_back(fmt::format("unloaded taxels conduct {:+.0f} % against the calibration: calibrate again",
-                                100.0 * *diagnosis.offset_drift));
+  if (has_drifted(diagnosis)) {
+    found.push_back(
+        fmt::format("unloaded taxels conduct {:+.0f} % against the calibration: tare, check with a known weight "
+                    "(dermis check), and "
+                    "recalibrate or calibrate again if that is off",
+                    100.0 * *diagnosis.offset_drift));
   }
   if (diagnosis.ageing.has_aged()) found.push_back(describe(diagnosis.ageing));
   if (diagnosis.temperature && leaves_calibrated_range(*diagnosis.temperature, model.networks)) {

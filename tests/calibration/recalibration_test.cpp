@@ -344,6 +344,22 @@ TEST(Recalibration, writes_what_is_left_into_the_model_and_forgets_it_when_weigh
   EXPECT_GE(with_one->model.networks.gain_errors.sigma[7], made->model.networks.gain_errors.sigma[7]);
 }
 
+TEST(Recalibration, a_sheet_that_conducts_more_unloaded_gets_its_zero_back) {
+  PlayedPresses played;
+  for (const double share : {1.0, 1.2}) {
+    pipeline::Model calibrated = played.model;
+    for (double& siemens : calibrated.networks.unloaded.offset_siemens) siemens /= share;
+    PlayedPresses now = played;
+    now.weigh(5, 5.0);
+    now.hold({}, 0.0, 30);
+    const Result<Recalibration> made = recalibrate(calibrated, now.frames, now.loads);
+    ASSERT_TRUE(made) << made.error().message;
+    EXPECT_NEAR(made->unloaded, share - 1.0, 0.01);
+    const double zero = made->model.networks.unloaded.offset_siemens[3];
+    EXPECT_NEAR(zero / played.model.networks.unloaded.offset_siemens[3], 1.0, 0.01);
+  }
+}
+
 TEST(Recalibration, a_press_with_several_labels_is_one_and_two_presses_in_a_place_are_two) {
   PlayedPresses played;
   played.weigh(5, 5.0);

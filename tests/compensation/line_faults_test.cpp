@@ -267,6 +267,28 @@ TEST(LineFaultMonitor, finds_silent_lines_that_nothing_touches) {
   }
 }
 
+TEST(LineFaultMonitor, a_loose_contact_is_masked_while_it_is_open_and_reads_while_it_is_closed) {
+  for (const Circuit circuit : {Circuit::divider, Circuit::transimpedance}) {
+    SCOPED_TRACE(testing::Message() << to_string(circuit));
+    Rig rig(reference_circuit(16, 16, circuit), "multitouch", 6, 200);
+    std::size_t late = 0;
+    while (rig.read()) {
+      const bool is_open = rig.frames() > 20 && rig.frames() % 20 < 3;
+      if (is_open) {
+        for (std::size_t col = 0; col < 16; ++col) rig.conditioned().ratio[4 * 16 + col] = 0.0;
+      }
+      rig.process();
+      const auto present = rig.monitor().faults();
+      ASSERT_LE(present.size(), 1U) << describe(present, reference_circuit());
+      if (present.empty() == is_open) ++late;
+      if (present.empty()) continue;
+      EXPECT_EQ(present[0].kind, LineFaultKind::silent_row);
+      EXPECT_EQ(present[0].place, 4U);
+    }
+    EXPECT_EQ(late, 0U);
+  }
+}
+
 TEST(LineFaultMonitor, finds_a_supplied_row_beside_a_first_row_that_is_silent) {
   constexpr std::size_t kSuppliedFrom = 60;
   for (const std::size_t silent : {0U, 6U}) {

@@ -616,7 +616,7 @@ TEST(ForceNetworks, every_broken_field_is_found) {
       {"relative sigma 0", [](auto& n) { n.relative_sigma[1] = 0.0F; }},
       {"gain error NaN",
        [](auto& n) {
-         n.gain_errors = {std::vector<float>(n.taxel_count(), kNanF), 1};
+         n.gain_errors = {{kNanF, 0.1F}, 1};
        }},
       {"gain errors of other taxels",
        [](auto& n) {
@@ -625,7 +625,9 @@ TEST(ForceNetworks, every_broken_field_is_found) {
       {"gain errors without columns", [](auto& n) { n.gain_errors.sigma.assign(n.taxel_count(), 0.1F); }},
       {"more shares than a whole",
        [](auto& n) {
-         n.gain_errors = {std::vector<float>(n.taxel_count(), 0.1F), 1, 0.5, 0.5, 0.5};
+         n.gain_errors.sigma.assign(n.taxel_count(), 0.1F);
+         n.gain_errors.cols = 1;
+         n.gain_errors.row_share = n.gain_errors.column_share = 0.6;
        }},
       {"relative sigma NaN", [](auto& n) { n.relative_sigma[1] = kNanF; }},
       {"relative sigma size", [](auto& n) { n.relative_sigma.pop_back(); }},

@@ -85,11 +85,15 @@ bool says(const Diagnosis& diagnosis, const std::string& words) {
 }
 
 /// Touches of a sheet whose taxels read their gains times the force, broad ones in all places.
-Diagnosis examine_touches(double gain_spread) {
+Diagnosis examine_touches(double gain_spread, double row_spread = 0.0) {
   Measurement measurement;
   Random random(kSeed);
   std::vector<double> gains;
   for (int k = 0; k < 64; ++k) gains.push_back(std::exp(gain_spread * random.normal()));
+  for (std::size_t row = 0; row < 8; ++row) {
+    const double gain = std::exp(row_spread * random.normal());
+    for (std::size_t col = 0; col < 8; ++col) gains[row * 8 + col] *= gain;
+  }
   Examined examined(measurement.model);
   for (std::size_t touch = 0; touch < 50; ++touch) {
     const double row = random.uniform(0.0, 7.0);
@@ -114,6 +118,12 @@ TEST(Examination, gains_that_have_changed_are_found_by_touches) {
   const Diagnosis fresh = examine_touches(0.0);
   EXPECT_TRUE(fresh.is_healthy()) << fresh.findings.front();
   EXPECT_LT(*fresh.ageing.gain_spread, 0.02);
+}
+
+TEST(Examination, gains_of_rows_are_found_by_touches) {
+  const Diagnosis aged = examine_touches(0.0, 0.15);
+  EXPECT_TRUE(says(aged, " from row to row"));
+  EXPECT_FALSE(says(aged, " from column to column"));
 }
 
 TEST(Examination, what_raw_counts_alone_say_is_a_finding) {
@@ -197,12 +207,44 @@ TEST(Examination, noise_is_not_known_where_everything_is_touched) {
   EXPECT_FALSE(diagnosis.offset_drift);
 }
 
+TEST(Examination, an_unloaded_sheet_that_conducts_a_fifth_more_was_put_on_anew) {
+  Measurement measurement;
+  measurement.unloaded_share = 1.2;
+  EXPECT_TRUE(says(examine(measurement), "unloaded taxels conduct +20 % against the calibration"));
+  measurement.unloaded_share = 1.08;
+  EXPECT_TRUE(examine(measurement).is_healthy());
+}
+
+/// The untouched sheet; `change` alters the readings of some frames.
+template <typename Change>
+Diagnosis examine_untouched(const Change& change) {
+  Measurement measurement;
+  Examined examined(measurement.model);
+  for (std::size_t number = 0; number < 400; ++number) {
+    RawFrame raw = measurement.frame(number);
+    if (number % 20 < 3) {
+      for (float& count : raw.counts) count = change(count, number);
+    }
+    examined.add(raw);
+  }
+  return examined.diagnosis();
+}
+
+TEST(Examination, a_supply_that_falls_for_moments_is_found_and_noise_of_all_readings_is_no_supply) {
+  EXPECT_TRUE(examine_untouched([](float count, std::size_t) { return count; }).is_healthy());
+  const Diagnosis loose = examine_untouched([](float count, std::size_t) { return std::round(0.92F * count); });
+  EXPECT_TRUE(says(loose, "the supply falls by about 8 % in 57 of "));
+  const Diagnosis hum = examine_untouched(
+      [](float count, std::size_t number) { return std::max(count + (number % 2 == 0 ? 20.0F : -20.0F), 0.0F); });
+  EXPECT_FALSE(says(hum, "the supply falls"));
+}
+
 TEST(Examination, unloaded_taxels_that_have_moved_ask_for_a_calibration) {
   Measurement measurement;
   measurement.unloaded_share = 1.5;
   const Diagnosis diagnosis = examine(measurement);
   EXPECT_NEAR(diagnosis.offset_drift.value_or(0.0), 0.5, 0.05);
-  EXPECT_TRUE(says(diagnosis, "unloaded taxels conduct +50 % against the calibration: calibrate again"));
+  EXPECT_TRUE(says(diagnosis, "unloaded taxels conduct +50 % against the calibration: tare"));
 }
 
 TEST(Examination, a_temperature_beyond_the_calibration_is_found_with_a_margin_of_one_degree) {

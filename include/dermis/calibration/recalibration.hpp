@@ -50,13 +50,15 @@ struct GainChange {
 struct Recalibration {
   pipeline::Model model;  ///< The model with other gains and their errors; its provenance says why.
   GainChange change;
+  double unloaded = 0.0;  ///< Relative change of the unloaded conductances, which moved the zero; 0: none was found.
   std::size_t presses = 0;
   std::size_t taxels = 0;    ///< That were pressed.
   std::size_t left_out = 0;  ///< Presses without a force, or beyond the calibrated loads.
 };
 
 /// Presses of known force -> new gains of `model`, by which its look-up tables and its heaviest loads are scaled, too.
-/// The parameters of its networks stay as they are, and so do its baselines. Labelled frames in a row with loads
+/// The parameters of its networks stay as they are, and so do its baselines. If untouched frames show that all unloaded
+/// taxels conduct up to half more or less, that is the new zero. Labelled frames in a row with loads
 /// on one region are one press, until its reading falls below a third of what it was. Errors: a load beyond the frames,
 /// or a pressure without an area of the taxels; no load above zero has a force; more than kMostPresses.
 [[nodiscard]] Result<Recalibration> recalibrate(const pipeline::Model& model, std::span<const RawFrame> frames,

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -13,28 +14,37 @@
 #include "calibration/labels/labels.hpp"
 #include "calibration/labels/reading_check.hpp"
 #include "calibration/recalibration/known_presses.hpp"
+#include "calibration/recalibration/unloaded_change.hpp"
 #include "dermis/core/quantile.hpp"
 #include "dermis/pipeline/pipeline.hpp"
 
 namespace dermis::calibration {
 namespace {
 
+struct Gathered {
+  KnownPresses presses;
+  double unloaded = 0.0;  ///< UnloadedChange::change()
+};
+
 /// Presses are as sure as calibration made them: what an earlier recalibration left is looked for anew.
-Result<KnownPresses> gather(pipeline::Model model, std::span<const RawFrame> frames, std::span<const Load> loads,
-                            const ArrayDescription& array) {
+Result<Gathered> gather(pipeline::Model model, std::span<const RawFrame> frames, std::span<const Load> loads,
+                        const ArrayDescription& array) {
   model.networks.gain_errors = {};
   Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(model);
   if (!pipeline) return pipeline.error();
   pipeline->drift().set_options({.track = true});
   const LoadsOfFrames of_frames(loads, frames.size());
   KnownPresses presses(array);
+  UnloadedChange unloaded(model.networks.unloaded);
   ForceFrame force;
   for (std::size_t frame = 0; frame < frames.size(); ++frame) {
     pipeline->process(frames[frame], force);
     presses.add(force, of_frames[frame]);
+    const auto is_pressed = [](const Load& load) { return load.value > 0.0; };
+    if (std::ranges::none_of(of_frames[frame], is_pressed)) unloaded.add(*pipeline);
   }
   presses.finish();
-  return presses;
+  return Gathered{std::move(presses), unloaded.change()};
 }
 
 /// Tables take no gain: they are scaled themselves.
@@ -49,6 +59,11 @@ void scale(const std::vector<double>& log_factors, fusion::ForceNetworks& networ
   for (std::size_t k = 0; k < tables.newtons.size(); ++k) {
     tables.newtons[k] *= factors[tables.taxels[k / tables.knots]];
   }
+}
+
+void scale(double unloaded_change, UnloadedLaw& unloaded) {
+  for (double& siemens : unloaded.offset_siemens) siemens *= 1.0 + unloaded_change;
+  for (double& per_celsius : unloaded.per_celsius) per_celsius *= 1.0 + unloaded_change;
 }
 
 /// Too few presses tell nothing of taxels that differ: then they differ as before.
@@ -78,9 +93,9 @@ Result<Recalibration> recalibrate(const pipeline::Model& model, std::span<const 
   if (Status checked = check_loads(model.array, frames.size(), loads); !checked) return checked.error();
   if (Status checked = check_readings(model.array, frames, loads); !checked) return checked.error();
   if (const auto turn = check_labels(model.array, frames, loads, {}).turn) return bad_input(*turn);
-  const Result<KnownPresses> gathered = gather(model, frames, loads, model.array);
+  const Result<Gathered> gathered = gather(model, frames, loads, model.array);
   if (!gathered) return gathered.error();
-  const std::vector<KnownPress>& presses = gathered->presses();
+  const std::vector<KnownPress>& presses = gathered->presses.presses();
   if (presses.empty()) return bad_input("no load above zero has a force: a known weight is needed");
   if (presses.size() > kMostPresses) {
     return bad_input(
@@ -90,9 +105,11 @@ Result<Recalibration> recalibrate(const pipeline::Model& model, std::span<const 
   recalibration.model = model;
   recalibration.change = change_of(presses, {model.array.rows, model.array.cols});
   recalibration.presses = presses.size();
-  recalibration.left_out = gathered->left_out();
+  recalibration.left_out = gathered->presses.left_out();
   recalibration.taxels = pressed_taxels(presses);
   scale(recalibration.change.taxels, recalibration.model.networks);
+  recalibration.unloaded = gathered->unloaded;
+  scale(recalibration.unloaded, recalibration.model.networks.unloaded);
   recalibration.model.networks.gain_errors = joined(model.networks.gain_errors, recalibration.change);
   recalibration.model.provenance["recalibration"] = describe(recalibration);
   return recalibration;
@@ -107,6 +124,9 @@ std::string describe(const Recalibration& recalibration) {
       recalibration.presses == 1 ? "one press"
                                  : fmt::format("{} presses on {} taxels", recalibration.presses, recalibration.taxels));
   if (change.spread > 0.0) text += spread_text(change);
+  if (recalibration.unloaded != 0.0) {
+    text += fmt::format("; unloaded it conducts {:+.0f} %, which is its zero now", 100.0 * recalibration.unloaded);
+  }
   if (recalibration.left_out > 0) text += fmt::format("; {} presses without a force left out", recalibration.left_out);
   return text;
 }

@@ -3,6 +3,7 @@
 #include "compensation/faults/silent_line_detector.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "dermis/core/processor_clones.hpp"
@@ -15,6 +16,8 @@ constexpr double kFoundWithinFrames = 30.0;
 constexpr double kMeanOfNoise = 0.4;  // of normal noise that is cut off at 0 [standard deviations],
 constexpr double kDeviationOfNoise = 0.6;
 constexpr double kNoiseSigmas = 3.0;
+constexpr double kSuddenEvidence = 1.0;
+constexpr Nanos kSudden = std::chrono::seconds(1);
 
 constexpr PerAxis<LineFaultKind> kSilent{.row = LineFaultKind::silent_row, .column = LineFaultKind::silent_column};
 constexpr PerAxis<LineFaultKind> kSupplied{.row = LineFaultKind::supplied_row,
@@ -38,6 +41,7 @@ void SilentLineDetector::judge(const Observation& seen, FaultList& faults) noexc
   sum_over_lines(faults);
   witnesses_.follow(line_evidence_);
   for (const Axis axis : kAxes) judge_lines(seen, axis, faults);
+  last_time_ = seen.conditioned.time;
 }
 
 bool SilentLineDetector::sees(Axis axis, std::size_t line) const noexcept {
@@ -85,28 +89,39 @@ DERMIS_PROCESSOR_CLONES void SilentLineDetector::sum_over_lines(const FaultList&
 void SilentLineDetector::judge_lines(const Observation& seen, Axis axis, FaultList& faults) noexcept {
   const Nanos time = seen.conditioned.time;
   const bool none_is_known = faults.all().empty();
+  const bool is_soon = time - last_time_ <= kSudden;
   for (std::size_t line = 0; line < line_count(array_, axis); ++line) {
     const auto evidence = static_cast<double>(line_evidence_[axis][line]);
-    auto& [silent, alive] = tests_[axis][line];
+    LineTests& tests = tests_[axis][line];
+    PageTest& silent = tests.silent;
+    const bool falls = is_soon && tests.was_read && evidence > kSuddenEvidence;
+    tests.was_read = evidence < -kEvidence;
     if (none_is_known && silent.frames == 0 && evidence <= 0.0) continue;
     if (faults.contains(kSupplied[axis], line)) continue;
     if (!faults.contains(kSilent[axis], line)) {
       if (witnesses_.are_doubtful()) silent.restart();
       silent.add(evidence, seen.frame, time);
-      if (!silent.decides(kLineFrames)) continue;
+      tests.is_sudden = falls && !witnesses_.are_doubtful();
+      const bool is_decided = silent.decides(kLineFrames);
+      if (!tests.is_sudden && !is_decided) continue;
       if (sees(axis, line) && reads_noise_alone(seen, axis, line, faults)) {
         faults.add({.kind = kSilent[axis], .place = line, .frame = silent.first_frame, .time = silent.first_time});
-        alive.restart();
-      } else {
+        tests.alive.restart();
+      } else if (is_decided) {
         silent.restart();
       }
-    } else {
-      alive.add(-evidence, seen.frame, time);
-      if (!alive.decides(kHealFrames)) continue;
+    } else if (reads_again(tests, seen, axis, line, faults)) {
       faults.remove(kSilent[axis], line);
       silent.restart();
     }
   }
+}
+
+bool SilentLineDetector::reads_again(LineTests& tests, const Observation& seen, Axis axis, std::size_t line,
+                                     const FaultList& faults) const noexcept {
+  if (tests.is_sudden && tests.was_read) return !reads_noise_alone(seen, axis, line, faults);
+  tests.alive.add(-static_cast<double>(line_evidence_[axis][line]), seen.frame, seen.conditioned.time);
+  return tests.alive.decides(kHealFrames);
 }
 
 bool SilentLineDetector::reads_noise_alone(const Observation& seen, Axis axis, std::size_t line,

@@ -16,6 +16,9 @@ namespace dermis::compensation {
 /// A line is silent when its taxels together read less than unloaded ones would. The evidence that each is silent is
 /// summed over the line and the frames. The line has to read nothing but noise, while unloaded taxels elsewhere do
 /// read.
+///
+/// One silent frame suffices where the line surely read in the frame before: rubber does not fade so soon. A loose
+/// contact is masked so while it is open, and reads again in the first frame in which it is closed.
 class SilentLineDetector {
  public:
   SilentLineDetector(const ArrayDescription& array, const UnloadedTaxels& unloaded, UnloadedWitnesses& witnesses);
@@ -28,9 +31,13 @@ class SilentLineDetector {
  private:
   struct LineTests {
     PageTest silent;
-    PageTest alive;  // of a line that was found to be silent
+    PageTest alive;          // of a line that was found to be silent
+    bool was_read = false;   // surely, in the frame before
+    bool is_sudden = false;  // found so
   };
 
+  [[nodiscard]] bool reads_again(LineTests& tests, const Observation& seen, Axis axis, std::size_t line,
+                                 const FaultList& faults) const noexcept;
   void weigh_taxels(const Observation& seen) noexcept;
   void sum_over_lines(const FaultList& faults) noexcept;
   void judge_lines(const Observation& seen, Axis axis, FaultList& faults) noexcept;
@@ -42,6 +49,7 @@ class SilentLineDetector {
   UnloadedWitnesses& witnesses_;  // gets every frame
   FloorEvidence floor_;
   double last_sigma_ratio_ = 0.0;
+  Nanos last_time_{};
   std::vector<float> evidence_;                // that the taxel is silent, of this frame [taxels]
   PerAxis<std::vector<float>> line_evidence_;  // sums of it
   PerAxis<std::vector<LineTests>> tests_;
