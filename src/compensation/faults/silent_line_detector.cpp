@@ -41,7 +41,6 @@ void SilentLineDetector::judge(const Observation& seen, FaultList& faults) noexc
   sum_over_lines(faults);
   witnesses_.follow(line_evidence_);
   for (const Axis axis : kAxes) judge_lines(seen, axis, faults);
-  last_time_ = seen.conditioned.time;
 }
 
 bool SilentLineDetector::sees(Axis axis, std::size_t line) const noexcept {
@@ -89,13 +88,12 @@ DERMIS_PROCESSOR_CLONES void SilentLineDetector::sum_over_lines(const FaultList&
 void SilentLineDetector::judge_lines(const Observation& seen, Axis axis, FaultList& faults) noexcept {
   const Nanos time = seen.conditioned.time;
   const bool none_is_known = faults.all().empty();
-  const bool is_soon = time - last_time_ <= kSudden;
   for (std::size_t line = 0; line < line_count(array_, axis); ++line) {
     const auto evidence = static_cast<double>(line_evidence_[axis][line]);
     LineTests& tests = tests_[axis][line];
     PageTest& silent = tests.silent;
-    const bool falls = is_soon && tests.was_read && evidence > kSuddenEvidence;
-    tests.was_read = evidence < -kEvidence;
+    const bool falls = evidence > kSuddenEvidence && tests.read && time - *tests.read <= kSudden;
+    if (evidence < -kEvidence) tests.read = time;
     if (none_is_known && silent.frames == 0 && evidence <= 0.0) continue;
     if (faults.contains(kSupplied[axis], line)) continue;
     if (!faults.contains(kSilent[axis], line)) {
@@ -119,8 +117,9 @@ void SilentLineDetector::judge_lines(const Observation& seen, Axis axis, FaultLi
 
 bool SilentLineDetector::reads_again(LineTests& tests, const Observation& seen, Axis axis, std::size_t line,
                                      const FaultList& faults) const noexcept {
-  if (tests.is_sudden && tests.was_read) return !reads_noise_alone(seen, axis, line, faults);
-  tests.alive.add(-static_cast<double>(line_evidence_[axis][line]), seen.frame, seen.conditioned.time);
+  const auto evidence = static_cast<double>(line_evidence_[axis][line]);
+  if (tests.is_sudden) return evidence < 0.0 && !reads_noise_alone(seen, axis, line, faults);
+  tests.alive.add(-evidence, seen.frame, seen.conditioned.time);
   return tests.alive.decides(kHealFrames);
 }
 

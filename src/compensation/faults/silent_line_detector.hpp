@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "compensation/faults/fault_list.hpp"
@@ -17,7 +18,7 @@ namespace dermis::compensation {
 /// summed over the line and the frames. The line has to read nothing but noise, while unloaded taxels elsewhere do
 /// read.
 ///
-/// One silent frame suffices where the line surely read in the frame before: rubber does not fade so soon. A loose
+/// One silent frame suffices where the line surely read within the second before: rubber does not fade so soon. A loose
 /// contact is masked so while it is open, and reads again in the first frame in which it is closed.
 class SilentLineDetector {
  public:
@@ -31,9 +32,9 @@ class SilentLineDetector {
  private:
   struct LineTests {
     PageTest silent;
-    PageTest alive;          // of a line that was found to be silent
-    bool was_read = false;   // surely, in the frame before
-    bool is_sudden = false;  // found so
+    PageTest alive;               // of a line that was found to be silent
+    std::optional<Nanos> read{};  // surely, the last time
+    bool is_sudden = false;       // found so
   };
 
   [[nodiscard]] bool reads_again(LineTests& tests, const Observation& seen, Axis axis, std::size_t line,
@@ -49,7 +50,6 @@ class SilentLineDetector {
   UnloadedWitnesses& witnesses_;  // gets every frame
   FloorEvidence floor_;
   double last_sigma_ratio_ = 0.0;
-  Nanos last_time_{};
   std::vector<float> evidence_;                // that the taxel is silent, of this frame [taxels]
   PerAxis<std::vector<float>> line_evidence_;  // sums of it
   PerAxis<std::vector<LineTests>> tests_;
