@@ -23,7 +23,8 @@ namespace dermis::health {
 /// along each line that crosses them. It is 0 for a bell of any place and width. Other shapes give t the sign of the
 /// side of the four on which the touch lies. Gains that lines have changed by since the calibration add the same t
 /// under every touch. As in AgeingMonitor the product of two means counts, one of the touches on each side. It is 20
-/// times the variance of ln g.
+/// times the variance of ln g. One of them is of the near half of the lines and the other of the far one: an object
+/// that always comes to one place differs there.
 class LineGains {
  public:
   LineGains(const pipeline::Model& model, Axis axis);
@@ -38,10 +39,10 @@ class LineGains {
  private:
   /// Four neighbouring lines.
   struct Window {
-    std::array<double, 2> mean{};    // of t, by the side of the touches
-    std::array<double, 2> weight{};  // of the touches in them
-    std::uint8_t side = 0;           // of the present touch
-    bool is_over = false;            // it lies on the other side now
+    std::array<double, 4> mean{};    // of t, by the quarter in which touches lie: 2 * side + half of the lines
+    std::array<double, 4> weight{};  // of the touches in them
+    std::uint8_t quarter = 0;        // of the present touch
+    bool is_over = false;            // it lies in another one now
     std::size_t frames = 0;          // of it; 0: there is none
     double sum = 0.0;                // of t in them, by their weights
     double sum_weight = 0.0;

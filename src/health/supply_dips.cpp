@@ -19,6 +19,7 @@ constexpr double kSigmas = 3.0;
 constexpr double kLeastDepth = 0.02;
 constexpr std::size_t kLeastDips = 5;
 constexpr double kLeastShare = 0.005;  // of the frames: more than chance
+constexpr double kTold = 4.0;          // standard deviations: taxels that conduct alike do not tell a factor from hum
 constexpr std::size_t kOneSided = 4;   // times as many dips as rises: noise goes both ways
 
 }  // namespace
@@ -39,10 +40,11 @@ void SupplyDips::add(std::size_t taxel, double siemens, double sigma_siemens) {
 void SupplyDips::end_frame(bool is_untouched) {
   const Sums sums = sums_;
   sums_ = {};
-  if (!is_untouched || sums.count < kLeastTaxels || !(sums.x > 0.0)) return;
+  if (!is_untouched || sums.count < kLeastTaxels || !(sums.x > 0.0) || !(sums.variance > 0.0)) return;
   const double spread = sums.xx - sums.x * sums.x / sums.count;
   const double slope = spread > 0.0 ? (sums.xy - sums.x * sums.y / sums.count) / spread : 1.0;
-  around_[levels_++ % kAround] = {sums.y / sums.x, std::sqrt(sums.variance) / sums.x, slope};
+  const double weight = spread * sums.count / sums.variance;
+  around_[levels_++ % kAround] = {sums.y / sums.x, std::sqrt(sums.variance) / sums.x, slope, weight};
   if (levels_ >= kAround) judge_middle();
 }
 
@@ -63,7 +65,8 @@ void SupplyDips::judge_middle() {
   if (middle.share < std::min(earlier, later) - least) {
     ++dips_;
     depth_ += 1.0 - middle.share / std::min(earlier, later);
-    slope_ += 1.0 - middle.slope;
+    slope_ += middle.weight * (1.0 - middle.slope);
+    weight_ += middle.weight;
   }
   if (middle.share > std::max(earlier, later) + least) ++rises_;
 }
@@ -71,13 +74,13 @@ void SupplyDips::judge_middle() {
 std::optional<std::string> SupplyDips::finding() const {
   const double frames = static_cast<double>(levels_);
   if (dips_ < kLeastDips || static_cast<double>(dips_) < kLeastShare * frames || dips_ < kOneSided * rises_) return {};
-  const bool is_a_factor = slope_ > 0.5 * depth_;  // hum takes the same from all
-  if (!is_a_factor) return {};
+  const double depth = depth_ / static_cast<double>(dips_);
+  const bool tells_factors = weight_ > std::pow(kTold / depth, 2);
+  if (tells_factors && slope_ < 0.5 * depth * weight_) return {};
   return fmt::format(
       "the supply falls by about {:.0f} % in {} of {} untouched frames, and nothing in the frames says so: all "
-      "readings "
-      "fall together; check its wires, or send its voltage; forces are too low there",
-      100.0 * depth_ / static_cast<double>(dips_), dips_, levels_);
+      "readings fall together; check its wires, or send its voltage; forces are too low there",
+      100.0 * depth, dips_, levels_);
 }
 
 }  // namespace dermis::health

@@ -40,7 +40,8 @@ class SupplyDips {
   struct Level {
     double share = 0.0;  // of the mean
     double sigma = 0.0;
-    double slope = 0.0;  // of y over x: as the share, if all change by a factor
+    double slope = 0.0;   // of y over x, as the share if all change by a factor; 1 if all lose the same
+    double weight = 0.0;  // of the slope: over its variance
   };
 
   void judge_middle();
@@ -53,7 +54,8 @@ class SupplyDips {
   std::size_t dips_ = 0;
   std::size_t rises_ = 0;
   double depth_ = 0.0;  // sum over the dips
-  double slope_ = 0.0;  // the same of what the slope falls
+  double slope_ = 0.0;  // the same of what the slope falls, by its weight
+  double weight_ = 0.0;
 };
 
 }  // namespace dermis::health

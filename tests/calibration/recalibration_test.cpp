@@ -40,11 +40,13 @@ TEST(GainChange, one_weight_moves_the_whole_sheet_as_far_as_it_is_sure) {
 
 TEST(GainChange, some_weights_tell_taxels_apart_and_leave_the_others_with_the_sheet) {
   std::vector<KnownPress> presses;
-  for (std::size_t taxel = 0; taxel < 8; ++taxel) presses.push_back(press_of(taxel, taxel % 2 == 0 ? 0.2 : 0.0, 0.01));
+  const auto change_at = [](std::size_t taxel) { return (taxel + taxel / kLines) % 2 == 0 ? 0.2 : 0.0; };
+  for (std::size_t taxel = 0; taxel < 8; ++taxel) presses.push_back(press_of(taxel, change_at(taxel), 0.01));
   const GainChange change = change_of(presses, kShape);
   EXPECT_NEAR(change.sheet, 0.1, 0.02);
   EXPECT_NEAR(change.spread, 0.1, 0.03);
-  for (std::size_t taxel = 0; taxel < 8; ++taxel) EXPECT_NEAR(change.taxels[taxel], taxel % 2 == 0 ? 0.2 : 0.0, 0.01);
+  EXPECT_EQ(change.row_share + change.column_share, 0.0);
+  for (std::size_t taxel = 0; taxel < 8; ++taxel) EXPECT_NEAR(change.taxels[taxel], change_at(taxel), 0.01);
   for (std::size_t taxel = 8; taxel < kTaxels; ++taxel) EXPECT_EQ(change.taxels[taxel], change.sheet);
 }
 
@@ -177,7 +179,7 @@ TEST(GainChange, what_weights_did_not_mend_is_in_the_standard_deviations) {
       EXPECT_GT(share.taxels_2, 87.0);
       EXPECT_GT(share.sums_1, 55.0);
       EXPECT_GT(share.sums_2, 85.0);
-      EXPECT_LT(share.taxels_1, 80.0);
+      EXPECT_LT(share.taxels_1, 84.0);
     }
   }
 }

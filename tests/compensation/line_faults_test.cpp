@@ -168,7 +168,7 @@ TEST(LineFaultMonitor, finds_and_locates_every_fault_and_sees_it_heal) {
         kind.put(faults, place);
         Rig rig(array, "multitouch", 100 + size, kFrom + lasts + 150, faults);
         std::size_t found_at = 0;
-        while (rig.next() && rig.frames() <= kFrom + lasts) {
+        while (rig.frames() < kFrom + lasts && rig.next()) {
           const auto present = rig.monitor().faults();
           ASSERT_TRUE(present.empty() || rig.frames() > kFrom) << describe(present, array);
           if (!present.empty() && found_at == 0) found_at = rig.frames() - 1;

@@ -38,10 +38,10 @@ struct GainChange {
 /// Derives the change of gains from presses. Each taxel has changed by x + y: x is common to the sheet, 0 ± 0.1 before
 /// any press; y is its own, 0 ± spread. The most likely values are those of a linear model (Gauss and Markov; kriging).
 /// Little evidence moves a gain little, and a taxel that nothing pressed gets x. The spread is the root mean square of
-/// those that the presses leave likely. It is 0 where none makes the presses likelier, and with fewer than 3 presses or
+/// those that the presses leave likely. It is 0 where none makes the presses likelier, and with fewer than 5 presses or
 /// pressed taxels.
 ///
-/// Parts of y may be those of rows or columns. They are fitted if presses foretell others better by it, by 6 in the
+/// Parts of y may be those of rows or columns. They are fitted if presses foretell others better by it, by 12 in the
 /// logarithm of the odds (leave-one-out). Otherwise y is each taxel's own, and `left` shares the spread between rows,
 /// columns and taxels as likely as each is. Deterministic, thread-safe.
 [[nodiscard]] GainChange change_of(std::span<const KnownPress> presses, const FrameShape& shape);

@@ -15,11 +15,12 @@ namespace dermis::calibration {
 namespace {
 
 constexpr double kSheetSigma = 0.1;  // of the change of a sheet, before any press
-constexpr std::size_t kLeastToTellSpread = 3;
+constexpr std::size_t kLeastToTellSpread = 5;
 constexpr double kLeastSpread = 0.002;
 constexpr double kMostSpread = 0.3;
 constexpr std::size_t kSpreadSteps = 20;
-constexpr double kProof = 6.0;  // of lines, ln of the odds: about two presses that are foretold by others by chance
+constexpr double kProof =
+    12.0;  // of lines: by chance one press in 20 agrees with another, and each foretells the other
 
 /// Shares of the variance of gains that a row or a column has in common; the rest is each taxel's own.
 struct Structure {

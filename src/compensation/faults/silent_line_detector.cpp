@@ -108,19 +108,17 @@ void SilentLineDetector::judge_lines(const Observation& seen, Axis axis, FaultLi
       } else if (is_decided) {
         silent.restart();
       }
-    } else if (reads_again(tests, seen, axis, line, faults)) {
+    } else if (reads_again(tests, seen, axis, line)) {
       faults.remove(kSilent[axis], line);
       silent.restart();
     }
   }
 }
 
-bool SilentLineDetector::reads_again(LineTests& tests, const Observation& seen, Axis axis, std::size_t line,
-                                     const FaultList& faults) const noexcept {
-  const auto evidence = static_cast<double>(line_evidence_[axis][line]);
-  if (tests.is_sudden) return evidence < 0.0 && !reads_noise_alone(seen, axis, line, faults);
-  tests.alive.add(-evidence, seen.frame, seen.conditioned.time);
-  return tests.alive.decides(kHealFrames);
+bool SilentLineDetector::reads_again(LineTests& tests, const Observation& seen, Axis axis,
+                                     std::size_t line) const noexcept {
+  tests.alive.add(-static_cast<double>(line_evidence_[axis][line]), seen.frame, seen.conditioned.time);
+  return tests.alive.decides(tests.is_sudden ? 1 : kHealFrames);
 }
 
 bool SilentLineDetector::reads_noise_alone(const Observation& seen, Axis axis, std::size_t line,

@@ -19,7 +19,7 @@ namespace dermis::compensation {
 /// read.
 ///
 /// One silent frame suffices where the line surely read within the second before: rubber does not fade so soon. A loose
-/// contact is masked so while it is open, and reads again in the first frame in which it is closed.
+/// contact is masked so while it is open, and reads again as soon as it surely does.
 class SilentLineDetector {
  public:
   SilentLineDetector(const ArrayDescription& array, const UnloadedTaxels& unloaded, UnloadedWitnesses& witnesses);
@@ -37,8 +37,7 @@ class SilentLineDetector {
     bool is_sudden = false;       // found so
   };
 
-  [[nodiscard]] bool reads_again(LineTests& tests, const Observation& seen, Axis axis, std::size_t line,
-                                 const FaultList& faults) const noexcept;
+  [[nodiscard]] bool reads_again(LineTests& tests, const Observation& seen, Axis axis, std::size_t line) const noexcept;
   void weigh_taxels(const Observation& seen) noexcept;
   void sum_over_lines(const FaultList& faults) noexcept;
   void judge_lines(const Observation& seen, Axis axis, FaultList& faults) noexcept;
