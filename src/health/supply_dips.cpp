@@ -72,7 +72,7 @@ void SupplyDips::judge_middle() {
 }
 
 std::optional<std::string> SupplyDips::finding() const {
-  const double frames = static_cast<double>(levels_);
+  const auto frames = static_cast<double>(levels_);
   if (dips_ < kLeastDips || static_cast<double>(dips_) < kLeastShare * frames || dips_ < kOneSided * rises_) return {};
   const double depth = depth_ / static_cast<double>(dips_);
   const bool tells_factors = weight_ > std::pow(kTold / depth, 2);

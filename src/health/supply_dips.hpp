@@ -10,8 +10,8 @@
 
 namespace dermis::health {
 
-/// Frames of an untouched array in which all taxels conduct less by one factor than in the frames around them: the
-/// supply falls there, and nothing in the frame says so. Loads and the material only add, and last longer.
+/// Finds frames of an untouched array in which all taxels conduct less by one factor than in the frames around them.
+/// There the supply falls, and nothing in the frame says so. Loads and the material only add, and last longer.
 class SupplyDips {
  public:
   explicit SupplyDips(std::size_t taxels) : mean_(taxels), frames_(taxels) {}

@@ -148,7 +148,7 @@ Covered covered(const SheetChange& by, std::size_t presses, Random& random) {
       one += std::abs(error) < sigma ? 100.0 / kSheets : 0.0;
       two += std::abs(error) < 2.0 * sigma ? 100.0 / kSheets : 0.0;
     };
-    const std::size_t taxel = static_cast<std::size_t>(random.uniform() * 100.0);
+    const auto taxel = static_cast<std::size_t>(random.uniform() * 100.0);
     const double sigma = std::hypot(kSigma, found.left.sigma[taxel]);
     count(found.taxels[taxel] - gains[taxel] + kSigma * random.normal(), sigma, covered.taxels_1, covered.taxels_2);
     const std::vector<float> newtons(kSheet.taxel_count(), 1.0F);
