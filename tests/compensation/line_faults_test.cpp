@@ -275,7 +275,7 @@ TEST(LineFaultMonitor, a_loose_contact_is_masked_while_it_is_open_and_reads_whil
     while (rig.read()) {
       const bool is_open = rig.frames() > 20 && rig.frames() % 20 < 3;
       if (is_open) {
-        for (std::size_t col = 0; col < 16; ++col) rig.conditioned().ratio[4 * 16 + col] = 0.0;
+        for (std::size_t col = 0; col < 16; ++col) rig.conditioned().ratio[std::size_t{4} * 16 + col] = 0.0;
       }
       rig.process();
       const auto present = rig.monitor().faults();
