@@ -100,6 +100,34 @@ TEST(CircuitDoubt, names_an_array_of_two_wires_that_is_described_as_grounded) {
   EXPECT_NE(said.front().find("write idle_rows and idle_columns = \"floating\""), std::string::npos) << said.front();
 }
 
+/// The effect of a circuit looks like a law of the rubber there, and contacts scatter from taxel to taxel.
+TEST(CircuitDoubt, is_not_raised_by_loads_on_the_whole_array_alone) {
+  for (const ArrayDescription& truth : kinds()) {
+    Recording recording = record(truth, "uniform", 1);
+    const auto database = build_sample_database(truth, recording.frames, recording.loads);
+    ASSERT_TRUE(database) << database.error().message;
+    EXPECT_TRUE(database->doubts.empty()) << database->doubts.front();
+  }
+}
+
+TEST(CircuitDoubt, names_two_wires_in_an_array_of_many_taxels) {
+  ArrayDescription truth = two_wires(50.0, 1000.0);
+  truth.rows = truth.cols = 20;
+  truth.readout.drive_ohm.assign(20, 50.0);
+  truth.readout.load_ohm.assign(20, 1000.0);
+  Recording recording = record(truth, "calibration", 1);
+  std::erase_if(recording.loads, [](const Load& load) {
+    return load.value > 0.0 && (load.where.first_row % 4 != 1 || load.where.first_col % 4 != 1);
+  });
+  ArrayDescription array = truth;
+  array.readout.idle_rows = IdleRows::grounded;
+  array.readout.idle_columns = IdleColumns::loaded;
+  const auto database = build_sample_database(array, recording.frames, recording.loads);
+  const std::string said =
+      database && !database->doubts.empty() ? database->doubts.front() : database ? "" : database.error().message;
+  EXPECT_NE(said.find("\"divider, idle rows and columns floating\""), std::string::npos) << said;
+}
+
 TEST(CircuitDoubt, is_why_frames_cannot_be_used) {
   const Recording recording = presses_on(two_wires(100.0, 10e3), 1);
   const auto database = build_sample_database(grounded_divider(), recording.frames, recording.loads);

@@ -27,16 +27,6 @@ bool is_none_shown(const CircuitTrial& none, const CircuitTrial& circuit) {
          of_none.crossed_square + sure_square(of_none) < of_circuit.crossed_square;
 }
 
-/// Under loads on the whole array alone, the effect of a circuit looks like a law of the rubber.
-bool presses_parts(const CircuitFrames& frames) {
-  return std::any_of(frames.frames.begin(), frames.frames.end(), [](const CircuitFrame& frame) {
-    const auto is_pressed = [](float newtons) { return newtons > 0.0F; };
-    const auto is_idle = [](float newtons) { return newtons == 0.0F; };
-    return std::any_of(frame.newtons.begin(), frame.newtons.end(), is_pressed) &&
-           std::any_of(frame.newtons.begin(), frame.newtons.end(), is_idle);
-  });
-}
-
 /// The answer is `none` only where that is shown against all circuits. Where the true one may be among the unresolved
 /// ones, a resolved one must be better than none, and not by a law.
 const CircuitTrial& choose(const std::vector<CircuitTrial>& trials, const CircuitFrames& frames) {
@@ -46,7 +36,8 @@ const CircuitTrial& choose(const std::vector<CircuitTrial>& trials, const Circui
   const auto best = std::min_element(trials.begin(), none, has_less);
   if (none == trials.end()) return *best;
   if (std::any_of(trials.begin(), trials.end(), std::mem_fn(&CircuitTrial::is_unresolved))) {
-    return is_surely_less(*best, *none) && presses_parts(frames) ? *best : *none;
+    const bool do_tell = std::any_of(frames.frames.begin(), frames.frames.end(), presses_part);
+    return is_surely_less(*best, *none) && do_tell ? *best : *none;
   }
   const bool is_shown =
       std::all_of(trials.begin(), none, [&](const CircuitTrial& circuit) { return is_none_shown(*none, circuit); });

@@ -22,11 +22,26 @@ using Trials = std::vector<CircuitTrial>;
 
 const double kLikely = 2.0 * std::log(100.0);  // odds of a hundred to one distinguish resistances
 
+/// Both lines of a taxel are connected, all others float; "auto" does not try it.
+bool has_two_wires(const Readout& readout) {
+  return readout.circuit == Circuit::divider && readout.idle_rows == IdleRows::floating &&
+         readout.idle_columns == IdleColumns::floating;
+}
+
+/// Frames that an inversion of two wires allows for: each product with its Jacobian takes taxels^2 multiplications.
+std::size_t affordable_with_two_wires(const ArrayDescription& array) {
+  constexpr double kMostMultiplications = 3e10;
+  constexpr double kProducts = 1e4;  // for a frame, of all ratios that are tried
+  const auto taxels = static_cast<double>(array.taxel_count());
+  return static_cast<std::size_t>(kMostMultiplications / (kProducts * taxels * taxels));
+}
+
 /// Frames by which the description is judged.
 std::size_t affordable(const ArrayDescription& array) {
   constexpr std::size_t kTaxels = 40'000;
   constexpr std::size_t kMost = 400;
-  return std::clamp(kTaxels / array.taxel_count(), few_frames(array.taxel_count()), kMost);
+  const std::size_t most = std::clamp(kTaxels / array.taxel_count(), few_frames(array.taxel_count()), kMost);
+  return has_two_wires(array.readout) ? std::min(most, affordable_with_two_wires(array)) : most;
 }
 
 /// Idle taxels on the lines of a press show crosstalk; others show other effects.
@@ -55,23 +70,15 @@ ArrayDescription without_readout(ArrayDescription array) {
   return array;
 }
 
-/// Both lines of a taxel are connected, all others float; "auto" does not try it.
-bool has_two_wires(const Readout& readout) {
-  return readout.circuit == Circuit::divider && readout.idle_rows == IdleRows::floating &&
-         readout.idle_columns == IdleColumns::floating;
-}
-
-/// The kinds that "auto" tries, and the one of two wires.
-Trials rivals_of(const ArrayDescription& array, const CircuitFrames& frames) {
-  Trials rivals = trials_of_all_kinds(without_readout(array), frames);
-  const auto floating = std::find_if(rivals.begin(), rivals.end(), [](const CircuitTrial& rival) {
-    return rival.array.readout.circuit == Circuit::divider && rival.array.readout.idle_rows == IdleRows::floating;
+/// The kind that "auto" does not try.
+CircuitTrial two_wires_of(const ArrayDescription& array, const CircuitFrames& frames) {
+  const Trials kinds = trials_of_all_kinds(without_readout(array), frames);
+  CircuitTrial trial = *std::find_if(kinds.begin(), kinds.end(), [](const CircuitTrial& kind) {
+    return kind.array.readout.circuit == Circuit::divider && kind.array.readout.idle_rows == IdleRows::floating;
   });
-  CircuitTrial two_wires = *floating;
-  two_wires.name = "divider, idle rows and columns floating";
-  two_wires.array.readout.idle_columns = IdleColumns::floating;
-  rivals.insert(std::next(floating), std::move(two_wires));
-  return rivals;
+  trial.name = "divider, idle rows and columns floating";
+  trial.array.readout.idle_columns = IdleColumns::floating;
+  return trial;
 }
 
 bool is_same_kind(const Readout& a, const Readout& b) {
@@ -150,16 +157,37 @@ std::string describe(const Trials& rivals, const CircuitTrial& best, const Array
                          : "check readout, or write circuit = \"auto\"");
 }
 
+/// Two wires in an array of many taxels, where they explain better than the best of the other kinds. Empty: they do
+/// not. They are judged by few frames, all of which press a part of the array.
+std::optional<CircuitTrial> better_two_wires(const CircuitTrial& best, const CircuitTrial& described) {
+  CircuitFrames telling = *described.frames;
+  std::erase_if(telling.frames, [](const CircuitFrame& frame) { return !presses_part(frame); });
+  Trials trials{two_wires_of(described.array, telling), described};
+  if (best.frames == described.frames) trials.push_back(best);  // not of another ADC
+  for (CircuitTrial& trial : trials) trial.frames = &telling;
+  fit_trials(affordable_with_two_wires(described.array), trials);
+  const CircuitTrial& found = trials.front();
+  const bool is_better = std::all_of(std::next(trials.begin()), trials.end(),
+                                     [&](const CircuitTrial& other) { return is_surely_less(found, other); });
+  return is_better ? std::optional(found) : std::nullopt;
+}
+
 }  // namespace
 
 std::optional<std::string> doubt_circuit(const ArrayDescription& array, const CircuitFrames& frames) {
-  if (array.has_unknown_circuit()) return std::nullopt;
+  constexpr std::size_t kFewest = 8;
+  const std::size_t most = affordable(array);
+  const std::size_t most_of_two_wires = affordable_with_two_wires(array);
+  if (array.has_unknown_circuit() || most < kFewest) return std::nullopt;
   const CircuitTrial described{.name = "array.toml", .array = array, .frames = &frames};
-  Trials rivals = rivals_of(array, frames);
+  Trials rivals = trials_of_all_kinds(without_readout(array), frames);
+  if (most_of_two_wires >= most) rivals.push_back(two_wires_of(array, frames));
   Trials trials{described};
-  std::copy_if(rivals.begin(), rivals.end(), std::back_inserter(trials),
-               [&](const CircuitTrial& rival) { return is_same_kind(rival.array.readout, array.readout); });
-  fit_trials(affordable(array), trials);
+  if (std::any_of(frames.frames.begin(), frames.frames.end(), presses_part)) {
+    std::copy_if(rivals.begin(), rivals.end(), std::back_inserter(trials),
+                 [&](const CircuitTrial& rival) { return is_same_kind(rival.array.readout, array.readout); });
+  }
+  fit_trials(most, trials);
   const bool are_resistances_others = has_other_resistances(trials.front(), trials.back());
   if (!are_resistances_others && !leaves_crosstalk(trials.front())) return std::nullopt;
 
@@ -168,10 +196,14 @@ std::optional<std::string> doubt_circuit(const ArrayDescription& array, const Ci
   const CircuitFrames of_smaller = smaller ? rescaled(frames, array, *smaller) : CircuitFrames();
   if (smaller) rivals.push_back({.name = "a smaller ADC", .array = *smaller, .frames = &of_smaller});
   rivals.push_back(described);
-  fit_trials(affordable(array), rivals);
+  fit_trials(most, rivals);
   const CircuitTrial judged = std::move(rivals.back());
   rivals.pop_back();
   const CircuitTrial& best = *std::min_element(rivals.begin(), rivals.end(), has_less);
+  if (most_of_two_wires >= kFewest && most_of_two_wires < most) {
+    const std::optional<CircuitTrial> two_wires = better_two_wires(best, described);
+    if (two_wires) return describe({}, *two_wires, array, highest);
+  }
   if (!best.fit || (!are_resistances_others && !is_surely_less(best, judged))) return std::nullopt;
   return describe(rivals, best, array, highest);
 }

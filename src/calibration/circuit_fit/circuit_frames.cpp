@@ -155,6 +155,13 @@ double highest_ratio(const CircuitFrames& frames) {
   return highest;
 }
 
+bool presses_part(const CircuitFrame& frame) {
+  const auto is_pressed = [](float newtons) { return newtons > 0.0F; };
+  const auto is_idle = [](float newtons) { return newtons == 0.0F; };
+  return std::any_of(frame.newtons.begin(), frame.newtons.end(), is_pressed) &&
+         std::any_of(frame.newtons.begin(), frame.newtons.end(), is_idle);
+}
+
 Result<CircuitFrames> circuit_frames(const ArrayDescription& array, std::span<const RawFrame> frames,
                                      std::span<const Load> loads, Nanos settle_time) {
   if (Status checked = check_loads(array, frames.size(), loads); !checked) return checked.error();

@@ -32,6 +32,10 @@ struct CircuitFrames {
 /// The largest reading, as a ratio of full scale; 0 where all are negative.
 [[nodiscard]] double highest_ratio(const CircuitFrames& frames);
 
+/// Some taxels are pressed and others are idle. The effect of a circuit looks like a law of the rubber in frames of
+/// loads on the whole array.
+[[nodiscard]] bool presses_part(const CircuitFrame& frame);
+
 /// Errors: bad loads, no labelled frame that can be used.
 [[nodiscard]] Result<CircuitFrames> circuit_frames(const ArrayDescription& array, std::span<const RawFrame> frames,
                                                    std::span<const Load> loads, Nanos settle_time);

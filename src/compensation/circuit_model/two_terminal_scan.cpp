@@ -2,19 +2,36 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "compensation/circuit_model/two_terminal_scan.hpp"
 
+#include <algorithm>
+
 namespace dermis::compensation {
+namespace {
+
+constexpr Eigen::Index kReadingsAtOnce = 256;  // whose potentials stay in the cache while all taxels are summed
+
+}  // namespace
 
 TwoTerminalScan::TwoTerminalScan(const ScannedLines& lines, const LineNetwork& network)
     : CircuitScan(lines),
       network_(network),
       potential_(at(network.nodes()), at(lines.taxels())),
-      square_sums_(at(lines.taxels())) {}
+      square_sums_(at(lines.taxels())),
+      part_(lines.count()),
+      across_(at(lines.count()), at(lines.count())) {}
 
 bool TwoTerminalScan::is_joined(std::size_t driven, std::size_t sensed) const noexcept {
   return network_.is_joined(network_.head(driven), network_.head(lines().driven() + sensed));
 }
 
+void TwoTerminalScan::number_parts() noexcept {
+  for (std::size_t line = 0; line < lines().count(); ++line) {
+    part_[line] = 0;
+    while (!network_.is_joined(network_.head(part_[line]), network_.head(line))) ++part_[line];
+  }
+}
+
 void TwoTerminalScan::solve() noexcept {
+  number_parts();
   potential_.setZero();
   lines().for_each_reading([&](std::size_t d, std::size_t s, std::size_t reading) {
     potential_(at(network_.head(d)), at(reading)) = 1.0;
@@ -56,17 +73,29 @@ void TwoTerminalScan::derive(std::size_t driven, std::size_t sensed, std::size_t
 
 void TwoTerminalScan::multiply_taxel_jacobian(std::span<const double> change, std::span<double> product) noexcept {
   square_sums_.setZero();
+  across_.setZero();
   for (std::size_t taxel = 0; taxel < lines().taxels(); ++taxel) {
     const auto [a, b] = network_.edges()[taxel];
-    if (!network_.is_joined(a, b)) continue;
-    square_sums_ += change[taxel] * (potential_.row(at(a)) - potential_.row(at(b))).cwiseAbs2().transpose();
+    const std::size_t row = lines().row_line(taxel / lines().array().cols);
+    const std::size_t col = lines().column_line(taxel % lines().array().cols);
+    if (!network_.is_joined(a, b)) across_(at(part_[row]), at(part_[col])) += change[taxel];
+  }
+  for (Eigen::Index first = 0; first < square_sums_.size(); first += kReadingsAtOnce) {
+    const Eigen::Index count = std::min(kReadingsAtOnce, square_sums_.size() - first);
+    for (std::size_t taxel = 0; taxel < lines().taxels(); ++taxel) {
+      const auto [a, b] = network_.edges()[taxel];
+      if (!network_.is_joined(a, b)) continue;
+      const auto drops = potential_.row(at(a)).segment(first, count) - potential_.row(at(b)).segment(first, count);
+      square_sums_.segment(first, count) += change[taxel] * drops.cwiseAbs2();
+    }
   }
   lines().for_each_reading([&](std::size_t d, std::size_t s, std::size_t reading) {
     const double amperes = currents()(at(d), at(s));
     double sum = amperes * amperes * square_sums_(at(reading));
     if (!is_joined(d, s)) {
-      sum = 0.0;
-      for (std::size_t taxel = 0; taxel < lines().taxels(); ++taxel) sum += drop(d, s, taxel) * change[taxel];
+      const Eigen::Index from = at(part_[d]);
+      const Eigen::Index to = at(part_[lines().driven() + s]);
+      sum = across_(from, to) + across_(to, from);
     }
     product[reading] = lines().sensed_head(s).gain * sum;
   });

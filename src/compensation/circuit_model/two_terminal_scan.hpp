@@ -2,6 +2,10 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <cstddef>
+#include <span>
+#include <vector>
+
 #include "compensation/circuit_model/circuit_scan.hpp"
 
 namespace dermis::compensation {
@@ -23,10 +27,13 @@ class TwoTerminalScan final : public CircuitScan {
   [[nodiscard]] double drop(std::size_t driven, std::size_t sensed, std::size_t taxel) const noexcept;
   /// The scan lies within one part of the array.
   [[nodiscard]] bool is_joined(std::size_t driven, std::size_t sensed) const noexcept;
+  void number_parts() noexcept;
 
   const LineNetwork& network_;
   LineNetwork::Potentials potential_;  // [nodes, readings]
-  Eigen::VectorXd square_sums_;        // over the taxels [readings]
+  Eigen::RowVectorXd square_sums_;     // over the taxels [readings]
+  std::vector<std::size_t> part_;      // of the array in which a line is: its first line [lines]
+  Matrix across_;                      // sums over the taxels from one part to another [lines, lines]
 };
 
 }  // namespace dermis::compensation
