@@ -80,6 +80,7 @@ std::vector<std::string> blind_lines(const compensation::LineFaultMonitor& monit
 
 }  // namespace
 
+/// Many members: each watches one kind of trouble.
 class Examination::Implementation {
  public:
   explicit Implementation(const pipeline::Model& model)

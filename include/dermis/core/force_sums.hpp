@@ -52,14 +52,14 @@ class CircuitErrors {
 /// Relative errors of gains that stay as they are from frame to frame.
 struct GainErrors {
   std::vector<float> sigma;   ///< Standard deviation of each gain [taxels]; empty: none is known.
-  std::size_t cols = 0;       ///< Of the array; a taxel is row * cols + col.
+  std::size_t cols = 0;       ///< A taxel is row * cols + col.
   double sheet_share = 0.0;   ///< Share of the variance that all gains have in common,
   double row_share = 0.0;     ///< those of a row,
   double column_share = 0.0;  ///< and those of a column; the rest is each taxel's own.
 
   bool operator==(const GainErrors&) const = default;
 
-  /// Of the sum of `newtons` over `taxels` [N^2]. Allocates nothing after the first call of a thread.
+  /// That of the sum of `newtons` over `taxels` [N^2]. Allocates nothing after the first call of a thread.
   [[nodiscard]] double variance(std::span<const float> newtons, std::span<const std::size_t> taxels) const noexcept;
 
   /// Empty, or of `taxels` finite numbers of at least 0, with shares of a whole.

@@ -61,7 +61,7 @@ struct ForceNetworks {
   std::vector<float> relative_sigma;                       ///< [kSigmaKnots, taxels]
   std::array<float, 2> sigma_knots_newtons{0.1F, 100.0F};  ///< First and last of the forces [N], > 0, rising.
 
-  GainErrors gain_errors;  ///< What a recalibration saw of changed gains and left; empty: nothing.
+  GainErrors gain_errors;  ///< Changes of gains that a recalibration saw and left; empty: none.
 
   [[nodiscard]] std::size_t taxel_count() const noexcept { return gain.size(); }
 
@@ -103,7 +103,7 @@ struct ForceNetworks {
 /// the mean of a noisy e. So p (p - 1) / 2 times the square of noise over e, which is at most 1 here, is taken away
 /// from F.
 ///
-/// Not thread-safe: one per stream.
+/// Not thread-safe: one per stream. Many members: process() may not allocate.
 class ForceFusion {
  public:
   /// `networks` must be consistent.

@@ -207,7 +207,7 @@ std::size_t proven_structure(const std::array<Spread, kStructures.size()>& sprea
   return static_cast<std::size_t>(best - spreads.begin());
 }
 
-/// What is left of the change of each gain.
+/// The part of the change of each gain that is left.
 GainErrors errors_left(const GaussianPresses& presses, double spread, const Structure& shared,
                        const FrameShape& shape) {
   const double sheet_variance = presses.sheet_variance();
