@@ -82,6 +82,7 @@ class Judge {
 
   /// Empty: the instrument cannot be so. The first call sets the standard deviations for all.
   std::optional<VectorXd> residuals(const InstrumentParameters& parameters, const VectorXd& values) {
+    if (!values.allFinite()) return std::nullopt;
     const Result<InvertedFrames> inverted = parameters.invert(frames_, values);
     if (!inverted) return std::nullopt;
     if (readable_.empty()) readable_ = readable_taxels(presses_, *inverted);
@@ -89,27 +90,29 @@ class Judge {
     const std::optional<InstrumentMisfit> misfit = misfit_of(presses_, *inverted, cols_, readable_);
     if (!misfit) return std::nullopt;
     if (sigmas_.size() == 0) sigmas_ = Eigen::Map<const VectorXd>(misfit->sigmas.data(), std::ssize(misfit->sigmas));
-    VectorXd residuals(std::ssize(misfit->totals) + std::ssize(misfit->idle));
-    residuals << Eigen::Map<const VectorXd>(misfit->totals.data(), sigmas_.size()).cwiseQuotient(sigmas_),
+    VectorXd residuals(sigmas_.size());
+    residuals << Eigen::Map<const VectorXd>(misfit->totals.data(), std::ssize(misfit->totals)),
         Eigen::Map<const VectorXd>(misfit->idle.data(), std::ssize(misfit->idle));
-    return residuals;
+    return residuals.cwiseQuotient(sigmas_);
   }
 
   /// The relative difference that nine of ten presses on several taxels stay below.
   [[nodiscard]] double largest_difference(const VectorXd& residuals) const {
-    const VectorXd sizes = residuals.head(sigmas_.size()).cwiseProduct(sigmas_).cwiseAbs();
+    const VectorXd sizes = residuals.head(totals()).cwiseProduct(sigmas_.head(totals())).cwiseAbs();
     return quantile(std::vector<double>(sizes.begin(), sizes.end()), kMostPressesShare);
   }
   /// The mean for presses on several taxels, which come first. Or its estimate by the median where that is less, so
   /// that single outliers are no misfit.
   [[nodiscard]] double square_of_totals(const VectorXd& residuals) const {
     constexpr double kMedianOfSquare = 0.4549;  // of a standard normal variable
-    const VectorXd squares = residuals.head(sigmas_.size()).cwiseAbs2();
+    const VectorXd squares = residuals.head(totals()).cwiseAbs2();
     const double median = upper_median(std::vector<double>(squares.begin(), squares.end()));
     return std::min(squares.mean(), median / kMedianOfSquare);
   }
 
  private:
+  [[nodiscard]] Index totals() const { return std::ssize(presses_.several); }
+
   std::size_t cols_;
   Presses presses_;
   std::vector<const CircuitFrame*> frames_;

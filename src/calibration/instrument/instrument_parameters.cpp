@@ -84,7 +84,7 @@ VectorXd InstrumentParameters::usual() const {
     switch (part) {
       case InstrumentPart::offset: return 0.01 * array_.readout.full_scale_counts();
       case InstrumentPart::supply: return 0.1;
-      case InstrumentPart::curve: return 0.005;
+      case InstrumentPart::curve: return 0.01;
       case InstrumentPart::drivers: return 0.5;
     }
     return 1.0;
@@ -96,7 +96,10 @@ VectorXd InstrumentParameters::usual() const {
 }
 
 VectorXd InstrumentParameters::possible(VectorXd values) const {
+  constexpr double kMost = 3.0;  // of what is usual
+  const VectorXd most = kMost * usual();
   visit_parts([&](InstrumentPart part, Index first, Index size) {
+    if (part != InstrumentPart::drivers) values[first] = std::clamp(values[first], -most[first], most[first]);
     if (part == InstrumentPart::supply) values[first] = std::max(values[first], 0.0);
     if (part != InstrumentPart::drivers) return;
     for (Index k = 0; k < size; ++k) {

@@ -31,7 +31,7 @@ class InstrumentParameters {
   [[nodiscard]] Eigen::VectorXd usual() const;
   /// Steps of finite differences [count()].
   [[nodiscard]] Eigen::VectorXd steps() const;
-  /// Without what no instrument has: resistances below 0.
+  /// Without what no instrument has: resistances below 0, and parts of more than three times their usual size.
   [[nodiscard]] Eigen::VectorXd possible(Eigen::VectorXd values) const;
   [[nodiscard]] ArrayDescription array_at(const Eigen::VectorXd& values) const;
   /// The conductances that these frames of `array` have then. Errors: a circuit that cannot be inverted.

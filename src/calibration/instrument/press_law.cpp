@@ -5,87 +5,26 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
-#include <set>
 
 #include "dermis/core/quantile.hpp"
 
 namespace dermis::calibration {
 namespace {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 constexpr std::size_t kLeastSingles = 20;  // to learn a law from
-constexpr std::size_t kMostTaxels = 6;
-constexpr double kResolved = 5.0;  // a conductance over its noise
+constexpr double kResolved = 5.0;          // a conductance over its noise
 constexpr double kSigmasOfDeviation = 1.4826;
 constexpr double kLeastScatter = 0.002;
 constexpr double kReadable = 3.0;       // an unloaded conductance over its noise
-constexpr Index kOwnTerms = 3;          // level, exponent, temperature
-constexpr Index kSharedTerms = 6;       // z, z^2, z^3, z^4, t, t z
+constexpr int kOwnTerms = 4;            // level, exponent, bend, temperature
+constexpr int kSharedTerms = 6;         // z, z^2, z^3, z^4, t, t z
 constexpr double kOwnPrecision = 0.01;  // of an exponent about the common one: a tenth, beside a scatter of 1 %
 
 /// Every taxel that is pressed, or may be.
 bool may_be_pressed(float newtons) {
   return newtons != 0.0F;
-}
-
-std::optional<Press> press_of(const CircuitFrame& frame) {
-  Press press{&frame, {}, 0.0};
-  for (std::size_t taxel = 0; taxel < frame.newtons.size(); ++taxel) {
-    if (!(frame.newtons[taxel] > 0.0F)) continue;
-    press.taxels.push_back(taxel);
-    press.newtons += static_cast<double>(frame.newtons[taxel]);
-  }
-  for (const TotalForce& total : frame.totals) {
-    press.taxels.insert(press.taxels.end(), total.taxels.begin(), total.taxels.end());
-    press.newtons += total.newtons;
-  }
-  if (press.taxels.empty() || !(press.newtons > 0.0)) return std::nullopt;
-  return press;
-}
-
-double lightest_of(const std::vector<Press>& single) {
-  double lightest = std::numeric_limits<double>::infinity();
-  for (const Press& press : single) lightest = std::min(lightest, press.newtons);
-  return lightest;
-}
-
-/// A press on few taxels, each as heavy as single presses are: below those nobody knows the law.
-bool is_well_known(const Press& press, double lightest) {
-  if (press.taxels.size() > kMostTaxels) return false;
-  const std::vector<float>& newtons = press.frame->newtons;
-  const bool is_heavy = press.newtons >= static_cast<double>(press.taxels.size()) * lightest;
-  return is_heavy && std::all_of(press.taxels.begin(), press.taxels.end(), [&](std::size_t taxel) {
-           return !(static_cast<double>(newtons[taxel]) < lightest);  // not a number: the total alone is known
-         });
-}
-
-void thin_out(std::vector<Press>& presses, std::size_t most) {
-  if (presses.size() <= most) return;
-  for (std::size_t k = 0; k < most; ++k) presses[k] = presses[k * presses.size() / most];
-  presses.resize(most);
-}
-
-std::set<std::size_t> taxels_of(const std::vector<Press>& presses) {
-  std::set<std::size_t> taxels;
-  for (const Press& press : presses) taxels.insert(press.taxels.begin(), press.taxels.end());
-  return taxels;
-}
-
-/// First those of taxels whose laws the presses on several ask for.
-void thin_out_single(Presses& presses, std::size_t most) {
-  const std::set<std::size_t> asked = taxels_of(presses.several);
-  const auto is_asked = [&](const Press& press) { return asked.contains(press.taxels.front()); };
-  const auto others = std::stable_partition(presses.single.begin(), presses.single.end(), is_asked);
-  std::vector<Press> rest(others, presses.single.end());
-  presses.single.erase(others, presses.single.end());
-  thin_out(presses.single, most);
-  thin_out(rest, most - presses.single.size());
-  presses.single.insert(presses.single.end(), rest.begin(), rest.end());
 }
 
 /// Mean conductance of each taxel in the frames in which it is idle.
@@ -135,50 +74,46 @@ struct LawPoint {
   double t = 0.0;      // temperature
 };
 
-VectorXd shared_basis(const LawPoint& point) {
-  VectorXd basis(kSharedTerms);
+using OwnBasis = Eigen::Vector<double, kOwnTerms>;
+using SharedBasis = Eigen::Vector<double, kSharedTerms>;
+
+SharedBasis shared_basis(const LawPoint& point) {
   const double z = point.z;
-  basis << z, z * z, z * z * z, z * z * z * z, point.t, point.t * z;
-  return basis;
+  return SharedBasis{z, z * z, z * z * z, z * z * z * z, point.t, point.t * z};
 }
 
-Eigen::Vector3d own_basis(const LawPoint& point) {
-  return {1.0, point.z, point.t};
+OwnBasis own_basis(const LawPoint& point) {
+  return {1.0, point.z, point.z * point.z, point.t};
 }
 
 /// ln F of each taxel by z.
 class PressLaws {
  public:
-  explicit PressLaws(std::size_t taxels) : own_(taxels), variance_(taxels) {}
+  explicit PressLaws(std::size_t taxels) : taxels_(taxels) {}
 
   /// Least squares with the taxels' own terms eliminated. `taxels`, `log_force`: of each point.
   void fit(const std::vector<LawPoint>& points, const std::vector<std::size_t>& taxels,
            const std::vector<double>& log_force) {
-    std::vector<Equations> equations(own_.size());
-    MatrixXd normal = MatrixXd::Identity(kSharedTerms, kSharedTerms) * 1e-6;
-    VectorXd right = VectorXd::Zero(kSharedTerms);
+    SharedMatrix normal = SharedMatrix::Identity() * 1e-6;
+    SharedBasis right = SharedBasis::Zero();
     for (std::size_t k = 0; k < points.size(); ++k) {
-      const VectorXd common = shared_basis(points[k]);
-      equations[taxels[k]].add(own_basis(points[k]), common, log_force[k]);
+      const SharedBasis common = shared_basis(points[k]);
+      taxels_[taxels[k]].add(own_basis(points[k]), common, log_force[k]);
       normal += common * common.transpose();
       right += common * log_force[k];
     }
-    for (const Equations& taxel : equations) {
-      if (taxel.count == 0.0) continue;
-      normal -= taxel.between.transpose() * taxel.own.llt().solve(taxel.between);
-      right -= taxel.between.transpose() * taxel.own.llt().solve(taxel.right);
+    for (OwnLaw& taxel : taxels_) {
+      taxel.factors.compute(taxel.normal);
+      normal -= taxel.between.transpose() * taxel.factors.solve(taxel.between);
+      right -= taxel.between.transpose() * taxel.factors.solve(taxel.right);
     }
-    common_ = normal.ldlt().solve(right);
-    for (std::size_t taxel = 0; taxel < own_.size(); ++taxel) {
-      const Equations& of_taxel = equations[taxel];
-      if (of_taxel.count == 0.0) continue;
-      own_[taxel] = of_taxel.own.llt().solve(of_taxel.right - of_taxel.between * common_);
-      variance_[taxel] = 1.0 / of_taxel.count;
-    }
+    factors_.compute(normal);
+    common_ = factors_.solve(right);
+    for (OwnLaw& taxel : taxels_) taxel.terms = taxel.factors.solve(taxel.right - taxel.between * common_);
   }
 
   [[nodiscard]] double log_force(std::size_t taxel, const LawPoint& point) const {
-    return own_[taxel].dot(own_basis(point)) + common_.dot(shared_basis(point));
+    return taxels_[taxel].terms.dot(own_basis(point)) + common_.dot(shared_basis(point));
   }
   /// d ln F / d z.
   [[nodiscard]] double slope(std::size_t taxel, const LawPoint& point) const {
@@ -187,27 +122,36 @@ class PressLaws {
     moved.z += kStep;
     return (log_force(taxel, moved) - log_force(taxel, point)) / kStep;
   }
-  /// Variance of the law, over that of a press.
-  [[nodiscard]] double variance(std::size_t taxel) const { return variance_[taxel]; }
+  /// Variance of the law at a point, over that of a press: the leverage of a press that was learned from.
+  [[nodiscard]] double variance(std::size_t taxel, const LawPoint& point) const {
+    const OwnLaw& law = taxels_[taxel];
+    const OwnBasis own = own_basis(point);
+    const OwnBasis answer = law.factors.solve(own);
+    const SharedBasis shared = shared_basis(point) - law.between.transpose() * answer;
+    return own.dot(answer) + shared.dot(factors_.solve(shared));
+  }
 
  private:
-  struct Equations {
-    Eigen::Matrix3d own = Eigen::Vector3d(1e-9, kOwnPrecision, kOwnPrecision).asDiagonal();
-    Eigen::Matrix<double, kOwnTerms, kSharedTerms> between = Eigen::Matrix<double, kOwnTerms, kSharedTerms>::Zero();
-    Eigen::Vector3d right = Eigen::Vector3d::Zero();
-    double count = 0.0;
+  using SharedMatrix = Eigen::Matrix<double, kSharedTerms, kSharedTerms>;
+  using OwnMatrix = Eigen::Matrix<double, kOwnTerms, kOwnTerms>;
 
-    void add(const Eigen::Vector3d& basis, const VectorXd& common, double value) {
-      own += basis * basis.transpose();
+  struct OwnLaw {
+    OwnMatrix normal = OwnBasis(1e-9, kOwnPrecision, kOwnPrecision, kOwnPrecision).asDiagonal();
+    Eigen::Matrix<double, kOwnTerms, kSharedTerms> between = Eigen::Matrix<double, kOwnTerms, kSharedTerms>::Zero();
+    OwnBasis right = OwnBasis::Zero();
+    Eigen::LLT<OwnMatrix> factors;
+    OwnBasis terms = OwnBasis::Zero();
+
+    void add(const OwnBasis& basis, const SharedBasis& common, double value) {
+      normal += basis * basis.transpose();
       between += basis * common.transpose();
       right += basis * value;
-      count += 1.0;
     }
   };
 
-  std::vector<Eigen::Vector3d> own_;
-  std::vector<double> variance_;
-  VectorXd common_;
+  std::vector<OwnLaw> taxels_;
+  Eigen::LDLT<SharedMatrix> factors_;
+  SharedBasis common_ = SharedBasis::Zero();
 };
 
 /// Conductances on a scale on which the powers of z stay small.
@@ -236,9 +180,10 @@ class Scale {
     const double excess = inverted.siemens[taxel] - unloaded;
     const double sigma = inverted.sigma_siemens[taxel];
     if (!(excess > least_sigmas * sigma)) return std::nullopt;
-    const double z = std::min((std::log(excess) - centre_) / half_span_, kBeyond);
+    const double z = (std::log(excess) - centre_) / half_span_;
     if (z < -kBeyond) return std::nullopt;
-    return LawPoint{z, sigma / excess / half_span_, frame.temperature};
+    const double beyond = std::max(z - kBeyond, 0.0);
+    return LawPoint{z - beyond, std::hypot(sigma / excess / half_span_, beyond), frame.temperature};
   }
 
  private:
@@ -251,6 +196,18 @@ struct LearnedLaws {
   PressLaws laws;
   double scatter = 0.0;  // of a single press about its law
 };
+
+/// Of a single press, by the median. A law follows each press by its leverage.
+double scatter_about(const PressLaws& laws, const std::vector<LawPoint>& points, const std::vector<std::size_t>& taxels,
+                     const std::vector<double>& log_forces) {
+  constexpr double kLeastFreedom = 0.05;  // of a press
+  std::vector<double> deviations;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const double freedom = std::max(1.0 - laws.variance(taxels[k], points[k]), kLeastFreedom);
+    deviations.push_back(std::abs(log_forces[k] - laws.log_force(taxels[k], points[k])) / std::sqrt(freedom));
+  }
+  return kSigmasOfDeviation * quantile(deviations, 0.5);
+}
 
 /// Empty: too few presses that are evidence.
 std::optional<LearnedLaws> learn_laws(const Presses& presses, const InvertedFrames& inverted,
@@ -271,15 +228,7 @@ std::optional<LearnedLaws> learn_laws(const Presses& presses, const InvertedFram
   if (points.size() < kLeastSingles) return std::nullopt;
   LearnedLaws learned{PressLaws(unloaded.size())};
   learned.laws.fit(points, taxels, log_forces);
-  std::vector<double> deviations;
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    deviations.push_back(std::abs(log_forces[k] - learned.laws.log_force(taxels[k], points[k])));
-  }
-  const auto pressed = static_cast<double>(std::set<std::size_t>(taxels.begin(), taxels.end()).size());
-  const auto count = static_cast<double>(points.size());
-  const double freedom = std::max(count - 2.0 * pressed - static_cast<double>(kSharedTerms), 1.0);
-  learned.scatter =
-      std::max(kLeastScatter, kSigmasOfDeviation * quantile(deviations, 0.5) * std::sqrt(count / freedom));
+  learned.scatter = std::max(kLeastScatter, scatter_about(learned.laws, points, taxels, log_forces));
   return learned;
 }
 
@@ -291,7 +240,7 @@ void add_total(const Press& press, const InvertedFrame& inverted, const std::vec
     const auto point = scale.point(*press.frame, inverted, taxel, unloaded[taxel], 0.0);
     if (!point) continue;
     const double force = std::exp(learned.laws.log_force(taxel, *point));
-    const double of_law = learned.scatter * learned.scatter * (1.0 + learned.laws.variance(taxel));
+    const double of_law = learned.scatter * learned.scatter * (1.0 + learned.laws.variance(taxel, *point));
     total += force;
     variance += force * force * (of_law + std::pow(learned.laws.slope(taxel, *point) * point->sigma, 2));
   }
@@ -332,33 +281,20 @@ void add_idle(const Press& press, const InvertedFrame& inverted, const std::vect
   }
 }
 
-}  // namespace
-
-Presses sort_presses(const CircuitFrames& frames, std::size_t most) {
-  Presses presses;
-  for (const CircuitFrame& frame : frames.frames) {
-    std::optional<Press> press = press_of(frame);
-    if (!press) continue;
-    (press->taxels.size() == 1 ? presses.single : presses.several).push_back(*std::move(press));
+/// Idle taxels move with more than the noise of readings: with temperature, creep, and what lies beside them.
+void add_sigmas_of_idle(InstrumentMisfit& misfit) {
+  std::array<double, 2> sigmas{};  // of rows, of columns
+  for (std::size_t kind = 0; kind < sigmas.size(); ++kind) {
+    std::vector<double> values;
+    for (std::size_t k = kind; k < misfit.idle.size(); k += sigmas.size()) values.push_back(misfit.idle[k]);
+    const double middle = quantile(values, 0.5);
+    for (double& value : values) value = std::abs(value - middle);
+    sigmas[kind] = std::max(1.0, kSigmasOfDeviation * quantile(values, 0.5));
   }
-  const std::set<std::size_t> alone = taxels_of(presses.single);
-  const double lightest = lightest_of(presses.single);
-  std::erase_if(presses.several, [&](const Press& press) {
-    const bool are_alone =
-        std::all_of(press.taxels.begin(), press.taxels.end(), [&](std::size_t taxel) { return alone.contains(taxel); });
-    return !are_alone || !is_well_known(press, lightest);
-  });
-  thin_out(presses.several, most);
-  thin_out_single(presses, most);
-  return presses;
+  for (std::size_t k = 0; k < misfit.idle.size(); ++k) misfit.sigmas.push_back(sigmas[k % sigmas.size()]);
 }
 
-std::vector<const CircuitFrame*> frames_of(const Presses& presses) {
-  std::vector<const CircuitFrame*> frames;
-  for (const Press& press : presses.single) frames.push_back(press.frame);
-  for (const Press& press : presses.several) frames.push_back(press.frame);
-  return frames;
-}
+}  // namespace
 
 std::vector<bool> readable_taxels(const Presses& presses, const InvertedFrames& inverted) {
   if (presses.single.empty() || !are_all_there(inverted)) return {};
@@ -380,13 +316,13 @@ std::optional<InstrumentMisfit> misfit_of(const Presses& presses, const Inverted
   for (std::size_t k = 0; k < presses.single.size(); ++k) {
     add_idle(presses.single[k], *inverted[k], unloaded, cols, readable, misfit);
   }
-  if (presses.several.empty()) return misfit;
   const Scale scale(presses, inverted, unloaded);
   const std::optional<LearnedLaws> learned = learn_laws(presses, inverted, unloaded, scale);
   if (!learned) return std::nullopt;
   for (std::size_t k = 0; k < presses.several.size(); ++k) {
     add_total(presses.several[k], *inverted[presses.single.size() + k], unloaded, scale, *learned, misfit);
   }
+  add_sigmas_of_idle(misfit);
   return misfit;
 }
 
