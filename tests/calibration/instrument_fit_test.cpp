@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
 // In what an instrument is not as its description says, found by a calibration.
-#include "calibration/instrument/instrument_fit.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -99,6 +99,7 @@ void average_into(Labelled& mean, const Labelled& next) {
   if (mean.celsius) *mean.celsius += share * (*next.celsius - *mean.celsius);
   mean.frame.sigma_ratio *= std::sqrt(count / (count + 1.0));
   ++mean.frame.averaged;
+  mean.frame.last_frame = next.frame.last_frame;
 }
 
 std::vector<Labelled> labelled_frames(const ArrayDescription& array, std::span<const RawFrame> frames,
@@ -118,6 +119,7 @@ std::vector<Labelled> labelled_frames(const ArrayDescription& array, std::span<c
     if (conditioner.rejection() != preprocessing::Rejection::none) continue;
     Labelled next;
     next.celsius = conditioned.temperature_celsius;
+    next.frame.first_frame = next.frame.last_frame = k;
     next.frame.ratio = conditioned.ratio;
     next.frame.sigma_ratio = next.frame.described_sigma = conditioned.sigma_ratio;
     read_loads(array, loads_of[k], conditioned, next.frame);

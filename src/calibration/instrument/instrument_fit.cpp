@@ -13,10 +13,8 @@
 
 #include "calibration/circuit_fit/circuit_frames.hpp"
 #include "calibration/circuit_fit/line_parameters.hpp"
-#include "calibration/instrument/dead_zone.hpp"
 #include "calibration/instrument/instrument_parameters.hpp"
 #include "calibration/instrument/press_law.hpp"
-#include "calibration/instrument/settling.hpp"
 #include "calibration/mean.hpp"
 #include "dermis/core/quantile.hpp"
 
@@ -27,16 +25,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::size_t kLeastPresses = 8;  // on several taxels, for any evidence
-constexpr int kSteps = 4;                 // of Gauss-Newton
-constexpr double kLimit = 4.0;            // sigmas from which on a press is an outlier
-constexpr double kEvidence = 30.0;        // squares that a part must explain
-constexpr double kPerParameter = 6.0;     // and so many more for each parameter beyond the first
-constexpr const char* kNoPresses = "adc_offset_counts and supply_ohm cannot be told";
-constexpr double kWorthAFit = 0.5;  // of that, as one step foretells it
-constexpr double kMostPressesShare = 0.9;
-constexpr const char* kNothing = "adc_offset_counts and supply_ohm are nothing, as far as presses tell";
-constexpr double kNoticed = 2.0;  // mean square of presses that do not agree
+constexpr int kSteps = 4;              // of Gauss-Newton
+constexpr double kLimit = 4.0;         // sigmas from which on a press is an outlier
+constexpr double kEvidence = 30.0;     // squares that a part must explain
+constexpr double kPerParameter = 6.0;  // and so many more for each parameter beyond the first
+constexpr double kWorthAFit = 0.5;     // of that, as one step foretells it
+constexpr double kNoticed = 2.0;       // mean square of presses that do not agree
 
 /// Parts with values that explain presses as well as they can.
 struct Explanation {
@@ -45,8 +39,8 @@ struct Explanation {
   VectorXd errors;     // standard errors
   VectorXd residuals;  // of presses and idle lines, in sigmas
 
-  /// Squares of what it leaves, and of how unusual it is.
-  [[nodiscard]] double cost() const;
+  /// Squares of what it leaves, and of how unusual it is. `weights`: of the residuals.
+  [[nodiscard]] double cost(const VectorXd& weights) const;
 };
 
 /// Sum of squares in which outliers count by their first power (Huber).
@@ -59,17 +53,8 @@ double huber_cost(const VectorXd& residuals) {
   return sum;
 }
 
-double Explanation::cost() const {
-  return huber_cost(residuals) + values.cwiseQuotient(parameters.usual()).squaredNorm();
-}
-
-/// Inversions of large arrays, and by Newton's method, take long.
-std::size_t affordable_presses(const ArrayDescription& array) {
-  constexpr std::size_t kTaxels = 400'000;
-  constexpr std::size_t kFew = 100;
-  constexpr std::size_t kMany = 600;
-  const bool is_slow = is_inverted_slowly(array) || !array.readout.row_segment_ohm.empty();
-  return is_slow ? kFew : std::clamp(kTaxels / array.taxel_count(), kFew, kMany);
+double Explanation::cost(const VectorXd& weights) const {
+  return huber_cost(residuals.cwiseProduct(weights)) + values.cwiseQuotient(parameters.usual()).squaredNorm();
 }
 
 /// The presses of a calibration, and what an instrument leaves of them.
@@ -96,10 +81,19 @@ class Judge {
     return residuals.cwiseQuotient(sigmas_);
   }
 
-  /// The relative difference that nine of ten presses on several taxels stay below.
-  [[nodiscard]] double largest_difference(const VectorXd& residuals) const {
-    const VectorXd sizes = residuals.head(totals()).cwiseProduct(sigmas_.head(totals())).cwiseAbs();
-    return quantile(std::vector<double>(sizes.begin(), sizes.end()), kMostPressesShare);
+  /// Of residuals, where idle taxels scatter as these do.
+  [[nodiscard]] VectorXd weights_by(const VectorXd& residuals) const {
+    const Index idle = residuals.size() - totals();
+    const VectorXd values = residuals.tail(idle).cwiseProduct(sigmas_.tail(idle));
+    const std::vector<double> sigmas = sigmas_of_idle({values.data(), static_cast<std::size_t>(idle)});
+    VectorXd weights = VectorXd::Ones(residuals.size());
+    weights.tail(idle) = sigmas_.tail(idle).cwiseQuotient(Eigen::Map<const VectorXd>(sigmas.data(), idle));
+    return weights;
+  }
+  /// Mean square of idle taxels on pressed lines, over the noise of readings.
+  [[nodiscard]] double square_of_idle(const VectorXd& residuals) const {
+    const Index idle = residuals.size() - totals();
+    return residuals.tail(idle).cwiseProduct(sigmas_.tail(idle)).squaredNorm() / static_cast<double>(idle);
   }
   /// The mean for presses on several taxels, which come first. Or its estimate by the median where that is less, so
   /// that single outliers are no misfit.
@@ -131,9 +125,13 @@ std::optional<MatrixXd> jacobian(Judge& judge, const InstrumentParameters& param
   for (Index p = 0; p < steps.size(); ++p) {
     VectorXd moved = values;
     moved[p] += steps[p];
-    const std::optional<VectorXd> there = judge.residuals(parameters, moved);
+    std::optional<VectorXd> there = judge.residuals(parameters, moved);
+    if (!there) {  // as much of it would leave idle taxels nothing
+      moved[p] = values[p] - steps[p];
+      there = judge.residuals(parameters, moved);
+    }
     if (!there) return std::nullopt;
-    slopes.col(p) = (*there - here) / steps[p];
+    slopes.col(p) = (*there - here) / (moved[p] - values[p]);
   }
   return slopes;
 }
@@ -145,14 +143,14 @@ MatrixXd information(const MatrixXd& slopes, const VectorXd& weights, const Vect
   return normal;
 }
 
-/// A step downhill, halved until it is one. false: there is none.
-bool move(Judge& judge, const InstrumentParameters& parameters, const VectorXd& step, VectorXd& values,
-          VectorXd& residuals) {
+/// A step downhill, halved until it is one. false: there is none. `scale`: of the residuals.
+bool move(Judge& judge, const InstrumentParameters& parameters, const VectorXd& step, const VectorXd& scale,
+          VectorXd& values, VectorXd& residuals) {
   constexpr double kLeastShare = 0.1;
   for (double share = 1.0; share > kLeastShare; share *= 0.5) {
     const VectorXd next = parameters.possible(values - share * step);
     const std::optional<VectorXd> there = judge.residuals(parameters, next);
-    if (!there || huber_cost(*there) > huber_cost(residuals)) continue;
+    if (!there || huber_cost(there->cwiseProduct(scale)) > huber_cost(residuals.cwiseProduct(scale))) continue;
     values = next;
     residuals = *there;
     return true;
@@ -160,33 +158,36 @@ bool move(Judge& judge, const InstrumentParameters& parameters, const VectorXd& 
   return false;
 }
 
-std::optional<Explanation> explain(Judge& judge, InstrumentParameters parameters) {
+/// Empty: one step foretells that it explains less than `least`.
+std::optional<Explanation> explain(Judge& judge, InstrumentParameters parameters, double least) {
   VectorXd values = VectorXd::Zero(parameters.count());
   VectorXd errors = values;
   std::optional<VectorXd> here = judge.residuals(parameters, values);
   for (int step = 0; here && parameters.count() > 0 && step < kSteps; ++step) {
     const std::optional<MatrixXd> slopes = jacobian(judge, parameters, values, *here);
     if (!slopes) return std::nullopt;
-    const VectorXd weights = huber_weights(*here);
+    const VectorXd scale = judge.weights_by(*here);
+    const VectorXd weights = huber_weights(here->cwiseProduct(scale)).cwiseProduct(scale.cwiseAbs2());
     const VectorXd usual = parameters.usual();
     const MatrixXd normal = information(*slopes, weights, usual);
     const VectorXd gradient =
         slopes->transpose() * weights.cwiseProduct(*here) + values.cwiseQuotient(usual.cwiseAbs2());
     const Eigen::LDLT<MatrixXd> factors(normal);
     errors = factors.solve(MatrixXd::Identity(normal.rows(), normal.cols())).diagonal().cwiseMax(0.0).cwiseSqrt();
-    if (step == 0 && gradient.dot(factors.solve(gradient)) < kWorthAFit * kEvidence) return std::nullopt;
-    if (!move(judge, parameters, factors.solve(gradient), values, *here)) break;
+    if (step == 0 && gradient.dot(factors.solve(gradient)) < least) return std::nullopt;
+    if (!move(judge, parameters, factors.solve(gradient), scale, values, *here)) break;
   }
   if (!here) return std::nullopt;
   return Explanation{std::move(parameters), std::move(values), std::move(errors), *std::move(here)};
 }
 
 /// By how much it explains more than what must be asked of so many parameters, with what it leaves as the measure.
-double evidence(const Explanation& found, double before, Index parameters_before) {
-  const double left = found.cost();
+double evidence(const Judge& judge, const Explanation& found, const Explanation& before) {
+  const VectorXd weights = judge.weights_by(found.residuals);
+  const double left = found.cost(weights);
   const double scale = std::max(1.0, left / static_cast<double>(found.residuals.size()));
-  const auto more = static_cast<double>(found.parameters.count() - parameters_before);
-  return (before - left) / scale - kEvidence - kPerParameter * (more - 1.0);
+  const auto more = static_cast<double>(found.parameters.count() - before.parameters.count());
+  return (before.cost(weights) - left) / scale - kEvidence - kPerParameter * (more - 1.0);
 }
 
 std::vector<InstrumentPart> open_parts(const ArrayDescription& array) {
@@ -208,9 +209,9 @@ std::optional<Explanation> best_beside(Judge& judge, const ArrayDescription& arr
     std::vector<InstrumentPart> parts = best.parameters.parts();
     if (std::find(parts.begin(), parts.end(), part) != parts.end()) continue;
     parts.push_back(part);
-    std::optional<Explanation> with_part = explain(judge, {array, parts});
+    std::optional<Explanation> with_part = explain(judge, {array, parts}, kWorthAFit * kEvidence);
     if (!with_part) continue;
-    const double gained = evidence(*with_part, best.cost(), best.parameters.count());
+    const double gained = evidence(judge, *with_part, best);
     if (gained <= most) continue;
     most = gained;
     found = std::move(with_part);
@@ -248,98 +249,52 @@ std::string describe(const Explanation& found, const ArrayDescription& array, st
       ohms.minCoeff(), ohms.maxCoeff());
 }
 
-/// The relative loss through such a part of one of two equal presses in a row, for the heaviest.
-double effect_of(InstrumentPart part, const Explanation& found, const CircuitFrames& frames) {
-  const std::vector<InstrumentPart>& parts = found.parameters.parts();
-  const auto here = std::find(parts.begin(), parts.end(), part);
-  if (here == parts.end()) return 0.0;
-  const auto place = static_cast<std::size_t>(here - parts.begin());
-  const VectorXd shares = found.values.segment(found.parameters.first_of(place), found.parameters.size_of(place));
-  return shares.cwiseAbs().mean() * highest_ratio(frames);  // a reading over its load is about the conductance
-}
-
-/// Drivers that the description gives are not changed.
-Explanation without_drivers(Judge& judge, const ArrayDescription& array, const Explanation& found) {
-  std::vector<InstrumentPart> parts = found.parameters.parts();
-  if (std::erase(parts, InstrumentPart::drivers) == 0) return found;
-  std::optional<Explanation> rest = explain(judge, {array, parts});
-  return rest ? *std::move(rest) : found;
-}
-
-/// Judges the residual after the applied parts: how sure forces are, and a sentence where presses do not agree.
-void notice(const Judge& judge, const Explanation& applied, InstrumentFit& fit) {
-  const double square = judge.square_of_totals(applied.residuals);
-  if (square <= kNoticed) return;
-  fit.unexplained = std::max(fit.unexplained, judge.largest_difference(applied.residuals));
-  fit.doubts.push_back(fmt::format(
-      "presses on several taxels do not add up: they scatter {:.1f} times as much as single ones tell, {:.1f} % of the "
-      "force; circuit or ADC are not as described, and forces are said to be so much less sure",
-      std::sqrt(square), 100.0 * fit.unexplained));
+InstrumentFinding finding_of(const Explanation& found, const ArrayDescription& array) {
+  InstrumentFinding finding{found.parameters.parts(), found.parameters.array_at(found.values), {}, false};
+  for (std::size_t place = 0; place < finding.parts.size(); ++place) {
+    finding.sentences.push_back(describe(found, array, place));
+  }
+  return finding;
 }
 
 }  // namespace
 
-bool asks_for_instrument(const Readout& readout) {
-  return readout.adc_errors.is_unknown() || std::isnan(readout.supply_ohm.value_or(0.0));
+/// Inversions of large arrays, and by Newton's method, take long.
+std::size_t affordable_presses(const ArrayDescription& array) {
+  constexpr std::size_t kTaxels = 400'000;
+  constexpr std::size_t kFew = 100;
+  constexpr std::size_t kMany = 600;
+  const bool is_slow = is_inverted_slowly(array) || !array.readout.row_segment_ohm.empty();
+  return is_slow ? kFew : std::clamp(kTaxels / array.taxel_count(), kFew, kMany);
 }
 
-ArrayDescription without_unknown_instrument(ArrayDescription array) {
-  for (std::optional<double>* const value : {&array.readout.adc_errors.offset_counts, &array.readout.supply_ohm}) {
-    if (std::isnan(value->value_or(0.0))) value->reset();
+InstrumentFindings find_instrument(const ArrayDescription& array, const CircuitFrames& frames) {
+  constexpr std::size_t kLeastPresses = 8;
+  constexpr double kNoise = 1.2;    // mean square of idle taxels that differ by noise alone
+  constexpr double kWithout = 1.5;  // times that, without a part that explains them
+  InstrumentFindings findings;
+  Judge judge(array, frames);
+  findings.lacks_presses = judge.presses().several.size() < kLeastPresses;
+  if (findings.lacks_presses) return findings;
+  std::optional<Explanation> best = explain(judge, {array, {}}, 0.0);
+  if (!best) return findings;
+  findings.disagree = judge.square_of_totals(best->residuals) > kNoticed;
+  while (std::optional<Explanation> better = best_beside(judge, array, *best)) {
+    findings.found.push_back(finding_of(*better, array));
+    const double idle = judge.square_of_idle(better->residuals);
+    findings.found.back().explains_idle = idle < kNoise && judge.square_of_idle(best->residuals) > kWithout * idle;
+    best = std::move(better);
   }
-  return array;
+  return findings;
 }
 
-InstrumentFit fit_settling(const ArrayDescription& array, std::span<const RawFrame> frames,
-                           std::span<const Load> loads) {
-  InstrumentFit fit{.array = array, .statements = {}, .doubts = {}};
-  std::optional<double>& settling = fit.array.readout.adc_errors.settling;
-  const bool is_asked_for = settling && std::isnan(*settling);
-  if (settling && !is_asked_for) return fit;
-  settling.reset();
-  const std::optional<SettlingEstimate> estimate = measure_settling(fit.array, frames, loads);
-  if (estimate && estimate->is_significant()) {
-    settling = estimate->share;
-    fit.statements.push_back(fmt::format(
-        "each reading keeps {:.2f} % (\u00b1 {:.2f}) of the one before it in the scan, which has not settled: "
-        "undone (adc_settling)",
-        100.0 * estimate->share, 100.0 * estimate->standard_error));
-  } else if (is_asked_for) {
-    fit.statements.push_back(estimate
-                                 ? fmt::format("readings settle: {:.2f} % (\u00b1 {:.2f}) is left of the one before",
-                                               100.0 * estimate->share, 100.0 * estimate->standard_error)
-                                 : "adc_settling cannot be told: press at least 20 taxels, each alone");
-  }
-  return fit;
-}
-
-Result<InstrumentFit> fit_instrument(const ArrayDescription& array, std::span<const RawFrame> frames,
-                                     std::span<const Load> loads, Nanos settle_time, bool is_asked_for) {
-  InstrumentFit fit{.array = array, .statements = {}, .doubts = {}};
-  const Result<CircuitFrames> labelled = circuit_frames(array, frames, loads, settle_time);
-  if (!labelled) return labelled.error();
-  const std::optional<std::string> dead_zone = describe_dead_zone(*labelled);
-  if (dead_zone) fit.doubts.push_back(*dead_zone);
-  Judge judge(array, *labelled);
-  if (judge.presses().several.size() < kLeastPresses) {
-    if (is_asked_for) fit.statements.emplace_back(kNoPresses);
-    fit.lacks_proof = true;
-    return fit;
-  }
-  std::optional<Explanation> best = explain(judge, {array, {}});
-  if (!best) return fit;
-  const auto explain_more = [&] { return dead_zone ? std::nullopt : best_beside(judge, array, *best); };
-  while (std::optional<Explanation> better = explain_more()) best = std::move(better);
-  for (std::size_t place = 0; place < best->parameters.parts().size(); ++place) {
-    const bool is_applied = best->parameters.parts()[place] != InstrumentPart::drivers;
-    (is_applied ? fit.statements : fit.doubts).push_back(describe(*best, array, place));
-  }
-  if (is_asked_for && best->parameters.count() == 0) fit.statements.emplace_back(kNothing);
-  const Explanation applied = without_drivers(judge, array, *best);
-  fit.array = applied.parameters.array_at(applied.values);
-  fit.unexplained = effect_of(InstrumentPart::drivers, *best, *labelled);
-  notice(judge, applied, fit);
-  return fit;
+std::optional<InstrumentFinding> refit_instrument(const ArrayDescription& array,
+                                                  const std::vector<InstrumentPart>& parts,
+                                                  const CircuitFrames& frames) {
+  Judge judge(array, frames);
+  const std::optional<Explanation> refit = explain(judge, {array, parts}, 0.0);
+  if (!refit) return std::nullopt;
+  return finding_of(*refit, array);
 }
 
 }  // namespace dermis::calibration

@@ -2,48 +2,45 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
-#include <span>
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "calibration/circuit_fit/circuit_frames.hpp"
+#include "calibration/instrument/instrument_parameters.hpp"
 #include "dermis/core/array_description.hpp"
-#include "dermis/core/frames.hpp"
-#include "dermis/core/loads.hpp"
-#include "dermis/core/result.hpp"
 
 namespace dermis::calibration {
 
-/// In what an instrument is not as its description says, and what is left.
-struct InstrumentFit {
-  ArrayDescription array;               ///< With what was found.
-  std::vector<std::string> statements;  ///< What was found, a sentence each.
-  std::vector<std::string> doubts;      ///< Parts that are not as described and stay so, a sentence each.
-  /// The relative difference of presses on several taxels from single ones, beyond chance and beyond all that was
-  /// found. 0: they agree, or there are none.
-  double unexplained = 0.0;
-  /// Too few presses on several taxels show whether the instrument is as described.
-  bool lacks_proof = false;
+/// Parts of an instrument at the values that explain presses best.
+struct InstrumentFinding {
+  std::vector<InstrumentPart> parts;
+  ArrayDescription array;
+  std::vector<std::string> sentences;  ///< [parts]
+  /// Idle taxels on pressed lines differ by noise alone with the last part, and by clearly more without it.
+  bool explains_idle = false;
 };
 
-/// The description says "fit" of its ADC or its supply.
-[[nodiscard]] bool asks_for_instrument(const Readout& readout);
+struct InstrumentFindings {
+  std::vector<InstrumentFinding> found;  ///< Each has a part more than the one before.
+  bool disagree = false;                 ///< Presses on several taxels differ from single ones by more than chance.
+  bool lacks_presses = false;            ///< Fewer than eight on several taxels tell nothing.
+};
 
-/// Offset and supply that are to be fitted are left out.
-[[nodiscard]] ArrayDescription without_unknown_instrument(ArrayDescription array);
-
-/// Sets a settling that the description leaves open to the measured one of single presses (measure_settling()), or to
-/// none.
-[[nodiscard]] InstrumentFit fit_settling(const ArrayDescription& array, std::span<const RawFrame> frames,
-                                         std::span<const Load> loads);
+/// So many presses of each kind are judged: inversions of large arrays, and by Newton's method, take long.
+[[nodiscard]] std::size_t affordable_presses(const ArrayDescription& array);
 
 /// Presses on several taxels must give the forces that single presses have taught. They may show offset and curve of
 /// the ADC, and resistance of the supply and of the drivers. Each kind that the description leaves open is fitted by
 /// Gauss-Newton. The kind that explains most is taken, then the next beside it, as long as chance would not explain as
 /// much. Idle taxels on pressed lines add to this, but without eight presses on several taxels nothing is fitted:
-/// temperature and material move idle taxels, too. Drivers are named, not changed: the description gives them. `array`
-/// has a circuit whose resistances are known. `is_asked_for`: a sentence says so where nothing can be determined.
-/// Errors: those of circuit_frames(), a circuit that cannot be inverted.
-[[nodiscard]] Result<InstrumentFit> fit_instrument(const ArrayDescription& array, std::span<const RawFrame> frames,
-                                                   std::span<const Load> loads, Nanos settle_time, bool is_asked_for);
+/// temperature and material move idle taxels, too. All resistances of `array` are known.
+[[nodiscard]] InstrumentFindings find_instrument(const ArrayDescription& array, const CircuitFrames& frames);
+
+/// These parts by other frames. Empty: they cannot be fitted.
+[[nodiscard]] std::optional<InstrumentFinding> refit_instrument(const ArrayDescription& array,
+                                                                const std::vector<InstrumentPart>& parts,
+                                                                const CircuitFrames& frames);
 
 }  // namespace dermis::calibration

@@ -5,7 +5,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "dermis/core/quantile.hpp"
@@ -281,19 +280,6 @@ void add_idle(const Press& press, const InvertedFrame& inverted, const std::vect
   }
 }
 
-/// Idle taxels move with more than the noise of readings: with temperature, creep, and what lies beside them.
-void add_sigmas_of_idle(InstrumentMisfit& misfit) {
-  std::array<double, 2> sigmas{};  // of rows, of columns
-  for (std::size_t kind = 0; kind < sigmas.size(); ++kind) {
-    std::vector<double> values;
-    for (std::size_t k = kind; k < misfit.idle.size(); k += sigmas.size()) values.push_back(misfit.idle[k]);
-    const double middle = quantile(values, 0.5);
-    for (double& value : values) value = std::abs(value - middle);
-    sigmas[kind] = std::max(1.0, kSigmasOfDeviation * quantile(values, 0.5));
-  }
-  for (std::size_t k = 0; k < misfit.idle.size(); ++k) misfit.sigmas.push_back(sigmas[k % sigmas.size()]);
-}
-
 }  // namespace
 
 std::vector<bool> readable_taxels(const Presses& presses, const InvertedFrames& inverted) {
@@ -322,8 +308,23 @@ std::optional<InstrumentMisfit> misfit_of(const Presses& presses, const Inverted
   for (std::size_t k = 0; k < presses.several.size(); ++k) {
     add_total(presses.several[k], *inverted[presses.single.size() + k], unloaded, scale, *learned, misfit);
   }
-  add_sigmas_of_idle(misfit);
+  const std::vector<double> of_idle = sigmas_of_idle(misfit.idle);
+  misfit.sigmas.insert(misfit.sigmas.end(), of_idle.begin(), of_idle.end());
   return misfit;
+}
+
+std::vector<double> sigmas_of_idle(std::span<const double> idle) {
+  constexpr std::size_t kKinds = 2;  // rows, columns
+  std::vector<double> sigmas(idle.size());
+  for (std::size_t kind = 0; kind < kKinds; ++kind) {
+    std::vector<double> values;
+    for (std::size_t k = kind; k < idle.size(); k += kKinds) values.push_back(idle[k]);
+    const double middle = quantile(values, 0.5);
+    for (double& value : values) value = std::abs(value - middle);
+    const double sigma = std::max(1.0, kSigmasOfDeviation * quantile(values, 0.5));
+    for (std::size_t k = kind; k < idle.size(); k += kKinds) sigmas[k] = sigma;
+  }
+  return sigmas;
 }
 
 }  // namespace dermis::calibration

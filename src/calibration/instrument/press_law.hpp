@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "calibration/circuit_fit/inverted_frame.hpp"
@@ -30,5 +31,9 @@ struct InstrumentMisfit {
 /// `readable` taxels that would conduct nothing.
 [[nodiscard]] std::optional<InstrumentMisfit> misfit_of(const Presses& presses, const InvertedFrames& inverted,
                                                         std::size_t cols, const std::vector<bool>& readable);
+
+/// Scatter of InstrumentMisfit::idle, of rows and columns apart, 1 at least. Idle taxels move with more than the noise
+/// of readings: with temperature, creep, and what lies beside them.
+[[nodiscard]] std::vector<double> sigmas_of_idle(std::span<const double> idle);
 
 }  // namespace dermis::calibration

@@ -12,16 +12,15 @@
 #include <optional>
 #include <utility>
 
-#include "calibration/circuit_fit/circuit_doubt.hpp"
-#include "calibration/circuit_fit/circuit_frames.hpp"
 #include "calibration/circuit_fit/circuit_trial.hpp"
-#include "calibration/instrument/instrument_fit.hpp"
+#include "calibration/instrument/instrument_judgement.hpp"
 #include "calibration/labels/flicker.hpp"
 #include "calibration/labels/label_check.hpp"
 #include "calibration/labels/labels.hpp"
 #include "calibration/labels/rail_search.hpp"
 #include "calibration/labels/reading_check.hpp"
 #include "calibration/samples/sample_choice.hpp"
+#include "dermis/calibration/calibrate.hpp"
 #include "dermis/calibration/parallel.hpp"
 #include "dermis/compensation/crosstalk.hpp"
 #include "dermis/core/quantile.hpp"
@@ -33,9 +32,8 @@ namespace dermis::calibration {
 namespace {
 
 constexpr double kMaxRejectedShare = 0.1;
-constexpr double kOutliers = 0.005;                 // of the supplies, at either end
-constexpr double kUnexplainedOfWrongCircuit = 0.5;  // of the force: circuits described wrongly left 14 to 56 %
-constexpr double kMostMissingShare = 0.001;         // of the samples of the median taxel
+constexpr double kOutliers = 0.005;          // of the supplies, at either end
+constexpr double kMostMissingShare = 0.001;  // of the samples of the median taxel
 constexpr std::size_t kFramesPerTask = 128;
 constexpr std::size_t kFramesPerBatch = 128 * kFramesPerTask;
 
@@ -231,34 +229,14 @@ bool has_floating_lines(const Readout& readout) {
   return readout.idle_rows == IdleRows::floating || readout.idle_columns == IdleColumns::floating;
 }
 
-/// Errors of the frames are reported where they become samples, with their place.
-InstrumentFit judge_instrument(const ArrayDescription& array, std::span<const RawFrame> frames,
-                               std::span<const Load> loads, Nanos settle_time, bool is_asked_for) {
-  InstrumentFit as_described{.array = array, .statements = {}, .doubts = {}};
-  if (array.readout.circuit == Circuit::none) return as_described;
-  Result<InstrumentFit> fit = fit_instrument(array, frames, loads, settle_time, is_asked_for);
-  return fit ? *std::move(fit) : as_described;
-}
-
-/// Whether another circuit explains the frames better, with all that was found of the instrument.
-void doubt_circuit(std::span<const RawFrame> frames, std::span<const Load> loads, Nanos settle_time,
-                   InstrumentFit& instrument) {
-  const Result<CircuitFrames> labelled = circuit_frames(instrument.array, frames, loads, settle_time);
-  if (!labelled) return;
-  const std::optional<std::string> doubt = doubt_circuit(instrument.array, *labelled);
-  if (!doubt) return;
-  instrument.doubts.push_back(*doubt);
-  instrument.unexplained = std::max(instrument.unexplained, kUnexplainedOfWrongCircuit);
-}
-
 /// The samples of an array whose circuit is known.
-Result<SampleDatabase> invert_frames(const InstrumentFit& instrument, std::span<const RawFrame> frames,
+Result<SampleDatabase> invert_frames(const ArrayDescription& array, std::span<const RawFrame> frames,
                                      std::span<const Load> loads, Nanos settle_time,
+                                     const std::vector<std::string>& doubts,
                                      const std::function<void(double)>& progress) {
-  const ArrayDescription& array = instrument.array;
   SampleDatabase database;
   database.array = array;
-  database.doubts = instrument.doubts;
+  database.doubts = doubts;
   const Result<compensation::Compensator> compensator = compensation::Compensator::create(array);
   if (!compensator) return compensator.error();
   const Readout& readout = array.readout;
@@ -285,6 +263,15 @@ Result<SampleDatabase> invert_frames(const InstrumentFit& instrument, std::span<
   if (Status checked = check_rejected(database, selection.missing()); !checked) return checked.error();
   if (Status checked = check_missing(database, selection.missing()); !checked) return checked.error();
   return database;
+}
+
+/// A whole calibration of an array whose circuit is known.
+std::optional<pipeline::Model> train(const ArrayDescription& array, std::span<const RawFrame> frames,
+                                     std::span<const Load> loads, Nanos settle_time) {
+  const Result<SampleDatabase> database = invert_frames(array, frames, loads, settle_time, {}, {});
+  if (!database) return std::nullopt;
+  Result<Calibration> calibration = calibrate(*database, frames);
+  return calibration ? std::optional(std::move(calibration->model)) : std::nullopt;
 }
 
 }  // namespace
@@ -323,17 +310,21 @@ Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std:
     known = fit->array;
     if (!fit->statements.empty()) circuit = std::move(*fit);
   }
-  InstrumentFit instrument = judge_instrument(known, frames, chosen, settle_time, asks);
+  const Trainable trainable{frames, chosen, settle_time, [&](const auto& described, std::span<const Load> kept) {
+                              return train(described, frames, kept, settle_time);
+                            }};
+  InstrumentFit instrument = judge_instrument(known, trainable, asks);
   labels.remarks.insert(labels.remarks.end(), instrument.statements.begin(), instrument.statements.end());
   known = instrument.array;
-  if (array.readout.circuit != Circuit::automatic) doubt_circuit(frames, chosen, settle_time, instrument);
-  Result<SampleDatabase> database = invert_frames(instrument, frames, loads, settle_time, progress);
+  if (array.readout.circuit != Circuit::automatic) doubt_circuit(trainable, instrument);
+  Result<SampleDatabase> database =
+      invert_frames(instrument.array, frames, loads, settle_time, instrument.doubts, progress);
   if (!database && array.readout.circuit == Circuit::automatic && known.readout.circuit != Circuit::none) {
     circuit->statements.push_back("the circuit that was found does not do: " + database.error().message +
                                   "; readings are taken as they are");
     circuit->array = without_circuit(known);
     instrument.array = circuit->array;
-    database = invert_frames(instrument, frames, loads, settle_time, progress);
+    database = invert_frames(instrument.array, frames, loads, settle_time, instrument.doubts, progress);
   }
   if (!database) return database.error();
   database->lacks_proof = instrument.lacks_proof;

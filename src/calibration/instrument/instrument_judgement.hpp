@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "calibration/instrument/proof.hpp"
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/loads.hpp"
+
+namespace dermis::calibration {
+
+/// In what an instrument is not as its description says, and what is left.
+struct InstrumentFit {
+  ArrayDescription array;               ///< With what was found.
+  std::vector<std::string> statements;  ///< What was found, a sentence each.
+  std::vector<std::string> doubts;      ///< Parts that are not as described and stay so, a sentence each.
+  /// The relative difference of presses on several taxels from calibrations that have not seen them, beyond what these
+  /// say. 0: they agree, or there are none.
+  double unexplained = 0.0;
+  /// Too few presses on several taxels show whether the instrument is as described.
+  bool lacks_proof = false;
+};
+
+/// The description says "fit" of its ADC or its supply.
+[[nodiscard]] bool asks_for_instrument(const Readout& readout);
+
+/// Offset and supply that are to be fitted are left out.
+[[nodiscard]] ArrayDescription without_unknown_instrument(ArrayDescription array);
+
+/// Sets a settling that the description leaves open to the measured one of single presses (measure_settling()), or to
+/// none.
+[[nodiscard]] InstrumentFit fit_settling(const ArrayDescription& array, std::span<const RawFrame> frames,
+                                         std::span<const Load> loads);
+
+/// Applies those findings of find_instrument() with which whole calibrations do better on presses that they have not
+/// seen (Proof). Drivers are named, not changed: the description gives them. All resistances of `array` are known.
+/// `is_asked_for`: a sentence says so where nothing can be determined.
+[[nodiscard]] InstrumentFit judge_instrument(const ArrayDescription& array, const Trainable& trainable,
+                                             bool is_asked_for);
+
+/// Whether another circuit explains the frames better, with all that was found of the instrument. Where presses on
+/// several taxels tell, whole calibrations must do better with it.
+void doubt_circuit(const Trainable& trainable, InstrumentFit& instrument);
+
+}  // namespace dermis::calibration

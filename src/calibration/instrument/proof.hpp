@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "calibration/circuit_fit/circuit_frames.hpp"
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/loads.hpp"
+#include "dermis/pipeline/model.hpp"
+
+namespace dermis::calibration {
+
+/// A labelled recording and how a whole calibration is made of it.
+struct Trainable {
+  std::span<const RawFrame> frames;
+  std::span<const Load> loads;
+  Nanos settle_time{0};
+  /// Networks, memory and uncertainty by some of the loads; empty: they cannot be trained.
+  std::function<std::optional<pipeline::Model>(const ArrayDescription&, std::span<const Load>)> train;
+};
+
+/// The total force of a press by a calibration that has not seen it.
+struct UnseenPress {
+  double log_error = 0.0;  ///< ln(total / true), at most 1 and at least -1; NaN: no force.
+  double sigma = 0.0;      ///< Relative, as the calibration says.
+};
+
+/// [presses of Proof]
+struct UnseenPresses {
+  std::vector<UnseenPress> several;
+  std::vector<UnseenPress> single;
+};
+
+/// Presses that are left out of whole calibrations: half of those on several taxels at a time, by place, and a tenth of
+/// the single ones, each with all others of its taxel and force.
+class Proof {
+ public:
+  Proof(const CircuitFrames& frames, const Trainable& trainable, std::size_t most);
+
+  /// `fit`: the array by the loads that are left. Empty: it cannot be fitted or trained without a half.
+  using Fit = std::function<std::optional<ArrayDescription>(std::span<const Load>)>;
+  [[nodiscard]] std::optional<UnseenPresses> errors_of(const Fit& fit) const;
+
+  /// Presses on several taxels get better by more than chance, their median by a tenth, and single ones do not get
+  /// worse.
+  [[nodiscard]] bool is_better(const UnseenPresses& candidate, const UnseenPresses& before) const;
+  /// Neither kind of press gets worse by more than chance, those on several taxels not by a standard error.
+  [[nodiscard]] bool is_no_worse(const UnseenPresses& candidate, const UnseenPresses& before) const;
+
+ private:
+  struct LeftOut {
+    std::vector<std::size_t> taxels;
+    double newtons = 0.0;
+    std::size_t first_frame = 0;
+    std::size_t last_frame = 0;
+    std::size_t place = 0;  ///< Single presses: of its taxel and force.
+    std::size_t half = 0;   ///< 2: none.
+  };
+
+  [[nodiscard]] std::vector<double> gains_of_places(const UnseenPresses& candidate, const UnseenPresses& before) const;
+  [[nodiscard]] std::vector<Load> loads_without(std::size_t half) const;
+  [[nodiscard]] bool judge(const pipeline::Model& model, std::size_t half, UnseenPresses& unseen) const;
+
+  const Trainable& trainable_;
+  std::vector<LeftOut> several_;
+  std::vector<LeftOut> single_;
+};
+
+/// By how much presses on several taxels are off beyond what the calibrations say, relative. 0: not by more than single
+/// presses are, or not by more than chance.
+[[nodiscard]] double unexplained_share(const UnseenPresses& unseen);
+
+}  // namespace dermis::calibration
