@@ -54,6 +54,15 @@ void resize(ForceSums& sums, std::size_t taxels) {
   sums.newtons_per_celsius.resize(taxels);
 }
 
+/// Relative error of a force, exp(stretch) times that at the end of a law, whose exponent goes on to change by `bend`
+/// for every factor e of the true force. Straight from where such a law hardly answers any more.
+float bend_error(float bend, float stretch) {
+  if (!(bend > 0.0F && stretch > 0.0F)) return 0.0F;
+  constexpr float kAnswered = 0.95F;
+  const float known = std::min(stretch, kAnswered / bend);
+  return std::expm1(-std::log1p(-bend * known) / bend - known) * stretch / known;
+}
+
 /// The taxel counts in sums as it does alone.
 void count_alone(std::size_t taxel, ForceFrame& force) {
   const float sigma = force.sigma_newtons[taxel];
@@ -87,7 +96,8 @@ bool ForceNetworks::is_consistent() const noexcept {
          all(relative_sigma, kSigmaKnots * taxels, is_positive) &&
          std::all_of(sigma_knots_newtons.begin(), sigma_knots_newtons.end(), is_positive) &&
          sigma_knots_newtons[0] < sigma_knots_newtons[1] && gain_errors.is_consistent(taxels) &&
-         tables.is_consistent(taxels) && rises_with_conductance(shape, parameters, taxels);
+         std::all_of(end_bends.begin(), end_bends.end(), is_not_negative) && tables.is_consistent(taxels) &&
+         rises_with_conductance(shape, parameters, taxels);
 }
 
 float ForceNetworks::sigma_place(float log_newtons) const noexcept {
@@ -268,6 +278,7 @@ void ForceFusion::compute_forces(ForceFrame& force) noexcept {
   }
   sources.gain_variance = temperatures_.gain_variance;
   sources.log_first_knot = first;
+  sources.bend_below = networks_.end_bends[0];
   sources.knots_per_log = static_cast<float>(kSigmaKnots - 1) / (last - first);
   ForceSums& sums = force.sums;
   forces(sources, {force.newtons, force.sigma_newtons, noise_newtons_, sums.newtons, sums.own_variance,
@@ -373,7 +384,8 @@ void ForceFusion::extrapolate(std::size_t taxel, float& newtons, float& sigma) c
   const float noise = sigma / at_end;
   const float stretch = excess * excess * excess / (excess * excess + noise * noise);
   newtons = known * std::exp(stretch);
-  sigma = newtons * std::hypot(noise, stretch * std::hypot(kExponentSigma, kExponentChange * stretch));
+  const float of_law = stretch * std::hypot(kExponentSigma, kExponentChange * stretch);
+  sigma = newtons * std::hypot(noise, of_law, bend_error(networks_.end_bends[1], stretch));
 }
 
 }  // namespace dermis::fusion

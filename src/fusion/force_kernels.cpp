@@ -103,7 +103,9 @@ void compute_forces(const ForceSources sources, const FusedForces fused) {
     const auto below = hn::Max(hn::Sub(hn::Set(d, sources.log_first_knot), log_reached), hn::Zero(d));
     const auto law_below = hn::Mul(hn::Set(d, kExponentSigmaBelow), below);
     const auto of_material = hn::Add(material_variance(d, sources, log_reached, first), load(sources.table_variance));
-    const auto of_law = hn::MulAdd(law_below, law_below, of_material);
+    const auto bent_below =
+        hn::Mul(hn::Set(d, 0.5F * sources.bend_below), hn::Mul(below, hn::Min(below, hn::Set(d, 1.0F))));
+    const auto of_law = hn::MulAdd(bent_below, bent_below, hn::MulAdd(law_below, law_below, of_material));
     auto variance = hn::Add(of_law, load(sources.gain_variance));
     variance = hn::MulAdd(noise, noise, variance);
     variance = hn::MulAdd(drift, drift, variance);

@@ -37,6 +37,7 @@ struct ForceSources {
   float temperature_per_celsius = 0.0F;       ///< Rise of the third input [1/C]; 0 where there is none.
   std::span<const float> gain_variance;       ///< Relative, of gains and of temperatures that were not calibrated.
   float log_first_knot = 0.0F;                ///< ln of the first knot of relative_sigma.
+  float bend_below = 0.0F;                    ///< The first of end_bends.
   float knots_per_log = 0.0F;                 ///< Knots for a rise of ln(newtons) by one.
 };
 

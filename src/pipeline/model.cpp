@@ -25,6 +25,7 @@ using fusion::LookUpTables;
 using preprocessing::SupplyRange;
 
 constexpr const char* kFormatWithoutSigma = "dermis model 1";
+constexpr const char* kEndBends = "networks.end_bends";
 constexpr const char* kTemperatureGap = "networks.temperature_gap_celsius";
 constexpr const char* kGainErrors = "gain_errors";
 constexpr const char* kProvenancePrefix = "provenance.";
@@ -117,6 +118,11 @@ void put_networks(SafetensorsFile& file, const ForceNetworks& networks) {
     file.metadata[kTemperatureGap] = "yes";
     put_tensor<double>(file, kTemperatureGap, {2}, {gap.begin(), gap.end()});
   }
+  const auto& bends = networks.end_bends;
+  if (bends[0] > 0.0F || bends[1] > 0.0F) {
+    file.metadata[kEndBends] = "yes";
+    put_tensor<float>(file, kEndBends, {2}, {bends.begin(), bends.end()});
+  }
   const TaxelTensors tensors;
   for (const auto& [name, member] : tensors.unloaded) put_tensor(file, name, {taxels}, networks.unloaded.*member);
   for (const auto& [name, member] : tensors.floats) put_tensor(file, name, {taxels}, networks.*member);
@@ -142,6 +148,11 @@ ForceNetworks get_networks(const SafetensorsFile& file, std::size_t taxels, Tens
     std::vector<double> gap;
     reader.get(kTemperatureGap, {2}, gap);
     if (gap.size() == 2) networks.temperature_gap_celsius = {gap[0], gap[1]};
+  }
+  if (file.metadata.contains(kEndBends)) {
+    std::vector<float> bends;
+    reader.get(kEndBends, {2}, bends);
+    if (bends.size() == 2) networks.end_bends = {bends[0], bends[1]};
   }
   const TaxelTensors tensors;
   for (const auto& [name, member] : tensors.unloaded) reader.get(name, {taxels}, networks.unloaded.*member);

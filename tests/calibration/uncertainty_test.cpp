@@ -16,6 +16,7 @@
 #include "calibration/simulated.hpp"
 #include "dermis/calibration/calibrate.hpp"
 #include "dermis/calibration/evaluation.hpp"
+#include "dermis/core/quantile.hpp"
 
 namespace dermis::calibration {
 namespace {
@@ -378,6 +379,43 @@ TEST(Uncertainty, intervals_hold_beyond_the_heaviest_and_below_the_lightest_load
     EXPECT_GE(held[k], 0.90) << forces[k] << " N";
     EXPECT_LE(held[k], 0.99) << forces[k] << " N";
   }
+}
+
+/// Of the forces of sheets of one law, the share within two standard deviations, and the median of sigma over force.
+std::pair<double, double> held_of_sheets(const std::function<double(double)>& law, double newtons) {
+  constexpr std::size_t kSheets = 20;
+  constexpr std::size_t kTaxels = 9;
+  double held = 0.0;
+  std::vector<double> sigmas;
+  for (std::size_t seed = 1; seed <= kSheets; ++seed) {
+    PressBench bench{kTaxels,
+                     [&](std::size_t taxel, double n) { return (1.0 + 0.05 * static_cast<double>(taxel)) * law(n); },
+                     0.01, Random(seed)};
+    const auto calibration = calibrate(bench.presses(forces_between(kLightest, kHeaviest, 12), 3));
+    EXPECT_TRUE(calibration);
+    BenchForces estimates(calibration->model.networks, bench);
+    for (std::size_t taxel = 0; taxel < kTaxels; ++taxel) {
+      const ForceFrame& force = estimates.press(taxel, newtons);
+      const double sigma = force.sigma_newtons[taxel];
+      const double error = std::abs(static_cast<double>(force.newtons[taxel]) - newtons);
+      if (error <= 2.0 * sigma) held += 1.0 / static_cast<double>(kTaxels * kSheets);
+      sigmas.push_back(sigma / static_cast<double>(force.newtons[taxel]));
+    }
+  }
+  return {held, upper_median(std::move(sigmas))};
+}
+
+TEST(Uncertainty, sigma_sees_a_law_that_flattens_and_one_with_a_knee) {
+  const auto flattens = [](double n) { return 1e-3 / (1.0 + 1.0 / std::expm1(n / 4.0)); };
+  const auto has_knee = [](double n) { return 1e-4 * std::max(n - 0.3 + 0.3 * std::exp(-n / 0.3), 0.0); };
+  EXPECT_GE(held_of_sheets(flattens, 2.0 * kHeaviest).first, 0.85);
+  EXPECT_GE(held_of_sheets(has_knee, 0.3 * kLightest).first, 0.85);
+}
+
+TEST(Uncertainty, sigma_of_a_power_law_stays_narrow_at_its_ends) {
+  const auto power = [](double n) { return 1e-4 * std::pow(n, 0.9); };
+  EXPECT_LT(held_of_sheets(power, 2.0 * kHeaviest).second, 0.25);
+  EXPECT_LT(held_of_sheets(power, 0.5 * kLightest).second, 0.12);
 }
 
 }  // namespace

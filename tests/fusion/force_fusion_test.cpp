@@ -635,6 +635,7 @@ TEST(ForceNetworks, every_broken_field_is_found) {
        [](auto& n) {
          n.sigma_knots_newtons = {5.0F, 5.0F};
        }},
+      {"end bends", [](auto& n) { n.end_bends[1] = -1.0F; }},
       {"sigma knot 0", [](auto& n) { n.sigma_knots_newtons[0] = 0.0F; }},
       {"parameter NaN", [](auto& n) { n.parameters.back() = kNanF; }},
       {"parameter infinite", [](auto& n) { n.parameters.front() = kInfinityF; }},

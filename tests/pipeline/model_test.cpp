@@ -65,6 +65,7 @@ Model make_model() {
   model.networks = support::random_networks(6, 3, 4, 77);
   model.networks.temperature_gap_celsius = {12.0, 100.0 / 3.0};
   model.networks.sigma_knots_newtons = {0.3F, 77.0F};
+  model.networks.end_bends = {0.25F, 1.0F / 3.0F};
   model.networks.heaviest_newtons[2] = std::numeric_limits<float>::infinity();
   model.networks.dead[5] = 1;
   model.networks.tables = {{1, 4}, 2, {1e-4F, 3e-4F, 2e-4F, 1e-3F}, {1.0F, 7.0F, 0.5F, 9.0F}, {0.01F, -0.002F}};
@@ -114,6 +115,7 @@ void expect_equal(const Model& a, const Model& b) {
   EXPECT_EQ(a.networks.relative_sigma, b.networks.relative_sigma);
   EXPECT_EQ(a.networks.sigma_knots_newtons, b.networks.sigma_knots_newtons);
   EXPECT_EQ(a.networks.gain_errors, b.networks.gain_errors);
+  EXPECT_EQ(a.networks.end_bends, b.networks.end_bends);
   EXPECT_EQ(a.networks.tables.taxels, b.networks.tables.taxels);
   EXPECT_EQ(a.networks.tables.knots, b.networks.tables.knots);
   EXPECT_EQ(a.networks.tables.siemens, b.networks.tables.siemens);

@@ -60,6 +60,9 @@ struct ForceNetworks {
   /// constant.
   std::vector<float> relative_sigma;                       ///< [kSigmaKnots, taxels]
   std::array<float, 2> sigma_knots_newtons{0.1F, 100.0F};  ///< First and last of the forces [N], > 0, rising.
+  /// By how much d ln newtons / d ln e changes for every factor e of the force, relative, below the lightest and above
+  /// the heaviest calibrated load, >= 0.
+  std::array<float, 2> end_bends{};
 
   GainErrors gain_errors;  ///< Changes of gains that a recalibration saw and left; empty: none.
 
@@ -84,9 +87,10 @@ struct ForceNetworks {
 /// measured.
 ///
 /// Outside the calibrated loads further squares are added. Beyond the heaviest load F_h it is that of x sqrt(0.2^2 +
-/// (0.3 x)^2), x = ln(newtons / F_h). Below the first of sigma_knots_newtons it is that of 0.1 ln(first / newtons). On
-/// the line below the first load of a table it is also that of 0.3 ln(e_1 / e), e_1 the conductance there. From 8 F_h
-/// on the force is constant, with an infinite sigma.
+/// (0.3 x)^2), x = ln(newtons / F_h), and that of exp(-ln(1 - c x) / c - x) - 1, c the second of end_bends, straight on
+/// from c x = 0.95. Below the first of sigma_knots_newtons it is that of 0.1 x and of c x min(x, 1) / 2, x = ln(first /
+/// newtons), c the first of them. On the line below the first load of a table it is also that of 0.3 ln(e_1 / e), e_1 the
+/// conductance there. From 8 F_h on the force is constant, with an infinite sigma.
 ///
 /// sigma_T is the noise of the temperature sensor and the distance to the nearest calibrated temperature, by which a
 /// temperature outside was clamped. In temperature_gap_celsius the network draws a line, but rubber may have changed

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "calibration/mean.hpp"
+#include "calibration/uncertainty/end_bends.hpp"
 #include "calibration/uncertainty/error_budget.hpp"
 #include "calibration/uncertainty/relative_sigma_fit.hpp"
 #include "dermis/fusion/force_fusion.hpp"
@@ -257,6 +258,7 @@ Result<UncertaintyReport> fit_uncertainty(const SampleDatabase& database, const 
   model.networks.temperature_sigma_celsius = report.temperature_sigma_celsius;
 
   place_knots(training, model.networks);
+  model.networks.end_bends = find_end_bends(database, model.networks);
   const Result<JudgedLoads> judged = judge_all(database, training, model);
   if (!judged) return judged.error();
   report.supply_noise = likeliest_supply_noise(*judged);

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <array>
+
+#include "dermis/calibration/sample_database.hpp"
+#include "dermis/fusion/force_fusion.hpp"
+
+namespace dermis::calibration {
+
+/// fusion::ForceNetworks::end_bends, as the samples of single taxels next to the lightest and to the heaviest loads
+/// show them. 0 where they do not tell.
+[[nodiscard]] std::array<float, 2> find_end_bends(const SampleDatabase& database, fusion::ForceNetworks networks);
+
+}  // namespace dermis::calibration
