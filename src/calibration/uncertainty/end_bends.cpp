@@ -134,7 +134,7 @@ double bend_at(const fusion::ForceNetworks& networks, const std::vector<LawPoint
                const std::vector<double>& log_end) {
   constexpr double kSure = 0.25;
   constexpr double kMost = 10.0;
-  constexpr double kGrowth = 1.3;
+  constexpr double kGrowth = 1.5;
   for (const double factor : {4.0, 8.0, 16.0}) {
     const std::vector<LawPoint> near = points_near(points, log_end, std::log(factor));
     const EndParabola parabola = fit_parabola(near, log_end.size());

@@ -258,7 +258,6 @@ Result<UncertaintyReport> fit_uncertainty(const SampleDatabase& database, const 
   model.networks.temperature_sigma_celsius = report.temperature_sigma_celsius;
 
   place_knots(training, model.networks);
-  model.networks.end_bends = find_end_bends(database, model.networks);
   const Result<JudgedLoads> judged = judge_all(database, training, model);
   if (!judged) return judged.error();
   report.supply_noise = likeliest_supply_noise(*judged);
@@ -266,6 +265,7 @@ Result<UncertaintyReport> fit_uncertainty(const SampleDatabase& database, const 
   fit_material(*judged, training, model.networks, report);
   report.unexplained_share = database.unexplained_share;
   widen(report.unexplained_share, model.networks);
+  model.networks.end_bends = find_end_bends(database, model.networks);  // the errors above are of the loads themselves
   return report;
 }
 
