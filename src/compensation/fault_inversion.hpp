@@ -27,7 +27,8 @@ namespace dermis::compensation {
 /// touch are one node with all that either touches. Shorted crossings are in both circuits: the inversion solves them,
 /// or keeps their taxels at a large conductance. For resistive lines, switches, real amplifiers, `none` and arrays of
 /// more than 256 lines there is no faulty circuit. There the readings of faulty lines are replaced by those of their
-/// neighbours, and the rest is solved as if healthy.
+/// neighbours, and the rest is solved as if healthy. Many members: one for each kind of fault, and work space, as
+/// invert() may not allocate.
 class FaultInversion {
  public:
   FaultInversion(const ArrayDescription& array, double tolerance_ratio, const ReferenceConductances& references);

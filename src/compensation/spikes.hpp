@@ -25,7 +25,7 @@ namespace dermis::compensation {
 /// many taxels is none of its witnesses. Every set of the line's jumps may be the spikes; a set beside presses leaves
 /// the others s_set / s_all of their readings. Its probability follows by Bayes' theorem, from that of no spike. One
 /// that is not certain is a doubt, the jump times the root of its probability. Where circuits give no evidence, nothing
-/// is ever taken or doubted.
+/// is ever taken or doubted. Many members: the last frame, and work space, as take() may not allocate.
 class Spikes {
  public:
   explicit Spikes(const ArrayDescription& array);

@@ -123,8 +123,9 @@ TEST(CircuitDoubt, names_two_wires_in_an_array_of_many_taxels) {
   array.readout.idle_rows = IdleRows::grounded;
   array.readout.idle_columns = IdleColumns::loaded;
   const auto database = build_sample_database(array, recording.frames, recording.loads);
-  const std::string said =
-      database && !database->doubts.empty() ? database->doubts.front() : database ? "" : database.error().message;
+  const std::string said = database && !database->doubts.empty() ? database->doubts.front()
+                           : database                            ? ""
+                                                                 : database.error().message;
   EXPECT_NE(said.find("\"divider, idle rows and columns floating\""), std::string::npos) << said;
 }
 

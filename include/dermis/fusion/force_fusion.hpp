@@ -38,7 +38,8 @@ inline constexpr std::size_t kSigmaKnots = 6;
 /// rises with conductance throughout.
 ///
 /// This differs from the paper, whose networks see every taxel and the supply (Fig. 7). The circuit and the supply are
-/// known relationships and are solved before. Only the material of one taxel is left to learn.
+/// known relationships and are solved before. Only the material of one taxel is left to learn. Many members: each is
+/// part of the model file.
 struct ForceNetworks {
   network::PerceptronShape shape{2, 1, 2};  ///< 2 inputs (conductance, twice) or 3 (temperature too).
   UnloadedLaw unloaded;                     ///< Over the calibrated temperatures.
@@ -89,8 +90,8 @@ struct ForceNetworks {
 /// Outside the calibrated loads further squares are added. Beyond the heaviest load F_h it is that of x sqrt(0.2^2 +
 /// (0.3 x)^2), x = ln(newtons / F_h), and that of exp(-ln(1 - c x) / c - x) - 1, c the second of end_bends, straight on
 /// from c x = 0.95. Below the first of sigma_knots_newtons it is that of 0.1 x and of c x min(x, 1) / 2, x = ln(first /
-/// newtons), c the first of them. On the line below the first load of a table it is also that of 0.3 ln(e_1 / e), e_1 the
-/// conductance there. From 8 F_h on the force is constant, with an infinite sigma.
+/// newtons), c the first of them. On the line below the first load of a table it is also that of 0.3 ln(e_1 / e), e_1
+/// the conductance there. From 8 F_h on the force is constant, with an infinite sigma.
 ///
 /// sigma_T is the noise of the temperature sensor and the distance to the nearest calibrated temperature, by which a
 /// temperature outside was clamped. In temperature_gap_celsius the network draws a line, but rubber may have changed

@@ -22,7 +22,7 @@ struct CircuitFrame {
   std::vector<TotalForce> totals;  ///< Over taxels that share it in an unknown way, none of them at the rail.
   double temperature = 0.0;        ///< In [-1, 1] over the recording; 0 where it is not an input.
   std::size_t averaged = 1;        ///< Frames in a row with the same loads, taken as one.
-  std::size_t first_frame = 0;     ///< Of these, in the recording.
+  std::size_t first_frame = 0;     ///< The first of these, in the recording.
   std::size_t last_frame = 0;
 };
 

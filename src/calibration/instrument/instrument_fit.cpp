@@ -81,7 +81,7 @@ class Judge {
     return residuals.cwiseQuotient(sigmas_);
   }
 
-  /// Of residuals, where idle taxels scatter as these do.
+  /// Weights of residuals, where idle taxels scatter as these do.
   [[nodiscard]] VectorXd weights_by(const VectorXd& residuals) const {
     const Index idle = residuals.size() - totals();
     const VectorXd values = residuals.tail(idle).cwiseProduct(sigmas_.tail(idle));

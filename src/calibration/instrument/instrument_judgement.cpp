@@ -42,7 +42,7 @@ std::optional<UnseenPresses> errors_with(const Parts& parts, const ArrayDescript
   });
 }
 
-/// Of the parts found, one after another, those that better whole calibrations. Those that leave nothing but noise of
+/// The parts found, one after another, that better whole calibrations. Those that leave nothing but noise of
 /// idle taxels must not make them worse.
 std::optional<Applied> proven(const InstrumentFindings& findings, const ArrayDescription& array,
                               const Trainable& trainable, const Proof& proof) {

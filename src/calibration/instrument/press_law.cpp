@@ -196,7 +196,7 @@ struct LearnedLaws {
   double scatter = 0.0;  // of a single press about its law
 };
 
-/// Of a single press, by the median. A law follows each press by its leverage.
+/// The scatter of a single press, by the median. A law follows each press by its leverage.
 double scatter_about(const PressLaws& laws, const std::vector<LawPoint>& points, const std::vector<std::size_t>& taxels,
                      const std::vector<double>& log_forces) {
   constexpr double kLeastFreedom = 0.05;  // of a press

@@ -9,8 +9,8 @@
 #include <map>
 
 #include "calibration/instrument/press_choice.hpp"
+#include "calibration/labels/press_numbers.hpp"
 #include "calibration/mean.hpp"
-#include "calibration/training/press_numbers.hpp"
 #include "dermis/compensation/crosstalk.hpp"
 #include "dermis/core/quantile.hpp"
 #include "dermis/fusion/force_fusion.hpp"
@@ -48,8 +48,8 @@ double median_size(const std::vector<UnseenPress>& presses) {
   return sizes.empty() ? 0.0 : quantile(sizes, 0.5);
 }
 
-/// Of errors over their sigma: the mean, or its estimate by the median where that is less. Single outliers are no
-/// misfit.
+/// The square of errors over their sigma: the mean, or its estimate by the median where that is less. Single outliers
+/// are no misfit.
 double typical_square(const std::vector<UnseenPress>& presses) {
   constexpr double kMedianOfSquare = 0.4549;  // of a standard normal variable
   std::vector<double> squares;

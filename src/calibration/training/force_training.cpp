@@ -16,7 +16,7 @@
 #include "calibration/even_choice.hpp"
 #include "calibration/samples/unloaded_fit.hpp"
 #include "calibration/training/force_levels.hpp"
-#include "calibration/training/press_numbers.hpp"
+#include "calibration/labels/press_numbers.hpp"
 #include "calibration/training/shared_training.hpp"
 #include "calibration/training/table_choice.hpp"
 #include "calibration/training/taxel_training.hpp"

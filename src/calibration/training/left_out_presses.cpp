@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "calibration/training/force_levels.hpp"
-#include "calibration/training/press_numbers.hpp"
+#include "calibration/labels/press_numbers.hpp"
 #include "dermis/calibration/parallel.hpp"
 #include "dermis/core/random.hpp"
 

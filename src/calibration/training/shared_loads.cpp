@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "calibration/training/press_numbers.hpp"
+#include "calibration/labels/press_numbers.hpp"
 
 namespace dermis::calibration {
 namespace {

@@ -48,7 +48,8 @@ std::vector<LawPoint> law_points(const SampleDatabase& database, const fusion::F
   return points;
 }
 
-/// Of a parabola ln e = level + slope v + bend v^2, v = ln(force / force at the end), with a level for each taxel.
+/// The terms of a parabola ln e = level + slope v + bend v^2, v = ln(force / force at the end), with a level for each
+/// taxel.
 struct EndParabola {
   double slope = 0.0;
   double bend = 0.0;
