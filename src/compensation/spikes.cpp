@@ -14,29 +14,27 @@ namespace dermis::compensation {
 namespace {
 
 constexpr Nanos kLongestGap = std::chrono::milliseconds(50);
-constexpr double kLeastJump = 0.05;  // of the supply
-constexpr double kLeastRise = 1.02;  // of the others, by all jumps of a line: below, nothing is seen of it
-constexpr double kLeastLeft = 0.01;  // of the supply
-constexpr double kMoves = 0.03;      // from frame to frame, of a load that stays
-constexpr double kMoving = 0.2;      // how often a load moves
-constexpr double kMovesMore = 2.0;   // times that
-constexpr double kCircuit = 0.2;     // of the crosstalk's change: the circuit is not known better
-constexpr double kOther = 0.01;      // density that a witness changed on its own, and happens to be there
-constexpr double kPrior = 0.01;      // of a spike, to a press
-constexpr double kSure = 0.99;
+constexpr double kLeastJump = 0.05;   // of the supply
+constexpr double kLeastRise = 1.02;   // of the others, by all jumps of a line: below, nothing is seen of it
+constexpr double kLeastLeft = 0.01;   // of the supply
+constexpr double kMoves = 0.06;       // of a load that moves, from frame to frame
+constexpr double kMovesMost = 25.0;   // times the square of that; else it is another load
+constexpr double kCircuit = 0.2;      // of the crosstalk's change: the circuit is not known better
+constexpr double kRisenSigmas = 3.0;  // of a reading that does not stay
+constexpr double kRisenShare = 0.1;   // and of the rise that a spike seems to be
+constexpr double kOther = 0.05;       // density of what else may happen to a load, over that of a sigma
+constexpr double kLoadedSigmas = 20.0;
+constexpr double kMostChange = 0.3;   // of a load that moves
+constexpr double kLoadsBefore = 1.0;  // that tell how many change, before any is seen
+constexpr double kChangedBefore = 0.1;
+constexpr double kPrior = 0.002;          // of a spike, to a press
+constexpr double kPriorOfTouched = 3e-6;  // beside another
+constexpr double kSure = 0.97;
 constexpr double kDoubtful = 0.5;
-constexpr std::size_t kPress = 2;  // jumps beside a jump
 constexpr double kSeenSigmas = 6.0;
 constexpr double kNewShare = 0.125;  // of a frame in the mean
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint8_t kMostFrames = 3;
-
-/// Of a witness that is what it was, up to its sigma; that moved; to which something else happened.
-double log_density(double difference, double sigma, double least_sigma) {
-  const double square = difference * difference / (sigma * sigma);
-  const double moved = kMoving / (1.0 + square / (kMovesMore * kMovesMore));
-  return std::log((std::exp(-0.5 * square) + moved) * least_sigma / sigma + kOther);
-}
 
 }  // namespace
 
@@ -50,20 +48,22 @@ Spikes::Spikes(const ArrayDescription& array)
       last_siemens_(array.taxel_count(), kUnknown),
       frames_(array.taxel_count()) {
   if (!sharing_axis(array)) return;
+  const Readout& readout = array.readout;
   std::vector<double> sensed_ohm;
   for (std::size_t line = 0; line < array.sensed_lines(); ++line) {
-    sensed_ohm.push_back(sensed_line(array.readout, line).rho);
+    sensed_ohm.push_back(sensed_line(readout, line).rho);
   }
   const bool is_driven = axis_ == driven_axis(array);
-  const std::vector<double>& drive_ohm = array.readout.drive_ohm;
-  crossing_ohm_ = is_driven ? sensed_ohm : drive_ohm;
-  for (const double ohm : is_driven ? drive_ohm : sensed_ohm) load_siemens_.push_back(ohm > 0.0 ? 1.0 / ohm : 0.0);
-  share_.resize(array.taxel_count(), 1.0);
-  for (std::size_t taxel = 0; taxel < share_.size() && is_driven; ++taxel) {
-    share_[taxel] = drive_ohm[taxel / cols_] / array.readout.load_ohm[taxel % cols_];
+  const std::vector<double>& line_ohm = is_driven ? readout.drive_ohm : sensed_ohm;
+  crossing_ohm_ = is_driven ? sensed_ohm : readout.drive_ohm;
+  for (const double ohm : line_ohm) load_siemens_.push_back(ohm > 0.0 ? 1.0 / ohm : 0.0);
+  for (std::size_t taxel = 0; taxel < array.taxel_count(); ++taxel) {
+    const SensedLine sensed = sensed_line(readout, line_of(array, crossing(driven_axis(array)), taxel));
+    share_.push_back(line_ohm[line_of(array, axis_, taxel)] / sensed.gain);
   }
   witnesses_.resize(places_);
-  doubts_.reserve(lines_ * kMostJumps);
+  jumps_.reserve(places_);
+  doubts_.reserve(array.taxel_count());
 }
 
 bool Spikes::take(const ConditionedFrame& frame, bool is_solved, ConductanceFrame& conductance) noexcept {
@@ -72,6 +72,7 @@ bool Spikes::take(const ConditionedFrame& frame, bool is_solved, ConductanceFram
   const Nanos since_last = frame.time - last_time_;
   is_next_ = has_last_ && since_last <= kLongestGap && since_last >= Nanos{0};
   if (!is_next_ || !any_jump(frame.ratio)) return false;
+  changed_ = changed_share(frame.ratio, frame.sigma_ratio);
   bool any = false;
   for (std::size_t line = 0; line < lines_; ++line) any = take_line(line, frame, is_solved, conductance) || any;
   any_taken_ = any_taken_ || any;
@@ -80,37 +81,31 @@ bool Spikes::take(const ConditionedFrame& frame, bool is_solved, ConductanceFram
 
 bool Spikes::take_line(std::size_t line, const ConditionedFrame& frame, bool is_solved,
                        ConductanceFrame& conductance) noexcept {
-  const std::optional<Jumps> jumps = jumps_of(line, frame, conductance.taxels);
-  if (!jumps) return false;
+  if (load_siemens_[line] == 0.0 || !find_jumps(line, frame, conductance.taxels)) return false;
   find_line(line, frame, conductance, is_solved);
-  const std::array<double, kMostJumps> probable = probabilities(line, *jumps);
-  bool any = false;
-  for (std::size_t k = 0; k < jumps->count; ++k) {
-    const std::size_t taxel = taxel_of(line, jumps->places[k]);
-    if (probable[k] > kSure && !is_among_jumps(taxel, frame.ratio)) {
+  const double probable = probability(line, frame);
+  for (const std::size_t taxel : jumps_) {
+    if (probable > kSure) {
       conductance.taxels[taxel] = TaxelStatus::invalid;
       ++frames_[taxel];
-      any = true;
-    } else if (probable[k] > kDoubtful && is_solved) {
+    } else if (probable > kDoubtful && is_solved) {
       const double jump = conductance.siemens[taxel] - last_siemens_[taxel];
-      doubts_.push_back({taxel, std::sqrt(probable[k]) * std::abs(jump)});
+      doubts_.push_back({taxel, std::sqrt(probable) * std::abs(jump)});
     }
   }
-  return any;
+  return probable > kSure;
 }
 
-/// Those that may be spikes. None: nothing jumps, many do, or one that has long not been believed.
-std::optional<Spikes::Jumps> Spikes::jumps_of(std::size_t line, const ConditionedFrame& frame,
-                                              std::span<const TaxelStatus> taxels) const noexcept {
-  if (load_siemens_[line] == 0.0) return std::nullopt;
-  Jumps jumps;
+/// Whether there are some, and none that has long not been believed.
+bool Spikes::find_jumps(std::size_t line, const ConditionedFrame& frame, std::span<const TaxelStatus> taxels) noexcept {
+  jumps_.clear();
   for (std::size_t place = 0; place < places_; ++place) {
     const std::size_t taxel = taxel_of(line, place);
     if (taxels[taxel] == TaxelStatus::invalid || !is_jump(taxel, frame.ratio)) continue;
-    if (jumps.count == kMostJumps) return std::nullopt;
-    if (frames_[taxel] < kMostFrames) jumps.places[jumps.count++] = place;
+    if (frames_[taxel] == kMostFrames) return false;
+    jumps_.push_back(taxel);
   }
-  return jumps.count > 0 ? std::optional(jumps) : std::nullopt;
+  return !jumps_.empty();
 }
 
 /// Where there is no solution, the conductances are those of a circuit that has no other crosstalk.
@@ -136,8 +131,8 @@ void Spikes::find_line(std::size_t line, const ConditionedFrame& frame, const Co
   for (std::size_t place = 0; place < places_; ++place) {
     const std::size_t taxel = taxel_of(line, place);
     Witness& witness = witnesses_[place];
-    witness.is_known = conductance.taxels[taxel] != TaxelStatus::invalid && !std::isnan(last_[taxel]);
-    witness.tells = witness.is_known && !is_jump(taxel, frame.ratio);
+    const bool is_known = conductance.taxels[taxel] != TaxelStatus::invalid && !std::isnan(last_[taxel]);
+    witness.tells = is_known && !is_jump(taxel, frame.ratio);
     const double with_crosstalk = share_[taxel] * frame.ratio[taxel] * now;
     const double last_with_crosstalk = share_[taxel] * last_[taxel] * before;
     witness.now = is_solved ? behind(taxel, conductance.siemens[taxel]) : with_crosstalk;
@@ -145,55 +140,64 @@ void Spikes::find_line(std::size_t line, const ConditionedFrame& frame, const Co
     witness.reads = with_crosstalk;
     witness.has_read = share_[taxel] * last_[taxel] * now;
     const double crosstalk = (with_crosstalk - witness.now) - (last_with_crosstalk - witness.before);
-    const double noise = share_[taxel] * frame.sigma_ratio * now;
-    witness.sigma_of_press = std::hypot(noise, kMoves * witness.before, kCircuit * crosstalk);
-    witness.sigma_of_spike = std::hypot(noise, kMoves * witness.has_read);
+    witness.noise = share_[taxel] * frame.sigma_ratio * now;
+    witness.crosstalk = kCircuit * crosstalk;
   }
 }
 
-/// That each of the jumps is a spike.
-std::array<double, Spikes::kMostJumps> Spikes::probabilities(std::size_t line, const Jumps& jumps) const noexcept {
-  const std::size_t sets = std::size_t{1} << jumps.count;
-  const auto rise = [&](std::size_t set) {
-    double now = load_siemens_[line];
-    double before = now;
-    for (std::size_t k = 0; k < jumps.count; ++k) {
-      now += (set >> k & 1U) != 0 ? witnesses_[jumps.places[k]].now : 0.0;
-      before += (set >> k & 1U) != 0 ? witnesses_[jumps.places[k]].before : 0.0;
-    }
-    return now / before;
-  };
-  std::array<double, kMostJumps> probable{};
-  const double of_all = rise(sets - 1);
-  const double if_none = log_likelihood_of_presses();
-  double sum = 1.0;
-  for (std::size_t set = 1; set < sets; ++set) {
-    const double of_set = rise(set);
-    if (of_set < kLeastRise) continue;
-    double weight = std::exp(log_likelihood_of_spikes(of_set / of_all) - if_none);
-    for (std::size_t k = 0; k < jumps.count; ++k) weight *= (set >> k & 1U) != 0 ? kPrior : 1.0;
-    sum += weight;
-    for (std::size_t k = 0; k < jumps.count; ++k) probable[k] += (set >> k & 1U) != 0 ? weight : 0.0;
+/// That the jumps are spikes: by Bayes' theorem, from what the witnesses tell.
+double Spikes::probability(std::size_t line, const ConditionedFrame& frame) const noexcept {
+  double now = load_siemens_[line];
+  double before = now;
+  double odds = 1.0;
+  for (const std::size_t taxel : jumps_) {
+    const Witness& jump = witnesses_[axis_ == Axis::row ? taxel % cols_ : taxel / cols_];
+    now += jump.now;
+    before += jump.before;
+    odds *= is_touched(taxel, frame.ratio, frame.sigma_ratio) ? kPriorOfTouched : kPrior;
   }
-  for (double& share : probable) share /= sum;
-  return probable;
+  const double rise = now / before;
+  if (rise < kLeastRise) return 0.0;
+  odds *= std::exp(evidence(rise));
+  return std::isfinite(odds) ? odds / (1.0 + odds) : 1.0;
 }
 
-double Spikes::log_likelihood_of_presses() const noexcept {
-  double sum = 0.0;
-  for (const Witness& witness : witnesses_) {
-    if (witness.tells) sum += log_density(witness.now - witness.before, witness.sigma_of_press, witness.sigma_of_spike);
-  }
-  return sum;
-}
-
-double Spikes::log_likelihood_of_spikes(double left) const noexcept {
+/// The logarithm of how much likelier the witnesses are after spikes by which they seem to rise so. A reading that
+/// rises does not stay.
+double Spikes::evidence(double rise) const noexcept {
   double sum = 0.0;
   for (const Witness& witness : witnesses_) {
     if (!witness.tells) continue;
-    sum += log_density(witness.reads - left * witness.has_read, witness.sigma_of_spike, witness.sigma_of_spike);
+    const double change = witness.reads - witness.has_read;
+    const double noise_of_press = std::hypot(witness.noise, witness.crosstalk);
+    const double of_press = log_density(witness, witness.now - witness.before, noise_of_press, kMoves * witness.before);
+    const double of_spike = log_density(witness, change, witness.noise, kMoves * witness.has_read);
+    const bool rises = change > kRisenSigmas * witness.noise + kRisenShare * (rise - 1.0) * witness.has_read;
+    sum += rises ? std::min(of_spike - of_press, 0.0) : of_spike - of_press;
   }
   return sum;
+}
+
+/// The witness is what it was, up to its noise, or it moved; or something else happened to it.
+double Spikes::log_density(const Witness& witness, double difference, double noise, double moves) const noexcept {
+  const double square = difference * difference;
+  const double still = std::exp(-0.5 * square / (noise * noise)) / noise;
+  const double wide = noise * noise + moves * moves;
+  const double moved = square < kMovesMost * wide ? moves / (wide + square) : 0.0;
+  const double scale = std::hypot(witness.noise, kMoves * witness.has_read);
+  return std::log((1.0 - changed_) * (still + moved) * scale + changed_ * kOther);
+}
+
+/// How often a load is another one than in the last frame.
+double Spikes::changed_share(std::span<const double> ratio, double sigma_ratio) const noexcept {
+  double loads = kLoadsBefore;
+  double changed = kChangedBefore;
+  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
+    if (!(last_[taxel] > kLoadedSigmas * sigma_ratio) || is_jump(taxel, ratio)) continue;
+    loads += 1.0;
+    changed += std::abs(ratio[taxel] - last_[taxel]) > kMostChange * last_[taxel] ? 1.0 : 0.0;
+  }
+  return changed / loads;
 }
 
 DERMIS_PROCESSOR_CLONES bool Spikes::any_jump(std::span<const double> ratio) const noexcept {
@@ -212,17 +216,18 @@ bool Spikes::is_jump(std::size_t taxel, std::span<const double> ratio) const noe
   return ratio[taxel] - last_[taxel] > kLeastJump;
 }
 
-/// Neighbours that jump together are a press.
-bool Spikes::is_among_jumps(std::size_t taxel, std::span<const double> ratio) const noexcept {
+/// A neighbour becomes another load in the same frame, as by a press.
+bool Spikes::is_touched(std::size_t taxel, std::span<const double> ratio, double sigma_ratio) const noexcept {
   const std::size_t row = taxel / cols_;
   const std::size_t col = taxel % cols_;
-  std::size_t jumps = 0;
   for (std::size_t i = row - std::min<std::size_t>(row, 1); i < std::min(row + 2, rows_); ++i) {
     for (std::size_t j = col - std::min<std::size_t>(col, 1); j < std::min(col + 2, cols_); ++j) {
-      jumps += is_jump(i * cols_ + j, ratio) ? 1 : 0;
+      const std::size_t near = i * cols_ + j;
+      const double rise = ratio[near] - last_[near];
+      if (near != taxel && rise > std::max(kSeenSigmas * sigma_ratio, kMostChange * last_[near])) return true;
     }
   }
-  return jumps > kPress;
+  return false;
 }
 
 void Spikes::add_doubt(std::span<float> doubt_siemens) const noexcept {
@@ -239,13 +244,13 @@ void Spikes::remember(const ConditionedFrame& frame, const ConductanceFrame& con
     return taxel != TaxelStatus::invalid && taxel != TaxelStatus::line_fault;
   };
   if (!any_taken_ && std::all_of(conductance.taxels.begin(), conductance.taxels.end(), has_reading)) {
-    follow_all(frame.ratio, conductance.siemens, noise);
+    follow(0, last_.size(), frame.ratio, conductance.siemens, noise);
     return;
   }
   any_taken_ = false;
   for (std::size_t taxel = 0; taxel < last_.size(); ++taxel) {
     if (has_reading(conductance.taxels[taxel])) {
-      follow(taxel, frame.ratio[taxel], conductance.siemens[taxel], noise);
+      follow(taxel, taxel + 1, frame.ratio, conductance.siemens, noise);
       frames_[taxel] = 0;
     } else if (conductance.taxels[taxel] == TaxelStatus::invalid && frames_[taxel] > 0) {
       any_taken_ = true;
@@ -255,24 +260,17 @@ void Spikes::remember(const ConditionedFrame& frame, const ConductanceFrame& con
   }
 }
 
-/// The mean as long as a reading changes by no more than noise.
-inline void Spikes::follow(std::size_t taxel, double ratio, double siemens, double noise) noexcept {
-  const bool stays = std::abs(ratio - last_[taxel]) <= noise;
-  last_[taxel] = stays ? last_[taxel] + kNewShare * (ratio - last_[taxel]) : ratio;
-  last_siemens_[taxel] = stays ? last_siemens_[taxel] + kNewShare * (siemens - last_siemens_[taxel]) : siemens;
-}
-
-DERMIS_PROCESSOR_CLONES void Spikes::follow_all(std::span<const double> ratio, std::span<const double> siemens,
-                                                double noise) noexcept {
+DERMIS_PROCESSOR_CLONES void Spikes::follow(std::size_t first, std::size_t end, std::span<const double> ratio,
+                                            std::span<const double> siemens, double noise) noexcept {
   const double* const readings = ratio.data();
   const double* const solved = siemens.data();
   double* const last = last_.data();
   double* const last_siemens = last_siemens_.data();
 #pragma omp simd
-  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
+  for (std::size_t taxel = first; taxel < end; ++taxel) {
     const double change = readings[taxel] - last[taxel];
-    const bool stays = std::abs(change) <= noise;
     const double rise = solved[taxel] - last_siemens[taxel];
+    const bool stays = std::abs(change) <= noise;
     last[taxel] = stays ? last[taxel] + kNewShare * change : readings[taxel];
     last_siemens[taxel] = stays ? last_siemens[taxel] + kNewShare * rise : solved[taxel];
   }

@@ -2,10 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,11 +19,10 @@ namespace dermis::compensation {
 ///   s = (g + x) / (g + X),   g the load of the line, x = G / (1 + R G) behind the resistance R of the crossing line
 ///
 /// So after a press the conductances of the others are what they were, and after a spike their readings are. They are
-/// witnesses: each is what it was, or something of its own happened to it, and then it tells nothing. So a press on
-/// many taxels is none of its witnesses. Every set of the line's jumps may be the spikes; a set beside presses leaves
-/// the others s_set / s_all of their readings. Its probability follows by Bayes' theorem, from that of no spike. One
-/// that is not certain is a doubt, the jump times the root of its probability. Where circuits give no evidence, nothing
-/// is ever taken or doubted. Many members: the last frame, and work space, as take() may not allocate.
+/// witnesses: each is what it was, or it moved, or it is another load, and then it tells nothing. So a press on many
+/// taxels is none of its witnesses. All jumps of a line are spikes, or none is. A spike that is not certain is a doubt,
+/// the jump times the root of its probability. Where circuits give no evidence, nothing is ever taken or doubted.
+/// Many members: the last frame, and work space, as take() may not allocate.
 class Spikes {
  public:
   explicit Spikes(const ArrayDescription& array);
@@ -46,8 +43,6 @@ class Spikes {
   void forget() noexcept;
 
  private:
-  static constexpr std::size_t kMostJumps = 4;  // of a line: beyond, they are a press
-
   struct Doubt {
     std::size_t taxel;
     double siemens;
@@ -55,19 +50,13 @@ class Spikes {
 
   /// A taxel of the line, behind the crossing line [S].
   struct Witness {
-    bool is_known;
     bool tells;
     double now;
     double before;
-    double sigma_of_press;  // of their difference
-    double reads;           // with crosstalk
-    double has_read;        // likewise, in the line as it is now
-    double sigma_of_spike;  // likewise
-  };
-
-  struct Jumps {
-    std::array<std::size_t, kMostJumps> places{};
-    std::size_t count = 0;
+    double reads;      // with crosstalk
+    double has_read;   // likewise, in the line as it is now
+    double noise;      // of each
+    double crosstalk;  // its standard deviation
   };
 
   [[nodiscard]] std::size_t taxel_of(std::size_t line, std::size_t place) const noexcept {
@@ -78,18 +67,22 @@ class Spikes {
   }
   [[nodiscard]] bool any_jump(std::span<const double> ratio) const noexcept;
   [[nodiscard]] bool is_jump(std::size_t taxel, std::span<const double> ratio) const noexcept;
-  [[nodiscard]] bool is_among_jumps(std::size_t taxel, std::span<const double> ratio) const noexcept;
-  [[nodiscard]] std::optional<Jumps> jumps_of(std::size_t line, const ConditionedFrame& frame,
-                                              std::span<const TaxelStatus> taxels) const noexcept;
+  [[nodiscard]] bool is_touched(std::size_t taxel, std::span<const double> ratio, double sigma_ratio) const noexcept;
+  [[nodiscard]] bool find_jumps(std::size_t line, const ConditionedFrame& frame,
+                                std::span<const TaxelStatus> taxels) noexcept;
   void find_line(std::size_t line, const ConditionedFrame& frame, const ConductanceFrame& conductance,
                  bool is_solved) noexcept;
-  [[nodiscard]] std::array<double, kMostJumps> probabilities(std::size_t line, const Jumps& jumps) const noexcept;
-  [[nodiscard]] double log_likelihood_of_presses() const noexcept;
-  [[nodiscard]] double log_likelihood_of_spikes(double left) const noexcept;
+  [[nodiscard]] double probability(std::size_t line, const ConditionedFrame& frame) const noexcept;
+  [[nodiscard]] double evidence(double rise) const noexcept;
+  [[nodiscard]] double log_density(const Witness& witness, double difference, double noise,
+                                   double moves) const noexcept;
+  [[nodiscard]] double changed_share(std::span<const double> ratio, double sigma_ratio) const noexcept;
   [[nodiscard]] bool take_line(std::size_t line, const ConditionedFrame& frame, bool is_solved,
                                ConductanceFrame& conductance) noexcept;
-  void follow(std::size_t taxel, double ratio, double siemens, double noise) noexcept;
-  void follow_all(std::span<const double> ratio, std::span<const double> siemens, double noise) noexcept;
+
+  /// Of taxels first ... end - 1: the mean as long as a reading changes by no more than noise.
+  void follow(std::size_t first, std::size_t end, std::span<const double> ratio, std::span<const double> siemens,
+              double noise) noexcept;
 
   std::size_t rows_;
   std::size_t cols_;
@@ -106,7 +99,9 @@ class Spikes {
   std::vector<double> last_siemens_;  // likewise
   std::vector<std::uint8_t> frames_;  // for which a jump has not been believed [taxels]
   bool any_taken_ = false;            // of the last frame or this one
+  double changed_ = 0.0;              // share of the loads of this frame
   std::vector<Witness> witnesses_;    // [places]
+  std::vector<std::size_t> jumps_;    // of the line
   std::vector<Doubt> doubts_;
 };
 
