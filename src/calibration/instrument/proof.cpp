@@ -59,9 +59,10 @@ double typical_square(const std::vector<UnseenPress>& presses) {
   return squares.empty() ? 0.0 : std::min(mean_of(squares), quantile(squares, 0.5) / kMedianOfSquare);
 }
 
-/// By how much the squares of the candidate are less. Not a number: one of both has no force.
+/// By how much the candidate is nearer; squares would be those of a few presses. Not a number: one of both has no
+/// force.
 double gain_of(const UnseenPress& candidate, const UnseenPress& before) {
-  return before.log_error * before.log_error - candidate.log_error * candidate.log_error;
+  return std::abs(before.log_error) - std::abs(candidate.log_error);
 }
 
 /// By more than chance.
