@@ -33,7 +33,9 @@ def has_ctags():
 
 def members(root):
     """(file, class) of every data member that is not static."""
-    sources = [str(path.relative_to(root)) for folder in PRODUCTION for path in sorted((root / folder).rglob("*.[ch]pp"))]
+    sources = [
+        str(path.relative_to(root)) for folder in PRODUCTION for path in sorted((root / folder).rglob("*.[ch]pp"))
+    ]
     command = ["ctags", "--output-format=json", "--c++-kinds=m", "--map-c++=+.hpp", "--fields=+s", "-f", "-", *sources]
     for line in subprocess.run(command, cwd=root, check=True, capture_output=True, text=True).stdout.splitlines():
         tag = json.loads(line)

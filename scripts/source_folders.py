@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
-"""The folders with sources in C++, for all that reads them: formatters, linters, checks of words, rules of architecture.
-Prints all, for scripts in bash."""
+"""The folders with sources in C++, for formatters, linters, checks of words and rules of architecture. Prints all, for
+scripts in bash."""
 
 # Of each plugin, the module that loads it: its header is all that the plugin knows of the project, beside core.
 PLUGINS = {"dds": "dds", "modbus": "buses", "mpi": "paper", "nats": "fleet"}

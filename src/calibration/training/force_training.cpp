@@ -14,9 +14,9 @@
 #include <utility>
 
 #include "calibration/even_choice.hpp"
+#include "calibration/labels/press_numbers.hpp"
 #include "calibration/samples/unloaded_fit.hpp"
 #include "calibration/training/force_levels.hpp"
-#include "calibration/labels/press_numbers.hpp"
 #include "calibration/training/shared_training.hpp"
 #include "calibration/training/table_choice.hpp"
 #include "calibration/training/taxel_training.hpp"

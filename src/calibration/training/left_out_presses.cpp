@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <utility>
 
-#include "calibration/training/force_levels.hpp"
 #include "calibration/labels/press_numbers.hpp"
+#include "calibration/training/force_levels.hpp"
 #include "dermis/calibration/parallel.hpp"
 #include "dermis/core/random.hpp"
 
