@@ -54,7 +54,7 @@ void resize(ForceSums& sums, std::size_t taxels) {
   sums.newtons_per_celsius.resize(taxels);
 }
 
-/// Relative error of a force, exp(stretch) times that at the end of a law, whose exponent goes on to change by `bend`
+/// Relative error of a force that is exp(stretch) times that at the end of its law. The exponent changes on by `bend`
 /// for every factor e of the true force. Straight from where such a law hardly answers any more.
 float bend_error(float bend, float stretch) {
   if (!(bend > 0.0F && stretch > 0.0F)) return 0.0F;

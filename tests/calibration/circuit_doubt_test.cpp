@@ -112,12 +112,12 @@ TEST(CircuitDoubt, is_not_raised_by_loads_on_the_whole_array_alone) {
 
 TEST(CircuitDoubt, names_two_wires_in_an_array_of_many_taxels) {
   ArrayDescription truth = two_wires(50.0, 1000.0);
-  truth.rows = truth.cols = 20;
-  truth.readout.drive_ohm.assign(20, 50.0);
-  truth.readout.load_ohm.assign(20, 1000.0);
-  Recording recording = record(truth, "calibration", 1);
+  truth.rows = truth.cols = 12;
+  truth.readout.drive_ohm.assign(12, 50.0);
+  truth.readout.load_ohm.assign(12, 1000.0);
+  Recording recording = record(truth, "paper_calibration", 1);
   std::erase_if(recording.loads, [](const Load& load) {
-    return load.value > 0.0 && (load.where.first_row % 4 != 1 || load.where.first_col % 4 != 1);
+    return load.value > 0.0 && (load.where.first_row % 6 != 1 || load.where.first_col % 6 != 1);
   });
   ArrayDescription array = truth;
   array.readout.idle_rows = IdleRows::grounded;

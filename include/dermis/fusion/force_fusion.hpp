@@ -61,8 +61,8 @@ struct ForceNetworks {
   /// constant.
   std::vector<float> relative_sigma;                       ///< [kSigmaKnots, taxels]
   std::array<float, 2> sigma_knots_newtons{0.1F, 100.0F};  ///< First and last of the forces [N], > 0, rising.
-  /// By how much d ln newtons / d ln e changes for every factor e of the force, relative, below the lightest and above
-  /// the heaviest calibrated load, >= 0.
+  /// Relative change of d ln newtons / d ln e for every factor e of the force, >= 0: below the lightest and above the
+  /// heaviest calibrated load.
   std::array<float, 2> end_bends{};
 
   GainErrors gain_errors;  ///< Changes of gains that a recalibration saw and left; empty: none.

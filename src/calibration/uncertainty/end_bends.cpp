@@ -48,8 +48,7 @@ std::vector<LawPoint> law_points(const SampleDatabase& database, const fusion::F
   return points;
 }
 
-/// The terms of a parabola ln e = level + slope v + bend v^2, v = ln(force / force at the end), with a level for each
-/// taxel.
+/// A parabola ln e = level + slope v + bend v^2, v = ln(force / force at the end), with a level for each taxel.
 struct EndParabola {
   double slope = 0.0;
   double bend = 0.0;
@@ -135,7 +134,7 @@ double bend_at(const fusion::ForceNetworks& networks, const std::vector<LawPoint
                const std::vector<double>& log_end) {
   constexpr double kSure = 0.25;
   constexpr double kMost = 10.0;
-  constexpr double kGrowth = 1.5;
+  constexpr double kGrowth = 2.0;
   for (const double factor : {4.0, 8.0, 16.0}) {
     const std::vector<LawPoint> near = points_near(points, log_end, std::log(factor));
     const EndParabola parabola = fit_parabola(near, log_end.size());
