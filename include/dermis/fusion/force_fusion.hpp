@@ -61,7 +61,7 @@ struct ForceNetworks {
   /// constant.
   std::vector<float> relative_sigma;                       ///< [kSigmaKnots, taxels]
   std::array<float, 2> sigma_knots_newtons{0.1F, 100.0F};  ///< First and last of the forces [N], > 0, rising.
-  /// Relative change of d ln newtons / d ln e for every factor e of the force, >= 0: below the lightest and above the
+  /// Relative change of d ln newtons / d ln e for every factor e of the force, >= 0. Below the lightest and above the
   /// heaviest calibrated load.
   std::array<float, 2> end_bends{};
 
