@@ -99,13 +99,15 @@ bool are_alike(double ratio, double other) {
   return std::max(ratio, other) <= kFactor * std::min(ratio, other) + kNothing;
 }
 
-/// A circuit of the same kind with quite different resistances explains more.
+/// A circuit of the same kind with quite different resistances explains more, and the idle taxels on pressed lines show
+/// it: contacts in series with taxels bend laws as drivers do.
 bool has_other_resistances(const CircuitTrial& described, const CircuitTrial& free) {
   if (!described.fit || !free.fit) return false;
   if (are_alike(drive_over_load(described.fit->array), drive_over_load(free.fit->array))) return false;
   const auto [of_free, of_described] = compare(free, described);
   const double scale = std::max(1.0, of_free.square / of_free.readings);
-  return of_free.square + kLikely * scale < of_described.square;
+  return of_free.square + kLikely * scale < of_described.square &&
+         of_free.crossed_square + kLikely * scale < of_described.crossed_square;
 }
 
 /// The same circuit with the common ADC of the fewest bits that can give all readings, where it is smaller.
@@ -174,7 +176,7 @@ std::optional<CircuitTrial> better_two_wires(const CircuitTrial& best, const Cir
 
 }  // namespace
 
-std::optional<std::string> doubt_circuit(const ArrayDescription& array, const CircuitFrames& frames) {
+std::optional<CircuitDoubt> doubt_circuit(const ArrayDescription& array, const CircuitFrames& frames) {
   constexpr std::size_t kFewest = 8;
   const std::size_t most = affordable(array);
   const std::size_t most_of_two_wires = affordable_with_two_wires(array);
@@ -202,10 +204,12 @@ std::optional<std::string> doubt_circuit(const ArrayDescription& array, const Ci
   const CircuitTrial& best = *std::min_element(rivals.begin(), rivals.end(), has_less);
   if (most_of_two_wires >= kFewest && most_of_two_wires < most) {
     const std::optional<CircuitTrial> two_wires = better_two_wires(best, described);
-    if (two_wires) return describe({}, *two_wires, array, highest);
+    if (two_wires && two_wires->fit) {
+      return CircuitDoubt{describe({}, *two_wires, array, highest), two_wires->fit->array};
+    }
   }
   if (!best.fit || (!are_resistances_others && !is_surely_less(best, judged))) return std::nullopt;
-  return describe(rivals, best, array, highest);
+  return CircuitDoubt{describe(rivals, best, array, highest), best.fit->array};
 }
 
 }  // namespace dermis::calibration

@@ -10,9 +10,15 @@
 
 namespace dermis::calibration {
 
-/// A sentence where another circuit, other resistances or another ADC explain the frames surely better than what the
+/// Another circuit, other resistances or another ADC than what is described.
+struct CircuitDoubt {
+  std::string sentence;
+  ArrayDescription array;  ///< With the circuit that explains the frames best.
+};
+
+/// Not empty where another circuit, other resistances or another ADC explain the frames surely better than what the
 /// description says. The search runs only where idle taxels on pressed lines have readings that the described circuit
-/// does not explain. Empty: there is none; the kind of the circuit is not given.
-[[nodiscard]] std::optional<std::string> doubt_circuit(const ArrayDescription& array, const CircuitFrames& frames);
+/// does not explain. Empty: there is none, or the kind of the circuit is not given.
+[[nodiscard]] std::optional<CircuitDoubt> doubt_circuit(const ArrayDescription& array, const CircuitFrames& frames);
 
 }  // namespace dermis::calibration

@@ -15,6 +15,7 @@
 #include "calibration/circuit_fit/line_parameters.hpp"
 #include "calibration/instrument/instrument_parameters.hpp"
 #include "calibration/instrument/press_law.hpp"
+#include "calibration/instrument/proof.hpp"
 #include "calibration/mean.hpp"
 #include "dermis/core/quantile.hpp"
 
@@ -210,7 +211,7 @@ std::optional<Explanation> best_beside(Judge& judge, const ArrayDescription& arr
     if (std::find(parts.begin(), parts.end(), part) != parts.end()) continue;
     parts.push_back(part);
     std::optional<Explanation> with_part = explain(judge, {array, parts}, kWorthAFit * kEvidence);
-    if (!with_part) continue;
+    if (!with_part || !with_part->parameters.are_within_bounds(with_part->values)) continue;
     const double gained = evidence(judge, *with_part, best);
     if (gained <= most) continue;
     most = gained;
@@ -249,10 +250,13 @@ std::string describe(const Explanation& found, const ArrayDescription& array, st
       ohms.minCoeff(), ohms.maxCoeff());
 }
 
-InstrumentFinding finding_of(const Explanation& found, const ArrayDescription& array) {
-  InstrumentFinding finding{found.parameters.parts(), found.parameters.array_at(found.values), {}, false};
+InstrumentFinding finding_of(const Explanation& found, const ArrayDescription& array, double highest) {
+  InstrumentFinding finding{found.parameters.parts(), found.parameters.array_at(found.values), {}, 0.0, false};
   for (std::size_t place = 0; place < finding.parts.size(); ++place) {
     finding.sentences.push_back(describe(found, array, place));
+    if (finding.parts[place] != InstrumentPart::drivers) continue;
+    const VectorXd shares = found.values.segment(found.parameters.first_of(place), found.parameters.size_of(place));
+    finding.loss_by_drivers = shares.cwiseAbs().mean() * highest;  // a reading over its load is about the conductance
   }
   return finding;
 }
@@ -269,18 +273,17 @@ std::size_t affordable_presses(const ArrayDescription& array) {
 }
 
 InstrumentFindings find_instrument(const ArrayDescription& array, const CircuitFrames& frames) {
-  constexpr std::size_t kLeastPresses = 8;
   constexpr double kNoise = 1.2;    // mean square of idle taxels that differ by noise alone
   constexpr double kWithout = 1.5;  // times that, without a part that explains them
   InstrumentFindings findings;
   Judge judge(array, frames);
-  findings.lacks_presses = judge.presses().several.size() < kLeastPresses;
+  findings.lacks_presses = judge.presses().several.size() < Proof::kLeastPresses;
   if (findings.lacks_presses) return findings;
   std::optional<Explanation> best = explain(judge, {array, {}}, 0.0);
   if (!best) return findings;
   findings.disagree = judge.square_of_totals(best->residuals) > kNoticed;
   while (std::optional<Explanation> better = best_beside(judge, array, *best)) {
-    findings.found.push_back(finding_of(*better, array));
+    findings.found.push_back(finding_of(*better, array, highest_ratio(frames)));
     const double idle = judge.square_of_idle(better->residuals);
     findings.found.back().explains_idle = idle < kNoise && judge.square_of_idle(best->residuals) > kWithout * idle;
     best = std::move(better);
@@ -293,8 +296,8 @@ std::optional<InstrumentFinding> refit_instrument(const ArrayDescription& array,
                                                   const CircuitFrames& frames) {
   Judge judge(array, frames);
   const std::optional<Explanation> refit = explain(judge, {array, parts}, 0.0);
-  if (!refit) return std::nullopt;
-  return finding_of(*refit, array);
+  if (!refit || !refit->parameters.are_within_bounds(refit->values)) return std::nullopt;
+  return finding_of(*refit, array, highest_ratio(frames));
 }
 
 }  // namespace dermis::calibration

@@ -18,6 +18,7 @@ struct InstrumentFinding {
   std::vector<InstrumentPart> parts;
   ArrayDescription array;
   std::vector<std::string> sentences;  ///< [parts]
+  double loss_by_drivers = 0.0;        ///< Relative, of one of two equal presses in a row, for the heaviest.
   /// Idle taxels on pressed lines differ by noise alone with the last part, and by clearly more without it.
   bool explains_idle = false;
 };
@@ -38,7 +39,7 @@ struct InstrumentFindings {
 /// temperature and material move idle taxels, too. All resistances of `array` are known.
 [[nodiscard]] InstrumentFindings find_instrument(const ArrayDescription& array, const CircuitFrames& frames);
 
-/// These parts by other frames. Empty: they cannot be fitted.
+/// These parts by other frames. Empty: they cannot be fitted, or are too large for any instrument.
 [[nodiscard]] std::optional<InstrumentFinding> refit_instrument(const ArrayDescription& array,
                                                                 const std::vector<InstrumentPart>& parts,
                                                                 const CircuitFrames& frames);

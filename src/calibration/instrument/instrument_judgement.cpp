@@ -75,12 +75,13 @@ void apply(Applied best, const CircuitFrames& frames, const Trainable& trainable
     const std::optional<UnseenPresses> unseen = errors_with(best.parts, array, trainable, proof);
     if (unseen) best.unseen = *unseen;
   }
-  fit.unexplained = unexplained_share(best.unseen);
-  if (fit.unexplained == 0.0) return;
+  const double share = unexplained_share(best.unseen);
+  fit.unexplained = std::max(share, all->loss_by_drivers);
+  if (share == 0.0) return;
   fit.doubts.push_back(fmt::format(
       "presses on several taxels do not add up: calibrations that have not seen them are {:.1f} % of the force off, "
       "beyond what they say; circuit or ADC are not as described, and forces are said to be so much less sure",
-      100.0 * fit.unexplained));
+      100.0 * share));
 }
 
 }  // namespace
@@ -142,10 +143,17 @@ void doubt_circuit(const Trainable& trainable, InstrumentFit& instrument) {
   const Result<CircuitFrames> labelled =
       circuit_frames(instrument.array, trainable.frames, trainable.loads, trainable.settle_time);
   if (!labelled) return;
-  const std::optional<std::string> doubt = doubt_circuit(instrument.array, *labelled);
+  const std::optional<CircuitDoubt> doubt = doubt_circuit(instrument.array, *labelled);
   if (!doubt) return;
-  instrument.doubts.push_back(*doubt);
-  instrument.unexplained = std::max(instrument.unexplained, kUnexplainedOfWrongCircuit);
+  double share = kUnexplainedOfWrongCircuit;
+  const Proof proof(*labelled, trainable, affordable_presses(instrument.array));
+  if (const auto described = proof.has_presses() ? errors_with({}, instrument.array, trainable, proof) : std::nullopt) {
+    const auto other = errors_with({}, doubt->array, trainable, proof);
+    if (!other || !proof.is_better(*other, *described)) return;
+    share = unexplained_share(*described);
+  }
+  instrument.doubts.push_back(doubt->sentence);
+  instrument.unexplained = std::max(instrument.unexplained, share);
 }
 
 }  // namespace dermis::calibration

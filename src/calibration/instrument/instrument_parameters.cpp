@@ -16,6 +16,7 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr int kCurvePoints = 33;
+constexpr double kMost = 3.0;  // of what is usual
 
 Index parameters_of(InstrumentPart part, const ArrayDescription& array) {
   return part == InstrumentPart::drivers ? static_cast<Index>(array.driven_lines()) : 1;
@@ -96,7 +97,6 @@ VectorXd InstrumentParameters::usual() const {
 }
 
 VectorXd InstrumentParameters::possible(VectorXd values) const {
-  constexpr double kMost = 3.0;  // of what is usual
   const VectorXd most = kMost * usual();
   visit_parts([&](InstrumentPart part, Index first, Index size) {
     if (part != InstrumentPart::drivers) values[first] = std::clamp(values[first], -most[first], most[first]);
@@ -108,6 +108,15 @@ VectorXd InstrumentParameters::possible(VectorXd values) const {
     }
   });
   return values;
+}
+
+bool InstrumentParameters::are_within_bounds(const VectorXd& values) const {
+  const VectorXd most = kMost * usual();
+  bool are_within = true;
+  visit_parts([&](InstrumentPart part, Index first, Index) {
+    are_within = are_within && (part == InstrumentPart::drivers || std::abs(values[first]) < most[first]);
+  });
+  return are_within;
 }
 
 ArrayDescription InstrumentParameters::array_at(const VectorXd& values) const {

@@ -33,6 +33,8 @@ class InstrumentParameters {
   [[nodiscard]] Eigen::VectorXd steps() const;
   /// Without what no instrument has: resistances below 0, and parts of more than three times their usual size.
   [[nodiscard]] Eigen::VectorXd possible(Eigen::VectorXd values) const;
+  /// No part is as large as that.
+  [[nodiscard]] bool are_within_bounds(const Eigen::VectorXd& values) const;
   [[nodiscard]] ArrayDescription array_at(const Eigen::VectorXd& values) const;
   /// The conductances that these frames of `array` have then. Errors: a circuit that cannot be inverted.
   [[nodiscard]] Result<InvertedFrames> invert(const std::vector<const CircuitFrame*>& frames,

@@ -65,6 +65,18 @@ double gain_of(const UnseenPress& candidate, const UnseenPress& before) {
   return std::abs(before.log_error) - std::abs(candidate.log_error);
 }
 
+/// Presses on several taxels beside their middle error.
+UnseenPresses without_mean(UnseenPresses unseen) {
+  std::vector<double> errors;
+  for (const UnseenPress& press : unseen.several) {
+    if (!std::isnan(press.log_error)) errors.push_back(press.log_error);
+  }
+  if (errors.empty()) return unseen;
+  const double middle = quantile(errors, 0.5);
+  for (UnseenPress& press : unseen.several) press.log_error -= middle;
+  return unseen;
+}
+
 /// By more than chance.
 bool are_worse(const std::vector<UnseenPress>& candidate, const std::vector<UnseenPress>& before) {
   std::vector<double> gains;
@@ -197,11 +209,15 @@ std::vector<double> Proof::gains_of_places(const UnseenPresses& candidate, const
 }
 
 bool Proof::is_better(const UnseenPresses& candidate, const UnseenPresses& before) const {
+  return are_several_better(candidate, before) && are_several_better(without_mean(candidate), without_mean(before)) &&
+         !are_worse(candidate.single, before.single);
+}
+
+bool Proof::are_several_better(const UnseenPresses& candidate, const UnseenPresses& before) const {
   constexpr double kWorthwhile = 0.9;
   const Gain several = gain_of(gains_of_places(candidate, before));
   return several.mean > kSure * several.error &&
-         median_size(candidate.several) < kWorthwhile * median_size(before.several) &&
-         !are_worse(candidate.single, before.single);
+         median_size(candidate.several) < kWorthwhile * median_size(before.several);
 }
 
 bool Proof::is_no_worse(const UnseenPresses& candidate, const UnseenPresses& before) const {

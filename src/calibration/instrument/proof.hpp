@@ -42,14 +42,18 @@ struct UnseenPresses {
 /// the single ones, each with all others of its taxel and force.
 class Proof {
  public:
+  static constexpr std::size_t kLeastPresses = 8;  ///< On several taxels; fewer tell nothing.
+
   Proof(const CircuitFrames& frames, const Trainable& trainable, std::size_t most);
+
+  [[nodiscard]] bool has_presses() const { return several_.size() >= kLeastPresses; }
 
   /// `fit`: the array by the loads that are left. Empty: it cannot be fitted or trained without a half.
   using Fit = std::function<std::optional<ArrayDescription>(std::span<const Load>)>;
   [[nodiscard]] std::optional<UnseenPresses> errors_of(const Fit& fit) const;
 
   /// Presses on several taxels get better by more than chance, their median by a tenth, and single ones do not get
-  /// worse.
+  /// worse. So they do beside their middle error, which what changes with time gives them, too. There are such presses.
   [[nodiscard]] bool is_better(const UnseenPresses& candidate, const UnseenPresses& before) const;
   /// Neither kind of press gets worse by more than chance, those on several taxels not by a standard error.
   [[nodiscard]] bool is_no_worse(const UnseenPresses& candidate, const UnseenPresses& before) const;
@@ -64,6 +68,7 @@ class Proof {
     std::size_t half = 0;   ///< 2: none.
   };
 
+  [[nodiscard]] bool are_several_better(const UnseenPresses& candidate, const UnseenPresses& before) const;
   [[nodiscard]] std::vector<double> gains_of_places(const UnseenPresses& candidate, const UnseenPresses& before) const;
   [[nodiscard]] std::vector<Load> loads_without(std::size_t half) const;
   [[nodiscard]] bool judge(const pipeline::Model& model, std::size_t half, UnseenPresses& unseen) const;
