@@ -58,6 +58,15 @@ double Explanation::cost(const VectorXd& weights) const {
   return huber_cost(residuals.cwiseProduct(weights)) + values.cwiseQuotient(parameters.usual()).squaredNorm();
 }
 
+/// Inversions of large arrays, and by Newton's method, take long.
+std::size_t affordable_presses(const ArrayDescription& array) {
+  constexpr std::size_t kTaxels = 400'000;
+  constexpr std::size_t kFew = 100;
+  constexpr std::size_t kMany = 600;
+  const bool is_slow = is_inverted_slowly(array) || !array.readout.row_segment_ohm.empty();
+  return is_slow ? kFew : std::clamp(kTaxels / array.taxel_count(), kFew, kMany);
+}
+
 /// The presses of a calibration, and what an instrument leaves of them.
 class Judge {
  public:
@@ -262,15 +271,6 @@ InstrumentFinding finding_of(const Explanation& found, const ArrayDescription& a
 }
 
 }  // namespace
-
-/// Inversions of large arrays, and by Newton's method, take long.
-std::size_t affordable_presses(const ArrayDescription& array) {
-  constexpr std::size_t kTaxels = 400'000;
-  constexpr std::size_t kFew = 100;
-  constexpr std::size_t kMany = 600;
-  const bool is_slow = is_inverted_slowly(array) || !array.readout.row_segment_ohm.empty();
-  return is_slow ? kFew : std::clamp(kTaxels / array.taxel_count(), kFew, kMany);
-}
 
 InstrumentFindings find_instrument(const ArrayDescription& array, const CircuitFrames& frames) {
   constexpr double kNoise = 1.2;    // mean square of idle taxels that differ by noise alone

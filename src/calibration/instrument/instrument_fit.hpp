@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,9 +27,6 @@ struct InstrumentFindings {
   bool disagree = false;                 ///< Presses on several taxels differ from single ones by more than chance.
   bool lacks_presses = false;            ///< Fewer than eight on several taxels tell nothing.
 };
-
-/// So many presses of each kind are judged: inversions of large arrays, and by Newton's method, take long.
-[[nodiscard]] std::size_t affordable_presses(const ArrayDescription& array);
 
 /// Presses on several taxels must give the forces that single presses have taught. They may show offset and curve of
 /// the ADC, and resistance of the supply and of the drivers. Each kind that the description leaves open is fitted by

@@ -131,7 +131,7 @@ InstrumentFit judge_instrument(const ArrayDescription& array, const Trainable& t
   fit.lacks_proof = findings.lacks_presses;
   if (dead_zone) findings.found.clear();
   if (!findings.found.empty() || findings.disagree) {
-    const Proof proof(*frames, trainable, affordable_presses(array));
+    const Proof proof(*frames, trainable);
     std::optional<Applied> best = proven(findings, array, trainable, proof);
     if (best) apply(*std::move(best), *frames, trainable, proof, fit);
   }
@@ -146,7 +146,7 @@ void doubt_circuit(const Trainable& trainable, InstrumentFit& instrument) {
   const std::optional<CircuitDoubt> doubt = doubt_circuit(instrument.array, *labelled);
   if (!doubt) return;
   double share = kUnexplainedOfWrongCircuit;
-  const Proof proof(*labelled, trainable, affordable_presses(instrument.array));
+  const Proof proof(*labelled, trainable);
   if (const auto described = proof.has_presses() ? errors_with({}, instrument.array, trainable, proof) : std::nullopt) {
     const auto other = errors_with({}, doubt->array, trainable, proof);
     if (!other || !proof.is_better(*other, *described)) return;

@@ -66,7 +66,7 @@ double gain_of(const UnseenPress& candidate, const UnseenPress& before) {
 }
 
 /// Presses on several taxels beside their middle error.
-UnseenPresses without_mean(UnseenPresses unseen) {
+UnseenPresses without_middle(UnseenPresses unseen) {
   std::vector<double> errors;
   for (const UnseenPress& press : unseen.several) {
     if (!std::isnan(press.log_error)) errors.push_back(press.log_error);
@@ -104,8 +104,8 @@ UnseenPress unseen_press(const std::vector<dermis::TotalForce>& totals, double n
 
 }  // namespace
 
-Proof::Proof(const CircuitFrames& frames, const Trainable& trainable, std::size_t most) : trainable_(trainable) {
-  const Presses presses = sort_presses(frames, most);
+Proof::Proof(const CircuitFrames& frames, const Trainable& trainable) : trainable_(trainable) {
+  const Presses presses = sort_presses(frames, std::numeric_limits<std::size_t>::max());
   const auto left_out = [](const Press& press) {
     return LeftOut{press.taxels, press.newtons, press.frame->first_frame, press.frame->last_frame, 0, kHalves};
   };
@@ -209,15 +209,12 @@ std::vector<double> Proof::gains_of_places(const UnseenPresses& candidate, const
 }
 
 bool Proof::is_better(const UnseenPresses& candidate, const UnseenPresses& before) const {
-  return are_several_better(candidate, before) && are_several_better(without_mean(candidate), without_mean(before)) &&
-         !are_worse(candidate.single, before.single);
-}
-
-bool Proof::are_several_better(const UnseenPresses& candidate, const UnseenPresses& before) const {
   constexpr double kWorthwhile = 0.9;
+  if (!(median_size(candidate.several) < kWorthwhile * median_size(before.several))) return false;
   const Gain several = gain_of(gains_of_places(candidate, before));
-  return several.mean > kSure * several.error &&
-         median_size(candidate.several) < kWorthwhile * median_size(before.several);
+  const Gain beside_middle = gain_of(gains_of_places(without_middle(candidate), without_middle(before)));
+  return several.mean > kSure * several.error && beside_middle.mean > beside_middle.error &&
+         !are_worse(candidate.single, before.single);
 }
 
 bool Proof::is_no_worse(const UnseenPresses& candidate, const UnseenPresses& before) const {

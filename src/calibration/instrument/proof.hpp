@@ -44,7 +44,7 @@ class Proof {
  public:
   static constexpr std::size_t kLeastPresses = 8;  ///< On several taxels; fewer tell nothing.
 
-  Proof(const CircuitFrames& frames, const Trainable& trainable, std::size_t most);
+  Proof(const CircuitFrames& frames, const Trainable& trainable);
 
   [[nodiscard]] bool has_presses() const { return several_.size() >= kLeastPresses; }
 
@@ -53,7 +53,8 @@ class Proof {
   [[nodiscard]] std::optional<UnseenPresses> errors_of(const Fit& fit) const;
 
   /// Presses on several taxels get better by more than chance, their median by a tenth, and single ones do not get
-  /// worse. So they do beside their middle error, which what changes with time gives them, too. There are such presses.
+  /// worse. Beside their middle error, which what changes with time gives them, too, they get better by a standard
+  /// error. There are such presses.
   [[nodiscard]] bool is_better(const UnseenPresses& candidate, const UnseenPresses& before) const;
   /// Neither kind of press gets worse by more than chance, those on several taxels not by a standard error.
   [[nodiscard]] bool is_no_worse(const UnseenPresses& candidate, const UnseenPresses& before) const;
@@ -68,7 +69,6 @@ class Proof {
     std::size_t half = 0;   ///< 2: none.
   };
 
-  [[nodiscard]] bool are_several_better(const UnseenPresses& candidate, const UnseenPresses& before) const;
   [[nodiscard]] std::vector<double> gains_of_places(const UnseenPresses& candidate, const UnseenPresses& before) const;
   [[nodiscard]] std::vector<Load> loads_without(std::size_t half) const;
   [[nodiscard]] bool judge(const pipeline::Model& model, std::size_t half, UnseenPresses& unseen) const;
