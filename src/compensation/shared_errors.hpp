@@ -16,7 +16,7 @@ namespace dermis::compensation {
 ///
 ///   noise of a reading     (S D^-1)_ii / w_j (c_ij + u_i + v_j)      GroundedRows::propagate_noise, transposed
 ///   supply, relative       sum_ij c_ij G_ij a_i / w_j                SupplyError
-///   an estimated taxel     u_i + v_j                                 FaultInversion::add_doubt
+///   a taxel in doubt       c_ij + u_i + v_j                          FaultInversion::add_doubt
 ///   a driver k [S/ohm]     sum_ij c_ij d G_ij / d s_k                DriverError, with y = diag(1/a) G diag(w)
 ///
 /// Circuits with floating rows or resistive lines are taken as if they were ideal and grounded, but for noise and

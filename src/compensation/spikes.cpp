@@ -25,11 +25,12 @@ constexpr double kRisenShare = 0.1;   // and of the rise that a spike seems to b
 constexpr double kOther = 0.05;       // density of what else may happen to a load, over that of a sigma
 constexpr double kLoadedSigmas = 20.0;
 constexpr double kMostChange = 0.3;   // of a load that moves
+constexpr double kMostChanged = 0.2;  // of the loads: beyond, one that stays tells nothing
 constexpr double kLoadsBefore = 1.0;  // that tell how many change, before any is seen
 constexpr double kChangedBefore = 0.1;
 constexpr double kPrior = 0.002;          // of a spike, to a press
 constexpr double kPriorOfTouched = 3e-6;  // beside another
-constexpr double kSure = 0.97;
+constexpr double kSure = 0.95;
 constexpr double kDoubtful = 0.5;
 constexpr double kSeenSigmas = 6.0;
 constexpr double kNewShare = 0.125;  // of a frame in the mean
@@ -173,7 +174,9 @@ double Spikes::evidence(double rise) const noexcept {
     const double of_press = log_density(witness, witness.now - witness.before, noise_of_press, kMoves * witness.before);
     const double of_spike = log_density(witness, change, witness.noise, kMoves * witness.has_read);
     const bool rises = change > kRisenSigmas * witness.noise + kRisenShare * (rise - 1.0) * witness.has_read;
-    sum += rises ? std::min(of_spike - of_press, 0.0) : of_spike - of_press;
+    const bool is_load = witness.has_read > kLoadedSigmas * witness.noise;
+    const bool may_stay = !rises && (!is_load || changed_ < kMostChanged);
+    sum += may_stay ? of_spike - of_press : std::min(of_spike - of_press, 0.0);
   }
   return sum;
 }

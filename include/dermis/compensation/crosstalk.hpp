@@ -105,7 +105,8 @@ class Compensator {
   void set_faults(std::span<const LineFault> faults);
 
   /// Taxels without a reading (TaxelStatus::invalid) are estimated from their neighbours, so that the others are
-  /// solved. So are readings that the circuit cannot give, whatever the taxels are; they become invalid. If it has no
+  /// solved. So are spikes, and readings that the circuit cannot give, whatever the taxels are; they become invalid.
+  /// A jump that may be a spike keeps its conductance, with a sigma that says so (FrameStatus::doubtful). If it has no
   /// solution with the saturated taxels (at most half), or with the largest readings, these follow. Allocates nothing
   /// once `conductance` has the array's size.
   void process(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept;
