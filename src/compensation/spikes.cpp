@@ -68,7 +68,6 @@ Spikes::Spikes(const ArrayDescription& array)
 }
 
 bool Spikes::take(const ConditionedFrame& frame, bool is_solved, ConductanceFrame& conductance) noexcept {
-  doubts_.clear();
   if (load_siemens_.empty()) return false;
   const Nanos since_last = frame.time - last_time_;
   is_next_ = has_last_ && since_last <= kLongestGap && since_last >= Nanos{0};
@@ -160,7 +159,7 @@ double Spikes::probability(std::size_t line, const ConditionedFrame& frame) cons
   const double rise = now / before;
   if (rise < kLeastRise) return 0.0;
   odds *= std::exp(evidence(rise));
-  return std::isfinite(odds) ? odds / (1.0 + odds) : 1.0;
+  return std::isinf(odds) ? 1.0 : odds / (1.0 + odds);
 }
 
 /// The logarithm of how much likelier the witnesses are after spikes by which they seem to rise so. A reading that
@@ -239,6 +238,7 @@ void Spikes::add_doubt(std::span<float> doubt_siemens) const noexcept {
 
 void Spikes::remember(const ConditionedFrame& frame, const ConductanceFrame& conductance) noexcept {
   if (load_siemens_.empty()) return;
+  doubts_.clear();
   if (!is_next_) forget();
   has_last_ = true;
   last_time_ = frame.time;

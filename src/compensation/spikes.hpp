@@ -14,7 +14,7 @@
 namespace dermis::compensation {
 
 /// Readings that jump from one frame to the next though nothing pressed. A taxel that is taken as x where it is X makes
-/// all others of its line, as the circuit solves them, s times what they are (see MissingTaxels):
+/// all others of its line s times what they are, as the circuit solves them (MissingTaxels):
 ///
 ///   s = (g + x) / (g + X),   g the load of the line, x = G / (1 + R G) behind the resistance R of the crossing line
 ///
