@@ -89,8 +89,7 @@ std::vector<std::string> findings_of(const Diagnosis& diagnosis, const pipeline:
   }
   if (has_drifted(diagnosis)) {
     found.push_back(
-        fmt::format("unloaded taxels conduct {:+.0f} % against the calibration: tare, check with a known weight "
-                    "(dermis check), and "
+        fmt::format("unloaded taxels conduct {:+.0f} % against the calibration: tare, check with a known weight, and "
                     "recalibrate or calibrate again if that is off",
                     100.0 * *diagnosis.offset_drift));
   }

@@ -23,8 +23,8 @@ namespace dermis::health {
 /// along each line that crosses them. It is 0 for a bell of any place and width. Other shapes give t the sign of the
 /// side of the four on which the touch lies. Gains that lines have changed by since the calibration add the same t
 /// under every touch. As in AgeingMonitor the product of two means counts, one of the touches on each side. It is 20
-/// times the variance of ln g. One of them is of the near half of the lines, the other
-/// of the far one. An object that always comes to one place differs there.
+/// times the variance of ln g. One of them is of the near half of the lines, the other of the far one. An object that
+/// always comes to one place differs there.
 class LineGains {
  public:
   LineGains(const pipeline::Model& model, Axis axis);

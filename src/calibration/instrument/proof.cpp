@@ -104,6 +104,13 @@ UnseenPress unseen_press(const std::vector<dermis::TotalForce>& totals, double n
 
 }  // namespace
 
+template <typename IsSame>
+void Proof::number_places(std::vector<LeftOut>& presses, const IsSame& is_same) {
+  for (std::size_t k = 1; k < presses.size(); ++k) {
+    presses[k].place = presses[k - 1].place + (is_same(presses[k - 1], presses[k]) ? 0 : 1);
+  }
+}
+
 Proof::Proof(const CircuitFrames& frames, const Trainable& trainable) : trainable_(trainable) {
   const Presses presses = sort_presses(frames, std::numeric_limits<std::size_t>::max());
   const auto left_out = [](const Press& press) {
@@ -111,18 +118,14 @@ Proof::Proof(const CircuitFrames& frames, const Trainable& trainable) : trainabl
   };
   std::transform(presses.several.begin(), presses.several.end(), std::back_inserter(several_), left_out);
   std::transform(presses.single.begin(), presses.single.end(), std::back_inserter(single_), left_out);
-  for (std::size_t k = 1; k < several_.size(); ++k) {
-    several_[k].place = several_[k - 1].place + (several_[k].taxels == several_[k - 1].taxels ? 0 : 1);
-  }
+  number_places(several_, [](const LeftOut& one, const LeftOut& next) { return next.taxels == one.taxels; });
   const bool are_few_places = several_.empty() || several_.back().place < 2 * kHalves;
   for (std::size_t k = 0; k < several_.size(); ++k) {
     several_[k].half = (are_few_places ? k : several_[k].place) % kHalves;
   }
-  for (std::size_t k = 1; k < single_.size(); ++k) {
-    const bool is_same = single_[k].taxels == single_[k - 1].taxels &&
-                         single_[k].newtons <= PressNumbers::kSameForce * single_[k - 1].newtons;
-    single_[k].place = single_[k - 1].place + (is_same ? 0 : 1);
-  }
+  number_places(single_, [](const LeftOut& one, const LeftOut& next) {
+    return next.taxels == one.taxels && next.newtons <= PressNumbers::kSameForce * one.newtons;
+  });
   for (LeftOut& press : single_) press.half = std::min(press.place % kTenth, kHalves);
 }
 

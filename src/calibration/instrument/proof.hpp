@@ -69,6 +69,8 @@ class Proof {
     std::size_t half = 0;   ///< 2: none.
   };
 
+  template <typename IsSame>
+  static void number_places(std::vector<LeftOut>& presses, const IsSame& is_same);
   [[nodiscard]] std::vector<double> gains_of_places(const UnseenPresses& candidate, const UnseenPresses& before) const;
   [[nodiscard]] std::vector<Load> loads_without(std::size_t half) const;
   [[nodiscard]] bool judge(const pipeline::Model& model, std::size_t half, UnseenPresses& unseen) const;
