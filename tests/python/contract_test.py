@@ -96,7 +96,7 @@ class Enumerations(unittest.TestCase):
     def test_the_status_of_a_frame(self):
         expected = cpp_enumerators("core/frames.hpp", "FrameStatus")
         self.assertEqual(expected.pop("OK"), 0)
-        self.assertEqual(len(expected), 10)
+        self.assertEqual(len(expected), 11)
         self.assertEqual({member.name: member.value for member in dermis.FrameStatus if member}, expected)
         self.assertEqual(dermis.FrameStatus.OK, 0)
         self.assertEqual(c_enumerators("FRAME_"), expected)
