@@ -155,6 +155,7 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
   conductance.siemens.resize(conditioned.ratio.size());
   conductance.sigma_siemens.resize(conditioned.ratio.size());
   prepare_errors(conditioned.ratio.size(), conductance.errors);
+  conductance.errors.shared_noise = conditioned.shared_noise;
   conductance.residual_sigma = 0.0;
   std::fill(conductance.siemens.begin(), conductance.siemens.end(), 0.0);
   if (has(conditioned.status, FrameStatus::rejected)) {
@@ -169,6 +170,7 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
     inversion_->propagate_noise(conditioned.sigma_ratio, conductance.sigma_siemens);
     follow_slopes(conditioned.noise_gain, conductance.sigma_siemens);
     note_errors(conditioned, conductance);
+    shared_errors_->share_noise(conductance.errors, conductance.sigma_siemens);
     faults_->add_doubt(conductance.errors.doubt_siemens, conductance.siemens, conductance.sigma_siemens);
   } else {
     std::fill(conductance.sigma_siemens.begin(), conductance.sigma_siemens.end(), 0.0);

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "compensation/shared_errors.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
@@ -26,6 +27,20 @@ double square(double value) {
   return value * value;
 }
 
+bool is_shared(const ConductanceErrors& errors) {
+  return !errors.shared_noise.empty() && errors.shared_noise.front() > 0.0F;
+}
+
+/// sum_k C_|line-k| of_lines_k
+double with_other_lines(std::span<const float> shared, std::span<const double> of_lines, std::size_t line) {
+  double sum = 0.0;
+  for (std::size_t other = 0; other < of_lines.size(); ++other) {
+    const std::size_t distance = line > other ? line - other : other - line;
+    sum += static_cast<double>(shared[distance]) * of_lines[other];
+  }
+  return sum;
+}
+
 DERMIS_PROCESSOR_CLONES bool any_other_than_zero(std::span<const float> values) {
   const float* const value = values.data();
   std::uint32_t any = 0;
@@ -37,17 +52,18 @@ DERMIS_PROCESSOR_CLONES bool any_other_than_zero(std::span<const float> values) 
 
 /// The data that all sums of a frame share.
 struct SharedErrors::Frame {
-  std::vector<double> siemens;       // G_ij [driven, sensed]
-  std::vector<double> driven_sum;    // sum_j G_ij [driven]
-  std::vector<double> driven_gain;   // a [driven]
-  std::vector<double> own_gain;      // (S D^-1)_ii [driven]
-  std::vector<double> sensed_sum;    // sum_i G_ij [sensed]
-  std::vector<double> sensed_gain;   // 1 / w [sensed]
-  std::vector<double> sensed_shunt;  // eta [sensed]
-  std::vector<double> sensed_taken;  // one loaded: sum_i (1 + G_ij Rd_i) y_ij / w_j [sensed]
-  std::vector<std::size_t> doubted;  // taxels that are estimated
-  double own_gains = 0.0;            // sum_i (S D^-1)_ii^2
-  double reading_gains = 0.0;        // sum_j 1 / (gain_j w_j)^2
+  std::vector<double> siemens;        // G_ij [driven, sensed]
+  std::vector<double> driven_sum;     // sum_j G_ij [driven]
+  std::vector<double> driven_gain;    // a [driven]
+  std::vector<double> own_gain;       // (S D^-1)_ii [driven]
+  std::vector<double> sensed_sum;     // sum_i G_ij [sensed]
+  std::vector<double> sensed_gain;    // 1 / w [sensed]
+  std::vector<double> sensed_shunt;   // eta [sensed]
+  std::vector<double> sensed_taken;   // one loaded: sum_i (1 + G_ij Rd_i) y_ij / w_j [sensed]
+  std::vector<std::size_t> doubted;   // taxels that are estimated
+  double own_gains = 0.0;             // sum_i (S D^-1)_ii^2
+  double sum_of_reading_gains = 0.0;  // sum_j q_j / sigma
+  double reading_gains = 0.0;         // sum_j 1 / (gain_j w_j)^2
 
   [[nodiscard]] std::span<const double> of_driven(std::size_t i) const {
     const std::size_t sensed = sensed_sum.size();
@@ -62,6 +78,7 @@ struct SharedErrors::Sum {
   std::vector<double> sensed_weighted;  // sum_i c_ij G_ij [sensed]
   std::vector<bool> is_driven;          // a taxel of the sum is on the line [driven]
   std::vector<double> lift;             // L_ik of a driver k [driven]
+  std::vector<double> line_shift;       // g [driven]
 };
 
 SharedErrors::SharedErrors(const ArrayDescription& array)
@@ -97,8 +114,10 @@ void SharedErrors::variances(const ConductanceErrors& errors, std::span<const We
   find_lines(errors, frame);
   for (std::size_t k = 0; k < sums.size(); ++k) {
     weigh(frame, sums[k], sum);
-    variances[k] = noise(errors, frame, sum) + supply(errors, frame, sum) + estimated_taxels(errors, frame, sum) +
-                   drivers(frame, sum);
+    const double own = is_shared(errors) ? 1.0 - static_cast<double>(errors.shared_noise.front()) : 1.0;
+    const double shared = is_shared(errors) ? shared_noise(errors, frame, sum) : 0.0;
+    variances[k] = own * noise(errors, frame, sum) + shared + supply(errors, frame, sum) +
+                   estimated_taxels(errors, frame, sum) + drivers(frame, sum);
   }
 }
 
@@ -221,6 +240,59 @@ double SharedErrors::noise(const ConductanceErrors& errors, const Frame& frame, 
     variance += alone * alone * sum.of.weight[k] * (sum.of.weight[k] + 2.0 * through_lines);
   }
   return independent + errors.sigma_ratio * errors.sigma_ratio * variance;
+}
+
+/// sum_ik C_|i-k| g_i g_k, with the shift g_i of the sum where all readings of line i are a standard deviation higher.
+double SharedErrors::shared_noise(const ConductanceErrors& errors, const Frame& frame, Sum& sum) const noexcept {
+  sum.line_shift.assign(driven_ohm_.size(), 0.0);
+  for (std::size_t k = 0; k < sum.of.taxels.size(); ++k) {
+    const auto [i, j] = lines_[sum.of.taxels[k]];
+    const double of_taxel = tells_noise_ ? reading_siemens_[j] * frame.sensed_gain[j] * errors.sigma_ratio
+                                         : static_cast<double>(errors.noise_siemens[sum.of.taxels[k]]);
+    sum.line_shift[i] += sum.of.weight[k] * of_taxel;
+  }
+  if (tells_noise_) shift_through_lines(errors, frame, sum);
+  double variance = 0.0;
+  for (std::size_t i = 0; i < driven_ohm_.size(); ++i) {
+    variance += sum.line_shift[i] * with_other_lines(errors.shared_noise, sum.line_shift, i);
+  }
+  return std::max(variance, 0.0);
+}
+
+void SharedErrors::shift_through_lines(const ConductanceErrors& errors, const Frame& frame, Sum& sum) const noexcept {
+  double through_sensed = 0.0;  // sum_j q_j v_j
+  for (std::size_t j = 0; j < sensed_ohm_.size(); ++j) {
+    through_sensed += reading_siemens_[j] * frame.sensed_gain[j] * sensed_ohm_[j] * sum.sensed_weighted[j];
+  }
+  for (std::size_t i = 0; i < driven_ohm_.size(); ++i) {
+    const double through_lines = frame.sum_of_reading_gains * sum.driven_weighted[i] + through_sensed;
+    sum.line_shift[i] = frame.own_gain[i] * (sum.line_shift[i] + errors.sigma_ratio * through_lines);
+  }
+}
+
+/// The same of a taxel ij: g_k = [i = k] alone + r_k lifted, with r_k = (S D^-1)_kk.
+void SharedErrors::share_noise(const ConductanceErrors& errors, std::span<double> sigma_siemens) const noexcept {
+  if (!tells_noise_ || !is_shared(errors)) return;
+  thread_local Frame frame;
+  find_lines(errors, frame);
+  double of_all = 0.0;  // sum_ik C_|i-k| r_i r_k
+  for (std::size_t i = 0; i < driven_ohm_.size(); ++i) {
+    of_all += frame.own_gain[i] * with_other_lines(errors.shared_noise, frame.own_gain, i);
+  }
+  const auto common = static_cast<double>(errors.shared_noise.front());
+  for (std::size_t i = 0; i < driven_ohm_.size(); ++i) {
+    const double with_others = with_other_lines(errors.shared_noise, frame.own_gain, i);
+    for (std::size_t j = 0; j < sensed_ohm_.size(); ++j) {
+      const double siemens = frame.of_driven(i)[j];
+      const double gain = reading_siemens_[j] * frame.sensed_gain[j];
+      const double alone = frame.own_gain[i] * (gain + driven_ohm_[i] * siemens * frame.sum_of_reading_gains);
+      const double lifted = gain * sensed_ohm_[j] * siemens;
+      const double variance = common * alone * alone + 2.0 * alone * lifted * with_others + lifted * lifted * of_all;
+      double& sigma = sigma_siemens[at(i, j)];
+      sigma =
+          std::sqrt((1.0 - common) * sigma * sigma + errors.sigma_ratio * errors.sigma_ratio * std::max(variance, 0.0));
+    }
+  }
 }
 
 double SharedErrors::supply(const ConductanceErrors& errors, const Frame& frame, const Sum& sum) const noexcept {

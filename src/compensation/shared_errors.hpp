@@ -28,6 +28,10 @@ class SharedErrors final : public CircuitErrors {
   /// Whether variances() contains the noise of readings; otherwise ConductanceErrors::noise_siemens must.
   [[nodiscard]] bool tells_noise() const noexcept { return tells_noise_; }
 
+  /// Lets the standard deviations of conductances by noise count what readings have in common
+  /// (ConductanceErrors::shared_noise). Allocates nothing after the first call of a thread.
+  void share_noise(const ConductanceErrors& errors, std::span<double> sigma_siemens) const noexcept;
+
   void variances(const ConductanceErrors& errors, std::span<const WeightedConductances> sums,
                  std::span<double> variances) const noexcept override;
 
@@ -48,6 +52,8 @@ class SharedErrors final : public CircuitErrors {
   void find_own_gains(Frame& frame) const noexcept;
   void weigh(const Frame& frame, const WeightedConductances& of, Sum& sum) const noexcept;
   [[nodiscard]] double noise(const ConductanceErrors& errors, const Frame& frame, const Sum& sum) const noexcept;
+  [[nodiscard]] double shared_noise(const ConductanceErrors& errors, const Frame& frame, Sum& sum) const noexcept;
+  void shift_through_lines(const ConductanceErrors& errors, const Frame& frame, Sum& sum) const noexcept;
   [[nodiscard]] double supply(const ConductanceErrors& errors, const Frame& frame, const Sum& sum) const noexcept;
   [[nodiscard]] double estimated_taxels(const ConductanceErrors& errors, const Frame& frame,
                                         const Sum& sum) const noexcept;

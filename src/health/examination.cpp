@@ -32,6 +32,7 @@ namespace {
 using compensation::LineFault;
 
 constexpr double kTouchedSigmas = 3.0;
+constexpr double kHumSigmas = 6.0;             // noise that has grown may be of one sign for long
 constexpr double kSurelyTouchedSigmas = 20.0;  // of calibrated noise: noise that has grown is no touch
 
 bool same(const LineFault& a, const LineFault& b) {
@@ -126,15 +127,15 @@ class Examination::Implementation {
     mute_.add(raw, pipeline.conditioned(), force);
     standing_.add(conductance, force);
     unloaded_.expect(conductance);
-    follow_noise(conductance);
-    follow_offsets(conductance);
+    follow_noise(conductance, pipeline.conditioned().noise_growth);
+    follow_offsets(conductance, pipeline.conditioned().noise_growth);
   }
 
   [[nodiscard]] Diagnosis diagnosis(const pipeline::Pipeline& pipeline) const {
     Diagnosis diagnosis = counted_;
     if (first_time_) diagnosis.seconds = std::chrono::duration<double>(last_time_ - *first_time_).count();
-    const std::optional<double> noise = noise_.ratio();
-    if (noise) diagnosis.noise_counts = *noise * model_.array.readout.adc_noise_counts;
+    if (const std::optional<double> noise = noise_ratio())
+      diagnosis.noise_counts = *noise * model_.array.readout.adc_noise_counts;
     diagnosis.saturated_share = saturated_share();
     if (missing_.any()) {
       diagnosis.missing_readings = missing_.describe();
@@ -178,21 +179,32 @@ class Examination::Implementation {
     counted_.supply = {std::min(range.least_v, *raw.supply_v), std::max(range.most_v, *raw.supply_v)};
   }
 
-  void follow_noise(const ConductanceFrame& conductance) {
+  /// Differences between frames do not show hum that stands still in them; neither does the pipeline less than a clear
+  /// growth.
+  [[nodiscard]] std::optional<double> noise_ratio() const {
+    const std::optional<double> of_differences = noise_.ratio();
+    const double growth = std::sqrt(square_growths_ / std::max(noise_frames_, 1.0));
+    return growth > 1.0 ? std::max(of_differences.value_or(0.0), growth) : of_differences;
+  }
+
+  void follow_noise(const ConductanceFrame& conductance, double growth) {
     for (std::size_t taxel = 0; taxel < deviation_.size(); ++taxel) {
       const bool is_noise = conductance.taxels[taxel] == TaxelStatus::ok && conductance.siemens[taxel] > 0.0 &&
                             !unloaded_.is_near_touch(conductance, taxel, kSurelyTouchedSigmas);
-      deviation_[taxel] =
-          is_noise ? (conductance.siemens[taxel] - unloaded_.expected(taxel)) / conductance.sigma_siemens[taxel]
-                   : std::numeric_limits<double>::quiet_NaN();
+      deviation_[taxel] = is_noise ? growth * (conductance.siemens[taxel] - unloaded_.expected(taxel)) /
+                                         conductance.sigma_siemens[taxel]
+                                   : std::numeric_limits<double>::quiet_NaN();
     }
     noise_.add(deviation_);
+    square_growths_ += growth * growth;
+    noise_frames_ += 1.0;
   }
 
   /// Frames in which neither the taxel nor one of its neighbours is touched tell what it conducts unloaded, where that
   /// is more than noise.
-  void follow_offsets(const ConductanceFrame& conductance) {
-    bool is_untouched = true;
+  void follow_offsets(const ConductanceFrame& conductance, double growth) {
+    const double least_sigmas = growth > 1.0 ? kHumSigmas : kTouchedSigmas;
+    bool is_untouched = growth <= 1.0;  // hum moves all readings together, as a supply does
     for (std::size_t taxel = 0; taxel < deviation_.size(); ++taxel) {
       if (conductance.taxels[taxel] != TaxelStatus::ok) continue;
       if (!(unloaded_.expected(taxel) > conductance.sigma_siemens[taxel])) continue;
@@ -201,7 +213,7 @@ class Examination::Implementation {
         continue;
       }
       dips_.add(taxel, conductance.siemens[taxel], conductance.sigma_siemens[taxel]);
-      if (!(unloaded_.expected(taxel) > kTouchedSigmas * conductance.sigma_siemens[taxel])) continue;
+      if (!(unloaded_.expected(taxel) > least_sigmas * conductance.sigma_siemens[taxel])) continue;
       offsets_.add(taxel, conductance.siemens[taxel] / unloaded_.expected(taxel));
     }
     dips_.end_frame(is_untouched);
@@ -222,6 +234,8 @@ class Examination::Implementation {
   MuteTaxels mute_;
   UnloadedTaxels unloaded_;
   NoiseMeter noise_;
+  double square_growths_ = 0.0;  // of the noise, summed over the frames
+  double noise_frames_ = 0.0;
   OffsetMeter offsets_;
   SupplyDips dips_;
   AgeingMonitor ageing_;

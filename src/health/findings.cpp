@@ -79,9 +79,10 @@ std::vector<std::string> findings_of(const Diagnosis& diagnosis, const pipeline:
     found.push_back(diagnosis.missing_readings + ": no force there, the others are solved");
   }
   if (diagnosis.noise_counts && *diagnosis.noise_counts > kMuchNoise * array.readout.adc_noise_counts) {
-    found.push_back(
-        fmt::format("the readings have {:.1f} counts of noise, {:.1f} were calibrated: check grounding and supply",
-                    *diagnosis.noise_counts, array.readout.adc_noise_counts));
+    found.push_back(fmt::format(
+        "the readings have {:.1f} counts of noise or hum, {:.1f} times what was calibrated: check grounding "
+        "and supply",
+        *diagnosis.noise_counts, *diagnosis.noise_counts / array.readout.adc_noise_counts));
   }
   if (diagnosis.saturated_share > kMuchSaturation) {
     found.push_back(fmt::format("{:.1f} % of the readings stand at the end of the ADC: forces there are lower bounds",

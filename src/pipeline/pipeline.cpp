@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dermis/fusion/typical_siemens.hpp"
+#include "pipeline/live_noise.hpp"
 #include "pipeline/tare_judge.hpp"
 
 namespace dermis::pipeline {
@@ -37,6 +38,7 @@ Pipeline::Pipeline(const Model& model, compensation::Compensator compensator)
       compensator_(std::move(compensator)),
       monitor_(model.array, model.networks.unloaded.offset_siemens),
       drift_({model.array.rows, model.array.cols}, unloaded(model.networks)),
+      live_noise_(std::make_unique<LiveNoise>(model.array, model.networks.unloaded.offset_siemens)),
       tare_judge_(std::make_unique<TareJudge>(model.networks.unloaded)),
       fusion_(model.networks) {
   if (!model.array.temperature_sensors.empty()) {
@@ -47,21 +49,27 @@ Pipeline::Pipeline(const Model& model, compensation::Compensator compensator)
 }
 
 void Pipeline::process(const RawFrame& raw, ForceFrame& force) noexcept {
-  conditioner_.process(raw, conditioned_);           // unit 2: validated, supply divided out
+  conditioner_.process(raw, conditioned_);  // unit 2: validated, supply divided out
+  live_noise_->raise(conditioned_);
   compensator_.process(conditioned_, conductance_);  // unit 3: crosstalk solved
   if (monitor_.observe(conditioned_, conductance_)) {
     compensator_.set_faults(monitor_.faults());
     compensator_.process(conditioned_, conductance_);
   }
   if (drift_.observe(conductance_)) tare_judge_->end(drift_, conductance_, fusion_, force);
-  drift_.correct(conductance_);                                   // zero kept at zero
-  fusion_.process(conductance_, force);                           // unit 4: material and temperature fused to newtons
+  drift_.correct(conductance_);          // zero kept at zero
+  fusion_.process(conductance_, force);  // unit 4: material and temperature fused to newtons
+  live_noise_->observe(conductance_, force);
   if (memory_) memory_->process(force, fusion_.noise_newtons());  // and what the material remembers
 }
 
 Pipeline::Pipeline(Pipeline&&) noexcept = default;
 Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 Pipeline::~Pipeline() = default;
+
+double Pipeline::noise_growth() const noexcept {
+  return live_noise_->measured();
+}
 
 void Pipeline::tare(TareOver over) noexcept {
   tare_judge_->begin(over);

@@ -10,10 +10,12 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <numeric>
 #include <vector>
 
 #include "dermis/compensation/crosstalk.hpp"
+#include "dermis/core/axis.hpp"
 #include "dermis/core/random.hpp"
 #include "support/allocation_guard.hpp"
 #include "support/circuits.hpp"
@@ -81,6 +83,9 @@ struct Case {
     return (sum(array, above) - sum(array, below)) / (2.0 * kRatioStep);
   }
 
+  [[nodiscard]] std::size_t driven_line(std::size_t taxel) const {
+    return driven_axis(array) == Axis::row ? taxel / array.cols : taxel % array.cols;
+  }
   [[nodiscard]] double sigma(const ConductanceErrors& errors) const {
     return std::sqrt(variance(SharedErrors(array), errors, weight));
   }
@@ -116,6 +121,57 @@ TEST_P(SharedErrorsOf, noise_of_a_sum_is_what_the_inversion_makes_of_each_readin
     ConductanceErrors errors = made.errors();
     errors.sigma_ratio = 1e-3;
     EXPECT_NEAR(made.sigma(errors) / (1e-3 * std::sqrt(variance)), 1.0, 0.1) << "seed " << seed;
+  }
+}
+
+/// Hum of a phase that turns from line to line: a cosine and a sine over the driven lines.
+TEST_P(SharedErrorsOf, hum_moves_the_sum_as_the_inversion_does) {
+  std::size_t off = 0;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    Case made(GetParam(), seed);
+    const double turn = made.random.uniform(0.0, 1.0);
+    double square = 0.0;
+    for (const double phase : {0.0, 0.5 * std::numbers::pi}) {
+      std::vector<double> above = made.ratio;
+      std::vector<double> below = made.ratio;
+      for (std::size_t k = 0; k < above.size(); ++k) {
+        const double hum = kRatioStep * std::cos(turn * static_cast<double>(made.driven_line(k)) - phase);
+        above[k] += hum;
+        below[k] -= hum;
+      }
+      square += std::pow(made.slope(above, below), 2);
+    }
+    ConductanceErrors errors = made.errors();
+    errors.sigma_ratio = 1e-3;
+    for (std::size_t line = 0; line < made.array.driven_lines(); ++line) {
+      errors.shared_noise.push_back(static_cast<float>(std::cos(turn * static_cast<double>(line))));
+    }
+    off += std::abs(made.sigma(errors) / (1e-3 * std::sqrt(square)) - 1.0) > 0.15 ? 1 : 0;
+  }
+  EXPECT_LE(off, 1) << "of " << kSeeds << " arrays, seeds 1 to " << kSeeds;
+}
+
+TEST_P(SharedErrorsOf, hum_widens_each_taxel_as_it_widens_its_sum) {
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    Case made(GetParam(), seed);
+    ConductanceErrors errors = made.errors();
+    errors.sigma_ratio = 1e-3;
+    errors.shared_noise.assign(made.array.driven_lines(), 0.6F);
+    const SharedErrors shared(made.array);
+    std::vector<double> sigma(made.siemens.size());
+    for (std::size_t k = 0; k < sigma.size(); ++k) {
+      std::vector<double> alone(sigma.size());
+      alone[k] = 1.0;
+      ConductanceErrors independent = errors;
+      independent.shared_noise.clear();
+      sigma[k] = std::sqrt(variance(shared, independent, alone));
+    }
+    shared.share_noise(errors, sigma);
+    for (std::size_t k = 0; k < sigma.size(); ++k) {
+      std::vector<double> alone(sigma.size());
+      alone[k] = 1.0;
+      EXPECT_NEAR(sigma[k] / std::sqrt(variance(shared, errors, alone)), 1.0, 1e-6) << "seed " << seed;
+    }
   }
 }
 

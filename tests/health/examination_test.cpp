@@ -196,7 +196,7 @@ TEST(Examination, noise_that_has_grown_is_found_and_contacts_are_no_noise) {
   measurement.noise_lsb = 4.0;
   const Diagnosis diagnosis = examine(measurement);
   EXPECT_NEAR(diagnosis.noise_counts.value_or(0.0), 4.0, 0.4);
-  EXPECT_TRUE(says(diagnosis, "the readings have 4.0 counts of noise, 1.0 were calibrated"));
+  EXPECT_TRUE(says(diagnosis, "the readings have 4.0 counts of noise or hum, 4.0 times what was calibrated"));
 }
 
 TEST(Examination, noise_is_not_known_where_everything_is_touched) {

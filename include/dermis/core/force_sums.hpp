@@ -26,6 +26,7 @@ struct ConductanceErrors {
   std::vector<float> noise_siemens;  ///< Standard deviation of each by noise; empty where `circuit` has it [S].
   std::vector<float> doubt_siemens;  ///< Standard deviation of taxels in doubt, 0 of the others [S].
   double sigma_ratio = 0.0;          ///< Standard deviation of every reading over the supply.
+  std::vector<float> shared_noise;   ///< As in ConditionedFrame.
   double supply_doubt = 0.0;         ///< Relative standard deviation of a supply that is not trusted.
   std::shared_ptr<const CircuitErrors> circuit;  ///< Null: noise_siemens are independent.
 };

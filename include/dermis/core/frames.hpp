@@ -88,8 +88,12 @@ struct ConditionedFrame {
   Nanos time{};
   FrameStatus status = FrameStatus::ok;
   std::optional<double> temperature_celsius;
-  std::vector<double> ratio;      ///< Reading / supply, rising with pressure; dimensionless, 0 ... reference / supply.
-  double sigma_ratio = 0.0;       ///< Standard deviation of every ratio, rounding included.
+  std::vector<double> ratio;  ///< Reading / supply, rising with pressure; dimensionless, 0 ... reference / supply.
+  double sigma_ratio = 0.0;   ///< Standard deviation of every ratio, rounding included.
+  double noise_growth = 1.0;  ///< sigma_ratio over that of the calibrated noise, >= 1.
+  /// Share of the variance of a ratio that it has in common with ratios of other driven lines, by their distance
+  /// [driven lines]; first: with those of its own line. Empty: independent.
+  std::vector<float> shared_noise{};
   std::vector<float> noise_gain;  ///< Factor on sigma_ratio for each ratio, where the ADC has a curve; empty: 1.
   double supply_doubt = 0.0;      ///< Relative standard deviation of a supply that is not trusted, beside its noise.
   std::vector<TaxelStatus> taxels;

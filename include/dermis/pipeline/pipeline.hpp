@@ -19,6 +19,7 @@
 
 namespace dermis::pipeline {
 
+class LiveNoise;
 class TareJudge;
 
 /// The paper's Fig. 4: counts in, newtons out. Not thread-safe: one per stream of frames.
@@ -43,6 +44,10 @@ class Pipeline {
   }
   [[nodiscard]] const compensation::LineFaultMonitor& line_faults() const noexcept { return monitor_; }
 
+  /// Standard deviation of the readings over the calibrated one, 0 as long as too little is known. Where it is clearly
+  /// more than 1, that of the forces grows with it.
+  [[nodiscard]] double noise_growth() const noexcept;
+
   /// Zero is that of the calibration until the drift is followed (set_options) or tared.
   [[nodiscard]] compensation::OffsetDrift& drift() noexcept { return drift_; }
 
@@ -59,6 +64,7 @@ class Pipeline {
   compensation::Compensator compensator_;
   compensation::LineFaultMonitor monitor_;
   compensation::OffsetDrift drift_;
+  std::unique_ptr<LiveNoise> live_noise_;
   std::unique_ptr<TareJudge> tare_judge_;
   fusion::ForceFusion fusion_;
   std::optional<fusion::MaterialMemory> memory_;

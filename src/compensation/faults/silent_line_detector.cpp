@@ -37,6 +37,7 @@ SilentLineDetector::SilentLineDetector(const ArrayDescription& array, const Unlo
 
 void SilentLineDetector::judge(const Observation& seen, FaultList& faults) noexcept {
   last_sigma_ratio_ = seen.conditioned.sigma_ratio;
+  last_noise_growth_ = seen.conditioned.noise_growth;
   weigh_taxels(seen);
   sum_over_lines(faults);
   witnesses_.follow(line_evidence_);
@@ -44,7 +45,8 @@ void SilentLineDetector::judge(const Observation& seen, FaultList& faults) noexc
 }
 
 bool SilentLineDetector::sees(Axis axis, std::size_t line) const noexcept {
-  const double least_sigmas = kRoundedToNone / array_.readout.adc_noise_counts;
+  const double rounded_to_none = kRoundedToNone / (array_.readout.adc_noise_counts * last_noise_growth_);
+  const double least_sigmas = std::max(rounded_to_none, hum_sigmas(last_noise_growth_));
   double per_frame = 0.0;
   for (std::size_t k = 0; k < line_length(array_, axis); ++k) {
     const double mean = unloaded_.least_ratio(taxel_on_line(array_, axis, line, k)) / last_sigma_ratio_;

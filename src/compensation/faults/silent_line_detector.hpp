@@ -49,6 +49,7 @@ class SilentLineDetector {
   UnloadedWitnesses& witnesses_;  // gets every frame
   FloorEvidence floor_;
   double last_sigma_ratio_ = 0.0;
+  double last_noise_growth_ = 1.0;
   std::vector<float> evidence_;                // that the taxel is silent, of this frame [taxels]
   PerAxis<std::vector<float>> line_evidence_;  // sums of it
   PerAxis<std::vector<LineTests>> tests_;

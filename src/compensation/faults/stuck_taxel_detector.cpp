@@ -37,14 +37,14 @@ StuckTaxelDetector::StuckTaxelDetector(const ArrayDescription& array)
 
 void StuckTaxelDetector::judge(const Observation& seen, FaultList& faults) noexcept {
   const TaxelBlock block = TaxelBlock::of_frame(seen.frame, evidence_.size());
-  const CountScale scale = count_scale(seen.conditioned.sigma_ratio);
+  const CountScale scale = count_scale(seen.conditioned);
   follow_largest_rise(seen, scale, block);
   heal(seen, scale, block, faults);
   if (count_repetitions(seen, scale, block)) find(seen, block, faults);
 }
 
-StuckTaxelDetector::CountScale StuckTaxelDetector::count_scale(double sigma_ratio) const noexcept {
-  const double supply = readout_.adc_noise_counts / sigma_ratio;
+StuckTaxelDetector::CountScale StuckTaxelDetector::count_scale(const ConditionedFrame& conditioned) const noexcept {
+  const double supply = readout_.adc_noise_counts * conditioned.noise_growth / conditioned.sigma_ratio;
   return readout_.pressure_raises_reading ? CountScale{0.0, supply} : CountScale{supply, -supply};
 }
 

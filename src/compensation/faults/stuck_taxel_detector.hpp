@@ -29,7 +29,7 @@ class StuckTaxelDetector {
     double per_ratio;
   };
 
-  [[nodiscard]] CountScale count_scale(double sigma_ratio) const noexcept;
+  [[nodiscard]] CountScale count_scale(const ConditionedFrame& conditioned) const noexcept;
   void follow_largest_rise(const Observation& seen, const CountScale& scale, const TaxelBlock& block) noexcept;
   void heal(const Observation& seen, const CountScale& scale, const TaxelBlock& block, FaultList& faults) noexcept;
   [[nodiscard]] bool count_repetitions(const Observation& seen, const CountScale& scale,

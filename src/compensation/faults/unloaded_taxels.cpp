@@ -61,7 +61,7 @@ void UnloadedTaxels::expect(const ConditionedFrame& conditioned, const LineSums&
     if (!taken_off_.empty()) take_off(conditioned.sigma_ratio);
   }
   follow_smallest_reading(conditioned.ratio, TaxelBlock::of_frame(frame, ratio_.size()));
-  forget_what_may_be_cut_off(conditioned.sigma_ratio);
+  forget_what_may_be_cut_off(conditioned);
 }
 
 DERMIS_PROCESSOR_CLONES void UnloadedTaxels::follow_smallest_reading(std::span<const double> ratio,
@@ -85,12 +85,13 @@ void UnloadedTaxels::take_off(double sigma_ratio) noexcept {
   }
 }
 
-DERMIS_PROCESSOR_CLONES void UnloadedTaxels::forget_what_may_be_cut_off(double sigma_ratio) noexcept {
+DERMIS_PROCESSOR_CLONES void UnloadedTaxels::forget_what_may_be_cut_off(const ConditionedFrame& conditioned) noexcept {
   const Readout& readout = array_.readout;
-  const double count_ratio = sigma_ratio / readout.adc_noise_counts;
+  const double count_ratio = conditioned.sigma_ratio / (conditioned.noise_growth * readout.adc_noise_counts);
   const bool sends_one_count = readout.quantity == Quantity::counts && smallest_reading_ < kOneCount * count_ratio;
   const double most_cut_off = sends_one_count ? kRoundedToNone * count_ratio : smallest_reading_;
-  const auto cut_off = static_cast<float>(most_cut_off / sigma_ratio);
+  const auto cut_off =
+      static_cast<float>(std::max(most_cut_off / conditioned.sigma_ratio, hum_sigmas(conditioned.noise_growth)));
   for (float& least : least_reading_) least = least > cut_off ? least : 0.0F;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -14,6 +15,11 @@
 #include "dermis/core/touch.hpp"
 
 namespace dermis::compensation {
+
+/// Standard deviations: hum may take so much from a reading for long, so what should read less tells nothing.
+[[nodiscard]] inline double hum_sigmas(double noise_growth) {
+  return std::sqrt(1.0 - 1.0 / (noise_growth * noise_growth));
+}
 
 inline constexpr double kUnloadedShare = 0.3;  // of the unloaded conductance: temperature, memory, age leave at least
 inline constexpr double kRoundedToNone = 0.5;  // of a count, in every frame, whatever the described noise
@@ -62,7 +68,7 @@ class UnloadedTaxels {
   }
   void take_off(double sigma_ratio) noexcept;
   void follow_smallest_reading(std::span<const double> ratio, const TaxelBlock& block) noexcept;
-  void forget_what_may_be_cut_off(double sigma_ratio) noexcept;
+  void forget_what_may_be_cut_off(const ConditionedFrame& conditioned) noexcept;
   void expect_beside_presses(const LineSums& sums, double sigma_ratio, bool solved) noexcept;
   void expect_beside_no_press(const ConditionedFrame& conditioned) noexcept;
   void find_pressed_lines(const ConditionedFrame& conditioned) noexcept;
