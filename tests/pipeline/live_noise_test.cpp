@@ -157,7 +157,8 @@ TEST(LiveNoise, hum_is_shared_by_lines_as_its_phase_turns) {
   Random random(9);
   Stream stream(20.0);
   stream.show(300, [&](std::size_t frame, std::size_t taxel) {
-    const double phase = 0.7 * static_cast<double>(frame) + kTurn * static_cast<double>(taxel / kCols);
+    const std::size_t row = taxel / kCols;
+    const double phase = 0.7 * static_cast<double>(frame) + kTurn * static_cast<double>(row);
     return 2.0 * random.normal() + 4.0 * std::sin(phase);
   });
   ASSERT_EQ(stream.shared().size(), kRows);
