@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace dermis::pipeline {
 namespace {
@@ -19,6 +20,9 @@ constexpr double kOutlierSigmas = 3.0;
 constexpr double kLeastDeviations = 64.0;        // on each side
 constexpr double kLeastShare = 1.0 / 3.0;        // of the other side's: else the zero has moved
 constexpr std::uint32_t kMostDeviations = 2048;  // on one side: then half of them is forgotten
+
+constexpr std::uint8_t kMostLooks = 255;  // at a taxel below its zero: more is no noise
+constexpr std::uint32_t kChanceFactor = 1664525;
 
 constexpr std::size_t kFramesPerProducts = 4;
 constexpr double kKept = 1.0 - 1.0 / 64.0;  // of the products of deviations, from one time to the next
@@ -57,7 +61,8 @@ LiveNoise::LiveNoise(const ArrayDescription& array, std::span<const double> unlo
       driven_(driven_axis(array)),
       lines_(array.driven_lines()),
       products_(array.driven_lines()),
-      shared_(array.driven_lines()) {}
+      shared_(array.driven_lines()),
+      stays_below_(unloaded_siemens.size()) {}
 
 void LiveNoise::raise(ConditionedFrame& conditioned) const noexcept {
   conditioned.noise_growth = growth_;
@@ -85,12 +90,31 @@ void LiveNoise::count(const ConductanceFrame& conductance, std::span<const float
   const auto growth = static_cast<float>(growth_);
   for (std::size_t taxel = from; taxel < to; ++taxel) {
     const float deviation = deviations[taxel];
-    if (std::isnan(deviation) || !is_visible(conductance, taxel)) continue;
+    if (std::isnan(deviation) || !is_visible(conductance, taxel)) {
+      stays_below_[taxel] = {};
+      continue;
+    }
     const std::uint32_t bits = first_bits(std::max(std::abs(deviation) * growth, kSmallest)) - first_bits(kSmallest);
-    const std::uint32_t bin = std::min(bits, static_cast<std::uint32_t>(kBins));
-    Counts& side = deviation > 0.0F ? above_ : below_;
-    ++side[conductance.siemens[taxel] > 0.0 ? bin : kBins];
+    const std::uint32_t bin = conductance.siemens[taxel] > 0.0 ? std::min(bits, kAnySize) : kAnySize;
+    if (deviation > 0.0F) {
+      ++above_[bin];
+      count_below(std::exchange(stays_below_[taxel], {}));
+    } else {
+      look_below(stays_below_[taxel], bin);
+    }
   }
+}
+
+/// Each look of a stay below zero is as likely the one whose size counts for all.
+void LiveNoise::look_below(StayBelow& stay, std::uint32_t bin) noexcept {
+  if (stay.looks < kMostLooks) ++stay.looks;
+  chance_ = kChanceFactor * chance_ + 1;
+  const bool is_drawn = (static_cast<std::uint64_t>(chance_) * stay.looks) >> 32 == 0;
+  if (is_drawn) stay.bin = static_cast<std::uint8_t>(bin);
+}
+
+void LiveNoise::count_below(const StayBelow& stay) noexcept {
+  if (stay.looks < kMostLooks) below_[stay.bin] += stay.looks;
 }
 
 /// Touches lie beyond the noise: the largest sizes are left out until all are within a few standard deviations.

@@ -94,6 +94,35 @@ TEST(LiveNoise, a_new_press_in_each_frame_is_no_noise) {
   EXPECT_EQ(stream.growth(), 1.0);
 }
 
+/// Dead rows under presses all around, from the first frame or from one on.
+TEST(LiveNoise, dead_rows_are_no_noise) {
+  for (const double reads : {-kUnloaded, -kUnloaded + 0.2, -kUnloaded + 1.0}) {
+    for (const std::size_t from : {0U, 150U}) {
+      Random random(6);
+      Stream stream;
+      const Deviation healthy = with_touches([&](std::size_t, std::size_t) { return random.normal(); }, random);
+      const Deviation deviation = [&](std::size_t frame, std::size_t taxel) {
+        return frame >= from && taxel / kCols < 4 ? reads : healthy(frame, taxel);
+      };
+      for (int k = 0; k < 300; ++k) {
+        stream.show(1, deviation);
+        ASSERT_EQ(stream.growth(), 1.0) << "frame " << k << ", reads " << reads << ", from " << from;
+      }
+    }
+  }
+}
+
+TEST(LiveNoise, frames_of_zeros_are_no_noise) {
+  Random random(7);
+  Stream stream;
+  const Deviation healthy = with_touches([&](std::size_t, std::size_t) { return random.normal(); }, random);
+  stream.show(100, healthy);
+  stream.show(300, [](std::size_t, std::size_t) { return -kUnloaded; });
+  EXPECT_EQ(stream.growth(), 1.0);
+  stream.show(100, healthy);
+  EXPECT_EQ(stream.growth(), 1.0);
+}
+
 TEST(LiveNoise, a_zero_that_has_moved_is_no_noise) {
   for (const double moved : {-2.0, 2.0}) {
     Random random(4);
