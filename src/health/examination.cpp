@@ -33,6 +33,7 @@ using compensation::LineFault;
 
 constexpr double kTouchedSigmas = 3.0;
 constexpr double kHumSigmas = 6.0;             // noise that has grown may be of one sign for long
+constexpr std::size_t kNoiseIsKnown = 64;      // frames after it has begun, at most
 constexpr double kSurelyTouchedSigmas = 20.0;  // of calibrated noise: noise that has grown is no touch
 
 bool same(const LineFault& a, const LineFault& b) {
@@ -116,6 +117,7 @@ class Examination::Implementation {
     follow_temperature(pipeline.conditioned());
     follow_supply(raw);
     follow(pipeline.line_faults().faults(), frame, model_.array, counted_.faults);
+    forget_noise(pipeline.conditioned().noise_growth, frame);
     missing_.add(raw, pipeline.conditioned());
     const auto& taxels = pipeline.conditioned().taxels;
     saturated_ += static_cast<std::size_t>(std::count(taxels.begin(), taxels.end(), TaxelStatus::saturated));
@@ -200,6 +202,18 @@ class Examination::Implementation {
     noise_frames_ += 1.0;
   }
 
+  /// A fault that was found and withdrawn while noise was not known yet was that noise.
+  void forget_noise(double growth, std::size_t frame) {
+    if (growth <= 1.0) {
+      noise_frame_ = frame + 1;
+      return;
+    }
+    std::erase_if(counted_.faults, [&](const FaultHistory& known) {
+      const std::size_t found = known.fault.frame;
+      return known.until && found < noise_frame_ && std::max(noise_frame_, *known.until) <= found + kNoiseIsKnown;
+    });
+  }
+
   /// Frames in which neither the taxel nor one of its neighbours is touched tell what it conducts unloaded, where that
   /// is more than noise.
   void follow_offsets(const ConductanceFrame& conductance, double growth) {
@@ -236,6 +250,7 @@ class Examination::Implementation {
   NoiseMeter noise_;
   double square_growths_ = 0.0;  // of the noise, summed over the frames
   double noise_frames_ = 0.0;
+  std::size_t noise_frame_ = 0;  // the first in which it is known to have grown
   OffsetMeter offsets_;
   SupplyDips dips_;
   AgeingMonitor ageing_;

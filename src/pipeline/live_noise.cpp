@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <utility>
 
 namespace dermis::pipeline {
 namespace {
@@ -16,13 +15,12 @@ constexpr std::size_t kTaxelsPerFrame = 32;
 constexpr std::size_t kFramesPerEstimate = 16;
 constexpr double kVisibleSigmas = 3.0;  // of calibrated noise: an unloaded taxel that may read so much less
 constexpr double kLeastGrowth = 1.25;   // less is chance, or touches that are hardly felt
+constexpr double kNothing = 1.0 / 8.0;  // of its unloaded conductance: less is cut off by the ADC, or dead
 constexpr double kOutlierSigmas = 3.0;
+constexpr double kCutOffSigmas = 4.0;            // some of the noise that was cut off may lie there
 constexpr double kLeastDeviations = 64.0;        // on each side
 constexpr double kLeastShare = 1.0 / 3.0;        // of the other side's: else the zero has moved
 constexpr std::uint32_t kMostDeviations = 2048;  // on one side: then half of them is forgotten
-
-constexpr std::uint8_t kMostLooks = 255;  // at a taxel below its zero: more is no noise
-constexpr std::uint32_t kChanceFactor = 1664525;
 
 constexpr std::size_t kFramesPerProducts = 4;
 constexpr double kKept = 1.0 - 1.0 / 64.0;  // of the products of deviations, from one time to the next
@@ -45,14 +43,6 @@ double square_of(std::size_t bin) {
   return (least * least + least * most + most * most) / 3.0;
 }
 
-/// The first bin beyond a few standard deviations, at most `bins`.
-std::size_t end_of_noise(double rms, std::size_t bins) {
-  std::size_t bin = 0;
-  const double most = kOutlierSigmas * std::max(rms, 1.0);
-  while (bin < bins && square_of(bin) <= most * most) ++bin;
-  return bin;
-}
-
 }  // namespace
 
 LiveNoise::LiveNoise(const ArrayDescription& array, std::span<const double> unloaded_siemens)
@@ -61,8 +51,7 @@ LiveNoise::LiveNoise(const ArrayDescription& array, std::span<const double> unlo
       driven_(driven_axis(array)),
       lines_(array.driven_lines()),
       products_(array.driven_lines()),
-      shared_(array.driven_lines()),
-      stays_below_(unloaded_siemens.size()) {}
+      shared_(array.driven_lines()) {}
 
 void LiveNoise::raise(ConditionedFrame& conditioned) const noexcept {
   conditioned.noise_growth = growth_;
@@ -90,40 +79,28 @@ void LiveNoise::count(const ConductanceFrame& conductance, std::span<const float
   const auto growth = static_cast<float>(growth_);
   for (std::size_t taxel = from; taxel < to; ++taxel) {
     const float deviation = deviations[taxel];
-    if (std::isnan(deviation) || !is_visible(conductance, taxel)) {
-      stays_below_[taxel] = {};
-      continue;
-    }
+    if (std::isnan(deviation) || !is_visible(conductance, taxel)) continue;
     const std::uint32_t bits = first_bits(std::max(std::abs(deviation) * growth, kSmallest)) - first_bits(kSmallest);
-    const std::uint32_t bin = conductance.siemens[taxel] > 0.0 ? std::min(bits, kAnySize) : kAnySize;
-    if (deviation > 0.0F) {
-      ++above_[bin];
-      count_below(std::exchange(stays_below_[taxel], {}));
-    } else {
-      look_below(stays_below_[taxel], bin);
-    }
+    const std::uint32_t bin = std::min(bits, static_cast<std::uint32_t>(kBins));
+    Counts& side = deviation > 0.0F ? above_ : below_;
+    ++side[conductance.siemens[taxel] > kNothing * unloaded_siemens_[taxel] ? bin : kBins];
   }
 }
 
-/// Each look of a stay below zero is as likely the one whose size counts for all.
-void LiveNoise::look_below(StayBelow& stay, std::uint32_t bin) noexcept {
-  if (stay.looks < kMostLooks) ++stay.looks;
-  chance_ = kChanceFactor * chance_ + 1;
-  const bool is_drawn = (static_cast<std::uint64_t>(chance_) * stay.looks) >> 32 == 0;
-  if (is_drawn) stay.bin = static_cast<std::uint8_t>(bin);
-}
-
-void LiveNoise::count_below(const StayBelow& stay) noexcept {
-  if (stay.looks < kMostLooks) below_[stay.bin] += stay.looks;
-}
-
-/// Touches lie beyond the noise: the largest sizes are left out until all are within a few standard deviations.
+/// Touches lie beyond the noise: the largest sizes are left out until all are within a few standard deviations. What is
+/// cut off has no size of its own, so it comes last, and takes sizes in again: dead taxels beside touches are no noise.
 void LiveNoise::estimate() noexcept {
-  Noise noise = noise_below(kBins);
-  for (std::size_t end = end_of_noise(noise.rms(), kBins), last = kBins; end < last;
-       end = end_of_noise(noise.rms(), kBins)) {
+  std::size_t end = kBins;
+  Noise noise = noise_below(end);
+  for (std::size_t next = end_of_noise(noise, kOutlierSigmas); next < end; next = end_of_noise(noise, kOutlierSigmas)) {
+    end = next;
     noise = noise_below(end);
-    last = end;
+  }
+  add_cut_off(noise);
+  for (std::size_t next = end_of_noise(noise, kCutOffSigmas); next > end; next = end_of_noise(noise, kCutOffSigmas)) {
+    end = next;
+    noise = noise_below(end);
+    add_cut_off(noise);
   }
   const auto seen = std::accumulate(above_.begin(), above_.end(), std::uint32_t{0});
   if (seen > kMostDeviations) forget_half();
@@ -137,12 +114,17 @@ void LiveNoise::estimate() noexcept {
   std::fill(shared_.begin(), shared_.end(), 0.0F);
 }
 
-/// The deviations in bins before `end` that both sides have. Those that end at 0 S have the sizes of what is left
-/// above.
+/// The first bin beyond some standard deviations.
+std::size_t LiveNoise::end_of_noise(const Noise& noise, double sigmas) noexcept {
+  std::size_t bin = 0;
+  const double most = sigmas * std::max(noise.rms(), 1.0);
+  while (bin < kBins && square_of(bin) <= most * most) ++bin;
+  return bin;
+}
+
+/// The deviations in bins before `end` that both sides have.
 LiveNoise::Noise LiveNoise::noise_below(std::size_t end) const noexcept {
   Noise noise;
-  double left_above = 0.0;
-  double left_squares = 0.0;
   std::uint32_t above = 0;
   std::uint32_t below = 0;
   for (std::size_t bin = end; bin-- > 0;) {
@@ -153,16 +135,19 @@ LiveNoise::Noise LiveNoise::noise_below(std::size_t end) const noexcept {
     const double left = static_cast<double>(above_[bin]) - count;
     noise.count += count;
     noise.squares += count * square_of(bin);
-    left_above += left;
-    left_squares += left * square_of(bin);
+    noise.left_above += left;
+    noise.left_squares += left * square_of(bin);
   }
-  const auto cut = static_cast<double>(below_[kBins]);
-  noise.more = std::max(static_cast<double>(above), static_cast<double>(below) + cut);
-  const double matched = std::min(cut, left_above);
-  if (matched <= 0.0) return noise;
-  noise.count += matched;
-  noise.squares += matched * left_squares / left_above;
+  noise.more = std::max(above, below);
   return noise;
+}
+
+/// Deviations that were cut off below have the sizes of those which are left above.
+void LiveNoise::add_cut_off(Noise& noise) const noexcept {
+  const double matched = std::min(static_cast<double>(below_[kBins]), noise.left_above);
+  if (matched <= 0.0) return;
+  noise.count += matched;
+  noise.squares += matched * noise.left_squares / noise.left_above;
 }
 
 void LiveNoise::correlate(const ConductanceFrame& conductance, std::span<const float> deviations) noexcept {

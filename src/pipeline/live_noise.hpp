@@ -17,8 +17,7 @@ namespace dermis::pipeline {
 
 /// Noise of readings in operation against that of the calibration: white noise, hum. A touch only adds to an unloaded
 /// taxel, noise shows on both sides of its zero. So of the deviations of a size or more, as many count as the rarer
-/// side has. Those below zero count once the taxel is above it again: a dead taxel and an open line never are. Taxels
-/// at 0 S may be any size below zero: the ADC ends there. Not thread-safe.
+/// side has. Taxels at 0 S may be any size below zero: the ADC ends there. Not thread-safe.
 class LiveNoise {
  public:
   /// `unloaded_siemens`: calibrated conductance of the unloaded taxels [taxels].
@@ -37,19 +36,14 @@ class LiveNoise {
 
  private:
   static constexpr std::size_t kBins = 32;
-  static constexpr std::uint32_t kAnySize = kBins;
   using Counts = std::array<std::uint32_t, kBins + 1>;  // by size; the last: any size
-
-  /// Looks at a taxel since it was above its zero.
-  struct StayBelow {
-    std::uint8_t looks = 0;
-    std::uint8_t bin = 0;  // of one of them
-  };
 
   struct Noise {
     double count = 0.0;
     double squares = 0.0;
-    double more = 0.0;  // deviations of the side that has more of them
+    double more = 0.0;        // deviations of the side that has more of them
+    double left_above = 0.0;  // deviations that only that side has, with the sum of their squares
+    double left_squares = 0.0;
     [[nodiscard]] double rms() const noexcept { return count > 0.0 ? std::sqrt(squares / count) : 0.0; }
   };
   /// The deviations of untouched taxels on a driven line.
@@ -64,10 +58,10 @@ class LiveNoise {
   };
 
   void count(const ConductanceFrame& conductance, std::span<const float> deviations) noexcept;
-  void look_below(StayBelow& stay, std::uint32_t bin) noexcept;
-  void count_below(const StayBelow& stay) noexcept;
   void estimate() noexcept;
   [[nodiscard]] Noise noise_below(std::size_t end) const noexcept;
+  void add_cut_off(Noise& noise) const noexcept;
+  [[nodiscard]] static std::size_t end_of_noise(const Noise& noise, double sigmas) noexcept;
   void forget_half() noexcept;
   void correlate(const ConductanceFrame& conductance, std::span<const float> deviations) noexcept;
   void sum_lines(const ConductanceFrame& conductance, std::span<const float> deviations) noexcept;
@@ -79,9 +73,7 @@ class LiveNoise {
   std::vector<LineSum> lines_;      // [driven lines]
   std::vector<Products> products_;  // of pairs of taxels, by the distance of their lines [driven lines]
   Products squares_;
-  std::vector<float> shared_;           // [driven lines]
-  std::vector<StayBelow> stays_below_;  // [taxels]
-  std::uint32_t chance_ = 1;
+  std::vector<float> shared_;  // [driven lines]
   Counts above_{};
   Counts below_{};
   std::size_t frame_ = 0;

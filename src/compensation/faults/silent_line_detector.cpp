@@ -18,6 +18,7 @@ constexpr double kDeviationOfNoise = 0.6;
 constexpr double kNoiseSigmas = 3.0;
 constexpr double kSuddenEvidence = 1.0;
 constexpr Nanos kSudden = std::chrono::seconds(1);
+constexpr std::size_t kNoiseIsKnown = 64;  // frames after it has begun, at most
 
 constexpr PerAxis<LineFaultKind> kSilent{.row = LineFaultKind::silent_row, .column = LineFaultKind::silent_column};
 constexpr PerAxis<LineFaultKind> kSupplied{.row = LineFaultKind::supplied_row,
@@ -37,6 +38,7 @@ SilentLineDetector::SilentLineDetector(const ArrayDescription& array, const Unlo
 
 void SilentLineDetector::judge(const Observation& seen, FaultList& faults) noexcept {
   last_sigma_ratio_ = seen.conditioned.sigma_ratio;
+  if (last_noise_growth_ == 1.0) noise_frame_ = seen.frame;
   last_noise_growth_ = seen.conditioned.noise_growth;
   weigh_taxels(seen);
   sum_over_lines(faults);
@@ -110,7 +112,7 @@ void SilentLineDetector::judge_lines(const Observation& seen, Axis axis, FaultLi
       } else if (is_decided) {
         silent.restart();
       }
-    } else if (reads_again(tests, seen, axis, line)) {
+    } else if (reads_again(tests, seen, axis, line) || is_noise(axis, line)) {
       faults.remove(kSilent[axis], line);
       silent.restart();
     }
@@ -121,6 +123,12 @@ bool SilentLineDetector::reads_again(LineTests& tests, const Observation& seen, 
                                      std::size_t line) const noexcept {
   tests.alive.add(-static_cast<double>(line_evidence_[axis][line]), seen.frame, seen.conditioned.time);
   return tests.alive.decides(tests.is_sudden ? 1 : kHealFrames);
+}
+
+/// The line was found since noise has begun that was not known yet, and hides whether the line is silent.
+bool SilentLineDetector::is_noise(Axis axis, std::size_t line) const noexcept {
+  const bool is_new = tests_[axis][line].silent.first_frame + kNoiseIsKnown >= noise_frame_;
+  return last_noise_growth_ > 1.0 && is_new && !sees(axis, line);
 }
 
 bool SilentLineDetector::reads_noise_alone(const Observation& seen, Axis axis, std::size_t line,

@@ -38,6 +38,7 @@ class SilentLineDetector {
   };
 
   [[nodiscard]] bool reads_again(LineTests& tests, const Observation& seen, Axis axis, std::size_t line) const noexcept;
+  [[nodiscard]] bool is_noise(Axis axis, std::size_t line) const noexcept;
   void weigh_taxels(const Observation& seen) noexcept;
   void sum_over_lines(const FaultList& faults) noexcept;
   void judge_lines(const Observation& seen, Axis axis, FaultList& faults) noexcept;
@@ -50,6 +51,7 @@ class SilentLineDetector {
   FloorEvidence floor_;
   double last_sigma_ratio_ = 0.0;
   double last_noise_growth_ = 1.0;
+  std::size_t noise_frame_ = 0;                // when it began to grow
   std::vector<float> evidence_;                // that the taxel is silent, of this frame [taxels]
   PerAxis<std::vector<float>> line_evidence_;  // sums of it
   PerAxis<std::vector<LineTests>> tests_;
