@@ -171,7 +171,9 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
     follow_slopes(conditioned.noise_gain, conductance.sigma_siemens);
     note_errors(conditioned, conductance);
     shared_errors_->share_noise(conductance.errors, conductance.sigma_siemens);
-    faults_->add_doubt(conductance.errors.doubt_siemens, conductance.siemens, conductance.sigma_siemens);
+    if (faults_->any_doubt() || spikes_->any_doubt()) {
+      faults_->add_doubt(conductance.errors.doubt_siemens, conductance.siemens, conductance.sigma_siemens);
+    }
   } else {
     std::fill(conductance.sigma_siemens.begin(), conductance.sigma_siemens.end(), 0.0);
   }

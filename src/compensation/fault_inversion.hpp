@@ -56,6 +56,9 @@ class FaultInversion {
   void add_doubt(std::span<const float> doubt_siemens, std::span<const double> siemens,
                  std::span<double> sigma_siemens) const noexcept;
 
+  /// Whether a taxel may be only estimated.
+  [[nodiscard]] bool any_doubt() const noexcept { return missing_.any(); }
+
   /// The standard deviation of taxels that are only estimated, 0 of the others [taxels] [S].
   void find_doubt(std::span<const double> siemens, std::span<float> doubt_siemens) const noexcept;
 

@@ -43,14 +43,20 @@ class Spikes {
   void forget() noexcept;
 
  private:
+  static constexpr double kLeastJump = 0.05;  // of the supply
+
   struct Doubt {
     std::size_t taxel;
     double siemens;
   };
 
+  struct NowAndBefore {
+    std::vector<double> now;
+    std::vector<double> before;
+  };
+
   /// A taxel of the line, behind the crossing line [S].
   struct Witness {
-    bool tells;
     double now;
     double before;
     double reads;      // with crosstalk
@@ -62,20 +68,24 @@ class Spikes {
   [[nodiscard]] std::size_t taxel_of(std::size_t line, std::size_t place) const noexcept {
     return axis_ == Axis::row ? line * cols_ + place : place * cols_ + line;
   }
-  [[nodiscard]] double behind(std::size_t taxel, double siemens) const noexcept {
-    return siemens / (1.0 + crossing_ohm_[axis_ == Axis::row ? taxel % cols_ : taxel / cols_] * siemens);
+  [[nodiscard]] std::size_t line_at(std::size_t taxel) const noexcept {
+    return axis_ == Axis::row ? taxel / cols_ : taxel % cols_;
   }
   [[nodiscard]] bool any_jump(std::span<const double> ratio) const noexcept;
-  [[nodiscard]] bool is_jump(std::size_t taxel, std::span<const double> ratio) const noexcept;
+  [[nodiscard]] bool is_jump(std::size_t taxel, std::span<const double> ratio) const noexcept {
+    return ratio[taxel] - last_[taxel] > kLeastJump;
+  }
   [[nodiscard]] bool is_touched(std::size_t taxel, std::span<const double> ratio, double sigma_ratio) const noexcept;
   [[nodiscard]] bool find_jumps(std::size_t line, const ConditionedFrame& frame,
                                 std::span<const TaxelStatus> taxels) noexcept;
-  void find_line(std::size_t line, const ConditionedFrame& frame, const ConductanceFrame& conductance,
-                 bool is_solved) noexcept;
-  [[nodiscard]] double probability(std::size_t line, const ConditionedFrame& frame) const noexcept;
-  [[nodiscard]] double evidence(double rise) const noexcept;
-  [[nodiscard]] double log_density(const Witness& witness, double difference, double noise,
-                                   double moves) const noexcept;
+  void find_behind(const ConductanceFrame& conductance) noexcept;
+  void find_loads(const ConditionedFrame& frame, bool is_solved) noexcept;
+  void find_loads_by_readings(const ConditionedFrame& frame) noexcept;
+  [[nodiscard]] Witness witness(std::size_t taxel, const ConditionedFrame& frame, bool is_solved) const noexcept;
+  [[nodiscard]] double probability(std::size_t line, const ConditionedFrame& frame, std::span<const TaxelStatus> taxels,
+                                   bool is_solved) const noexcept;
+  [[nodiscard]] double evidence(const Witness& witness, double rise) const noexcept;
+  [[nodiscard]] double density(const Witness& witness, double difference, double noise, double moves) const noexcept;
   [[nodiscard]] double changed_share(std::span<const double> ratio, double sigma_ratio) const noexcept;
   [[nodiscard]] bool take_line(std::size_t line, const ConditionedFrame& frame, bool is_solved,
                                ConductanceFrame& conductance) noexcept;
@@ -90,7 +100,7 @@ class Spikes {
   std::size_t lines_;
   std::size_t places_;
   std::vector<double> load_siemens_;  // g [lines]; empty: nothing is known of the circuit, 0: no evidence
-  std::vector<double> crossing_ohm_;  // R [places]
+  std::vector<double> crossing_ohm_;  // R [taxels]
   std::vector<double> share_;         // x / (g + sum of x) of a reading of 1 [taxels]
   bool is_next_ = false;              // after the frame that is remembered
   bool has_last_ = false;
@@ -100,7 +110,8 @@ class Spikes {
   std::vector<std::uint8_t> frames_;  // for which a jump has not been believed [taxels]
   bool any_taken_ = false;            // of the last frame or this one
   double changed_ = 0.0;              // share of the loads of this frame
-  std::vector<Witness> witnesses_;    // [places]
+  NowAndBefore behind_;               // the crossing line: x; 0: unknown [taxels]
+  NowAndBefore loads_;                // g and all x [lines]
   std::vector<std::size_t> jumps_;    // of the line
   std::vector<Doubt> doubts_;
 };

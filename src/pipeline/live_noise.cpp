@@ -11,7 +11,7 @@
 namespace dermis::pipeline {
 namespace {
 
-constexpr std::size_t kTaxelsPerFrame = 32;
+constexpr std::size_t kTaxelsPerFrame = 16;
 constexpr std::size_t kFramesPerEstimate = 16;
 constexpr double kVisibleSigmas = 3.0;  // of calibrated noise: an unloaded taxel that may read so much less
 constexpr double kLeastGrowth = 1.25;   // less is chance, or touches that are hardly felt
