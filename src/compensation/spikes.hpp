@@ -21,8 +21,9 @@ namespace dermis::compensation {
 /// So after a press the conductances of the others are what they were, and after a spike their readings are. They are
 /// witnesses: each is what it was, or it moved, or it is another load, and then it tells nothing. So a press on many
 /// taxels is none of its witnesses. All jumps of a line are spikes, or none is. A spike that is not certain is a doubt,
-/// the jump times the root of its probability. Where circuits give no evidence, nothing is ever taken or doubted.
-/// Many members: the last frame, and work space, as take() may not allocate.
+/// the jump times the root of its probability. Frames of another touch are not compared. Where circuits give no
+/// evidence, nothing is ever taken or doubted. Many members: the last frame, and work space, as take() may not
+/// allocate.
 class Spikes {
  public:
   explicit Spikes(const ArrayDescription& array);

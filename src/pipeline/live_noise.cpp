@@ -87,8 +87,9 @@ void LiveNoise::count(const ConductanceFrame& conductance, std::span<const float
   }
 }
 
-/// Touches lie beyond the noise: the largest sizes are left out until all are within a few standard deviations. What is
-/// cut off has no size of its own, so it comes last, and takes sizes in again: dead taxels beside touches are no noise.
+/// Touches lie beyond the noise: the largest sizes are left out until all are within a few standard deviations.
+/// Readings that are cut off have no size of their own. They come last and take sizes in again, so dead taxels beside
+/// touches are no noise.
 void LiveNoise::estimate() noexcept {
   std::size_t end = kBins;
   Noise noise = noise_below(end);
