@@ -7,11 +7,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <vector>
 
+#include "dermis/calibration/calibrate.hpp"
 #include "dermis/calibration/sample_database.hpp"
+#include "dermis/core/quantile.hpp"
 #include "dermis/core/random.hpp"
+#include "dermis/pipeline/pipeline.hpp"
 #include "dermis/simulation/adc.hpp"
 #include "dermis/simulation/readout_circuit.hpp"
 #include "dermis/simulation/sampling_capacitor.hpp"
@@ -75,7 +79,7 @@ struct Rig {
 };
 
 /// Each taxel alone under six weights, and pairs in each row.
-SampleDatabase calibrated(const ArrayDescription& truth, const ArrayDescription& array, std::uint64_t seed = 1) {
+Rig presses_of(const ArrayDescription& truth, std::uint64_t seed) {
   Rig rig(truth, seed);
   for (int k = 0; k < 20; ++k) rig.press({}, 0.0);
   for (std::size_t taxel = 0; taxel < kTaxels; ++taxel) {
@@ -87,6 +91,11 @@ SampleDatabase calibrated(const ArrayDescription& truth, const ArrayDescription&
       rig.press({row * kLines + col, row * kLines + col + 1}, k % 2 == 0 ? 20.0 : 8.0);
     }
   }
+  return rig;
+}
+
+SampleDatabase calibrated(const ArrayDescription& truth, const ArrayDescription& array, std::uint64_t seed = 1) {
+  const Rig rig = presses_of(truth, seed);
   Result<SampleDatabase> database = build_sample_database(array, rig.frames, rig.loads);
   EXPECT_TRUE(database) << (database ? "" : database.error().message);
   return database ? *std::move(database) : SampleDatabase{};
@@ -150,6 +159,33 @@ TEST(InstrumentFit, drivers_that_are_not_as_given_are_named_and_doubted_but_not_
   EXPECT_EQ(database.array.readout.drive_ohm, described().readout.drive_ohm);
   EXPECT_TRUE(doubts(database, "drive_ohm is not as given"));
   EXPECT_GT(database.unexplained_share, 0.03);
+}
+
+TEST(InstrumentFit, pairs_tell_by_how_much_touches_of_whole_rows_are_off) {
+  ArrayDescription truth = described();
+  truth.readout.drive_ohm = {70.0, 150.0, 90.0, 130.0, 75.0, 145.0};
+  for (const std::uint64_t seed : {1U, 2U}) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Rig rig = presses_of(truth, seed);
+    const auto calibration = calibrate(described(), rig.frames, rig.loads);
+    ASSERT_TRUE(calibration);
+    const std::size_t labelled = rig.frames.size();
+    for (std::size_t row = 0; row < kLines; ++row) {
+      std::vector<std::size_t> taxels(kLines);
+      std::iota(taxels.begin(), taxels.end(), row * kLines);
+      rig.press(taxels, 10.0);
+    }
+    auto pipeline = pipeline::Pipeline::create(calibration->model);
+    ForceFrame force;
+    std::vector<double> errors;
+    for (std::size_t row = 0; row < kLines; ++row) {
+      pipeline->process(rig.frames[labelled + row], force);
+      for (std::size_t col = 0; col < kLines; ++col) {
+        errors.push_back(std::abs(static_cast<double>(force.newtons[row * kLines + col]) / 10.0 - 1.0));
+      }
+    }
+    EXPECT_GT(calibration->report.uncertainty.unexplained_share, quantile(errors, 0.5));
+  }
 }
 
 TEST(InstrumentFit, a_dead_zone_of_the_adc_is_named_with_the_force_from_which_it_reads) {

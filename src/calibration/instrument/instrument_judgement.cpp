@@ -21,7 +21,6 @@ namespace {
 
 constexpr const char* kNoPresses = "adc_offset_counts and supply_ohm cannot be told";
 constexpr const char* kNothing = "adc_offset_counts and supply_ohm are nothing, as far as presses tell";
-constexpr double kUnexplainedOfWrongCircuit = 0.5;  // of the force: circuits described wrongly left 14 to 56 %
 
 using Parts = std::vector<InstrumentPart>;
 
@@ -59,9 +58,18 @@ std::optional<Applied> proven(const InstrumentFindings& findings, const ArrayDes
   return best;
 }
 
+/// Forces are less sure by a share that nothing explains. Says so, unless as much is said.
+void doubt_all(double share, InstrumentFit& fit) {
+  if (share <= fit.unexplained) return;
+  fit.unexplained = share;
+  fit.doubts.push_back(fmt::format(
+      "presses on several taxels do not add up: calibrations that have not seen them are farther off than they say; "
+      "circuit or ADC are not as described, and forces are said to be {:.1f} % less sure",
+      100.0 * share));
+}
+
 /// Names what is proven, and applies it but for drivers.
-void apply(Applied best, const CircuitFrames& frames, const Trainable& trainable, const Proof& proof,
-           InstrumentFit& fit) {
+void apply(Applied best, const CircuitFrames& frames, const Proof& proof, InstrumentFit& fit) {
   const ArrayDescription array = fit.array;
   const std::optional<InstrumentFinding> all = refit_instrument(array, best.parts, frames);
   if (!all) return;
@@ -69,19 +77,15 @@ void apply(Applied best, const CircuitFrames& frames, const Trainable& trainable
     (all->parts[k] == InstrumentPart::drivers ? fit.doubts : fit.statements).push_back(all->sentences[k]);
   }
   fit.array = all->array;
-  if (std::erase(best.parts, InstrumentPart::drivers) > 0) {
+  const bool has_drivers = std::erase(best.parts, InstrumentPart::drivers) > 0;
+  if (has_drivers) {
     const std::optional<InstrumentFinding> rest = refit_instrument(array, best.parts, frames);
     fit.array = rest ? rest->array : array;
-    const std::optional<UnseenPresses> unseen = errors_with(best.parts, array, trainable, proof);
-    if (unseen) best.unseen = *unseen;
   }
-  const double share = unexplained_share(best.unseen);
-  fit.unexplained = std::max(share, all->loss_by_drivers);
-  if (share == 0.0) return;
-  fit.doubts.push_back(fmt::format(
-      "presses on several taxels do not add up: calibrations that have not seen them are {:.1f} % of the force off, "
-      "beyond what they say; circuit or ADC are not as described, and forces are said to be so much less sure",
-      100.0 * share));
+  fit.unexplained = all->loss_by_drivers;
+  if (!has_drivers && !Proof::do_not_add_up(best.unseen)) return;
+  const std::optional<UnseenPresses> by_singles = proof.errors_by_singles(fit.array);
+  doubt_all(proof.unexplained_share(by_singles ? *by_singles : best.unseen), fit);
 }
 
 }  // namespace
@@ -131,9 +135,9 @@ InstrumentFit judge_instrument(const ArrayDescription& array, const Trainable& t
   fit.lacks_proof = findings.lacks_presses;
   if (dead_zone) findings.found.clear();
   if (!findings.found.empty() || findings.disagree) {
-    const Proof proof(*frames, trainable);
+    const Proof proof(array, *frames, trainable);
     std::optional<Applied> best = proven(findings, array, trainable, proof);
-    if (best) apply(*std::move(best), *frames, trainable, proof, fit);
+    if (best) apply(*std::move(best), *frames, proof, fit);
   }
   if (is_asked_for && fit.statements.empty()) fit.statements.emplace_back(fit.lacks_proof ? kNoPresses : kNothing);
   return fit;
@@ -145,12 +149,13 @@ void doubt_circuit(const Trainable& trainable, InstrumentFit& instrument) {
   if (!labelled) return;
   const std::optional<CircuitDoubt> doubt = doubt_circuit(instrument.array, *labelled);
   if (!doubt) return;
-  double share = kUnexplainedOfWrongCircuit;
-  const Proof proof(*labelled, trainable);
+  double share = Proof::kOfWrongCircuit;
+  const Proof proof(instrument.array, *labelled, trainable);
   if (const auto described = proof.has_presses() ? errors_with({}, instrument.array, trainable, proof) : std::nullopt) {
     const auto other = errors_with({}, doubt->array, trainable, proof);
-    if (!other || !proof.is_better(*other, *described)) return;
-    share = unexplained_share(*described);
+    const auto by_singles = proof.errors_by_singles(instrument.array);
+    share = proof.unexplained_share(by_singles ? *by_singles : *described);
+    if (!other || !proof.is_better(*other, *described)) return doubt_all(share, instrument);
   }
   instrument.doubts.push_back(doubt->sentence);
   instrument.unexplained = std::max(instrument.unexplained, share);

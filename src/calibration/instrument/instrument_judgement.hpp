@@ -18,8 +18,8 @@ struct InstrumentFit {
   ArrayDescription array;               ///< With what was found.
   std::vector<std::string> statements;  ///< What was found, a sentence each.
   std::vector<std::string> doubts;      ///< Parts that are not as described and stay so, a sentence each.
-  /// The relative difference of presses on several taxels from calibrations that have not seen them, beyond what these
-  /// say. 0: they agree, or there are none.
+  /// By how much any force may be off beyond what a calibration says, relative, as presses on several taxels tell
+  /// (Proof::unexplained_share()). 0: they agree, or there are none.
   double unexplained = 0.0;
   /// Too few presses on several taxels show whether the instrument is as described.
   bool lacks_proof = false;
@@ -43,7 +43,7 @@ struct InstrumentFit {
                                              bool is_asked_for);
 
 /// Whether another circuit explains the frames better, with all that was found of the instrument. Where presses on
-/// several taxels tell, whole calibrations must do better with it.
+/// several taxels tell, it is named if whole calibrations do better with it. What they leave is doubted in any case.
 void doubt_circuit(const Trainable& trainable, InstrumentFit& instrument);
 
 }  // namespace dermis::calibration

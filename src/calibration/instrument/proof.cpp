@@ -23,7 +23,8 @@ namespace {
 constexpr std::size_t kHalves = 2;
 constexpr std::size_t kLeastPlaces = 8;  // fewer are judged press by press
 constexpr std::size_t kTenth = 10;
-constexpr double kSure = 3.0;  // standard errors
+constexpr double kSure = 3.0;    // standard errors
+constexpr double kMisfit = 2.0;  // times the square of single presses, or of what is said
 
 /// A mean and its standard error.
 struct Gain {
@@ -57,6 +58,22 @@ double typical_square(const std::vector<UnseenPress>& presses) {
     if (!std::isnan(press.log_error)) squares.push_back(std::pow(press.log_error / press.sigma, 2));
   }
   return squares.empty() ? 0.0 : std::min(mean_of(squares), quantile(squares, 0.5) / kMedianOfSquare);
+}
+
+/// Laws that are not well known, as those of a material that saturates, are no misfit of several taxels.
+double square_of_single(const UnseenPresses& unseen) {
+  return std::max(1.0, typical_square(unseen.single));
+}
+
+/// The least share beside so many squares of sigma that covers presses as often as one sigma does.
+double share_beyond(const std::vector<UnseenPress>& presses, double squares) {
+  constexpr double kOneSigma = 0.683;
+  std::vector<double> excess;
+  for (const UnseenPress& press : presses) {
+    if (std::isnan(press.log_error)) continue;
+    excess.push_back(std::sqrt(std::max(std::pow(press.log_error, 2) - squares * std::pow(press.sigma, 2), 0.0)));
+  }
+  return excess.empty() ? 0.0 : quantile(excess, kOneSigma);
 }
 
 /// By how much the candidate is nearer; squares would be those of a few presses. Not a number: one of both has no
@@ -111,7 +128,8 @@ void Proof::number_places(std::vector<LeftOut>& presses, const IsSame& is_same) 
   }
 }
 
-Proof::Proof(const CircuitFrames& frames, const Trainable& trainable) : trainable_(trainable) {
+Proof::Proof(const ArrayDescription& array, const CircuitFrames& frames, const Trainable& trainable)
+    : trainable_(trainable), lines_(array.rows + array.cols) {
   const Presses presses = sort_presses(frames, std::numeric_limits<std::size_t>::max());
   const auto left_out = [](const Press& press) {
     return LeftOut{press.taxels, press.newtons, press.frame->first_frame, press.frame->last_frame, 0, kHalves};
@@ -129,11 +147,11 @@ Proof::Proof(const CircuitFrames& frames, const Trainable& trainable) : trainabl
   for (LeftOut& press : single_) press.half = std::min(press.place % kTenth, kHalves);
 }
 
-std::vector<Load> Proof::loads_without(std::size_t half) const {
+std::vector<Load> Proof::loads_without(std::size_t half, bool all_several) const {
   std::vector<bool> is_left_out(trainable_.frames.size());
   for (const std::vector<LeftOut>* const presses : {&several_, &single_}) {
     for (const LeftOut& press : *presses) {
-      if (press.half != half) continue;
+      if (press.half != half && !(all_several && presses == &several_)) continue;
       for (std::size_t frame = press.first_frame; frame <= press.last_frame; ++frame) is_left_out[frame] = true;
     }
   }
@@ -183,10 +201,10 @@ bool Proof::judge(const pipeline::Model& model, std::size_t half, UnseenPresses&
   return true;
 }
 
-std::optional<UnseenPresses> Proof::errors_of(const Fit& fit) const {
+std::optional<UnseenPresses> Proof::errors_of(const Fit& fit, bool without_several) const {
   UnseenPresses unseen;
   for (std::size_t half = 0; half < kHalves; ++half) {
-    const std::vector<Load> kept = loads_without(half);
+    const std::vector<Load> kept = loads_without(half, without_several);
     const std::optional<ArrayDescription> array = fit(kept);
     const std::optional<pipeline::Model> model = array ? trainable_.train(*array, kept) : std::nullopt;
     if (!model || !judge(*model, half, unseen)) return std::nullopt;
@@ -197,6 +215,10 @@ std::optional<UnseenPresses> Proof::errors_of(const Fit& fit) const {
   }
   unseen.single.resize(next);
   return unseen;
+}
+
+std::optional<UnseenPresses> Proof::errors_by_singles(const ArrayDescription& array) const {
+  return errors_of([&](std::span<const Load>) { return std::optional(array); }, true);
 }
 
 std::vector<double> Proof::gains_of_places(const UnseenPresses& candidate, const UnseenPresses& before) const {
@@ -225,16 +247,18 @@ bool Proof::is_no_worse(const UnseenPresses& candidate, const UnseenPresses& bef
   return several.mean > -several.error && !are_worse(candidate.single, before.single);
 }
 
-double unexplained_share(const UnseenPresses& unseen) {
-  constexpr double kNoticed = 2.0;  // times the square of single presses, or of what is said
-  constexpr double kOneSigma = 0.683;
-  if (!(typical_square(unseen.several) > kNoticed * std::max(1.0, typical_square(unseen.single)))) return 0.0;
-  std::vector<double> excess;
-  for (const UnseenPress& press : unseen.several) {
-    if (std::isnan(press.log_error)) continue;
-    excess.push_back(std::sqrt(std::max(std::pow(press.log_error, 2) - std::pow(press.sigma, 2), 0.0)));
-  }
-  return quantile(excess, kOneSigma);
+bool Proof::do_not_add_up(const UnseenPresses& unseen) {
+  return typical_square(unseen.several) > kMisfit * square_of_single(unseen);
+}
+
+double Proof::unexplained_share(const UnseenPresses& unseen) const {
+  double others = 0.0;
+  for (const LeftOut& press : several_) others += static_cast<double>(press.taxels.size() - 1);
+  const double others_of_press = others / static_cast<double>(several_.size());
+  const double others_on_lines = static_cast<double>(lines_) - 2.0;
+  const double of_circuit = share_beyond(unseen.several, kMisfit * square_of_single(unseen));
+  return std::max(share_beyond(unseen.several, 1.0),
+                  std::min(kOfWrongCircuit, of_circuit * others_on_lines / others_of_press));
 }
 
 }  // namespace dermis::calibration

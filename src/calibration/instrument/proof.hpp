@@ -43,14 +43,18 @@ struct UnseenPresses {
 class Proof {
  public:
   static constexpr std::size_t kLeastPresses = 8;  ///< On several taxels; fewer tell nothing.
+  static constexpr double kOfWrongCircuit = 0.5;   ///< Of the force: circuits described wrongly left 14 to 56 %.
 
-  Proof(const CircuitFrames& frames, const Trainable& trainable);
+  Proof(const ArrayDescription& array, const CircuitFrames& frames, const Trainable& trainable);
 
   [[nodiscard]] bool has_presses() const { return several_.size() >= kLeastPresses; }
 
   /// `fit`: the array by the loads that are left. Empty: it cannot be fitted or trained without a half.
   using Fit = std::function<std::optional<ArrayDescription>(std::span<const Load>)>;
-  [[nodiscard]] std::optional<UnseenPresses> errors_of(const Fit& fit) const;
+  [[nodiscard]] std::optional<UnseenPresses> errors_of(const Fit& fit) const { return errors_of(fit, false); }
+  /// Of calibrations by single presses alone. Laws that are learned from several taxels take in a part of what is
+  /// wrong.
+  [[nodiscard]] std::optional<UnseenPresses> errors_by_singles(const ArrayDescription& array) const;
 
   /// Presses on several taxels get better by more than chance, their median by a tenth, and single ones do not get
   /// worse. Beside their middle error, which what changes with time gives them, too, they get better by a standard
@@ -58,6 +62,12 @@ class Proof {
   [[nodiscard]] bool is_better(const UnseenPresses& candidate, const UnseenPresses& before) const;
   /// Neither kind of press gets worse by more than chance, those on several taxels not by a standard error.
   [[nodiscard]] bool is_no_worse(const UnseenPresses& candidate, const UnseenPresses& before) const;
+  /// Presses on several taxels are farther off, over what the calibrations say, than single presses and than chance.
+  [[nodiscard]] static bool do_not_add_up(const UnseenPresses& unseen);
+  /// By how much any force may be off beyond what the calibrations say, relative: as presses on several taxels are.
+  /// What single presses do not show is the circuit, and grows with the others on the lines of a taxel, up to
+  /// kOfWrongCircuit. 0: as near as said.
+  [[nodiscard]] double unexplained_share(const UnseenPresses& unseen) const;
 
  private:
   struct LeftOut {
@@ -72,16 +82,14 @@ class Proof {
   template <typename IsSame>
   static void number_places(std::vector<LeftOut>& presses, const IsSame& is_same);
   [[nodiscard]] std::vector<double> gains_of_places(const UnseenPresses& candidate, const UnseenPresses& before) const;
-  [[nodiscard]] std::vector<Load> loads_without(std::size_t half) const;
+  [[nodiscard]] std::vector<Load> loads_without(std::size_t half, bool all_several) const;
+  [[nodiscard]] std::optional<UnseenPresses> errors_of(const Fit& fit, bool without_several) const;
   [[nodiscard]] bool judge(const pipeline::Model& model, std::size_t half, UnseenPresses& unseen) const;
 
   const Trainable& trainable_;
+  std::size_t lines_;
   std::vector<LeftOut> several_;
   std::vector<LeftOut> single_;
 };
-
-/// By how much presses on several taxels are off beyond what the calibrations say, relative. 0: not by more than single
-/// presses are, or not by more than chance.
-[[nodiscard]] double unexplained_share(const UnseenPresses& unseen);
 
 }  // namespace dermis::calibration
