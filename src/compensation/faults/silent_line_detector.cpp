@@ -18,6 +18,7 @@ constexpr double kDeviationOfNoise = 0.6;
 constexpr double kNoiseSigmas = 3.0;
 constexpr double kSuddenEvidence = 1.0;
 constexpr Nanos kSudden = std::chrono::seconds(1);
+constexpr Nanos kNever = Nanos::min();
 constexpr std::size_t kNoiseIsKnown = 64;  // frames after it has begun, at most
 
 constexpr PerAxis<LineFaultKind> kSilent{.row = LineFaultKind::silent_row, .column = LineFaultKind::silent_column};
@@ -34,6 +35,7 @@ SilentLineDetector::SilentLineDetector(const ArrayDescription& array, const Unlo
       floor_(floor_evidence(array.readout.adc_noise_counts)),
       evidence_(array.taxel_count()),
       line_evidence_{std::vector<float>(array.rows), std::vector<float>(array.cols)},
+      read_{std::vector<Nanos>(array.rows, kNever), std::vector<Nanos>(array.cols, kNever)},
       tests_{std::vector<LineTests>(array.rows), std::vector<LineTests>(array.cols)} {}
 
 void SilentLineDetector::judge(const Observation& seen, FaultList& faults) noexcept {
@@ -96,9 +98,10 @@ void SilentLineDetector::judge_lines(const Observation& seen, Axis axis, FaultLi
     const auto evidence = static_cast<double>(line_evidence_[axis][line]);
     LineTests& tests = tests_[axis][line];
     PageTest& silent = tests.silent;
-    const bool falls = evidence > kSuddenEvidence && tests.read && time - *tests.read <= kSudden;
-    if (evidence < -kEvidence) tests.read = time;
+    Nanos& read = read_[axis][line];
+    if (evidence < -kEvidence) read = time;
     if (none_is_known && silent.frames == 0 && evidence <= 0.0) continue;
+    const bool falls = evidence > kSuddenEvidence && read != kNever && time - read <= kSudden;
     if (faults.contains(kSupplied[axis], line)) continue;
     if (!faults.contains(kSilent[axis], line)) {
       if (witnesses_.are_doubtful()) silent.restart();

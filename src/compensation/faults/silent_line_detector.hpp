@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <vector>
 
 #include "compensation/faults/fault_list.hpp"
@@ -32,9 +31,8 @@ class SilentLineDetector {
  private:
   struct LineTests {
     PageTest silent;
-    PageTest alive;               // of a line that was found to be silent
-    std::optional<Nanos> read{};  // surely, the last time
-    bool is_sudden = false;       // found so
+    PageTest alive;          // of a line that was found to be silent
+    bool is_sudden = false;  // found so
   };
 
   [[nodiscard]] bool reads_again(LineTests& tests, const Observation& seen, Axis axis, std::size_t line) const noexcept;
@@ -54,6 +52,7 @@ class SilentLineDetector {
   std::size_t noise_frame_ = 0;                // when it began to grow
   std::vector<float> evidence_;                // that the taxel is silent, of this frame [taxels]
   PerAxis<std::vector<float>> line_evidence_;  // sums of it
+  PerAxis<std::vector<Nanos>> read_;           // when the line surely read, the last time
   PerAxis<std::vector<LineTests>> tests_;
 };
 
