@@ -43,7 +43,8 @@ struct InstrumentFit {
                                              bool is_asked_for);
 
 /// Whether another circuit explains the frames better, with all that was found of the instrument. Where presses on
-/// several taxels tell, it is named if whole calibrations do better with it. What they leave is doubted in any case.
+/// several taxels tell, it is named if whole calibrations do better with it. Errors that they leave are doubted in any
+/// case.
 void doubt_circuit(const Trainable& trainable, InstrumentFit& instrument);
 
 }  // namespace dermis::calibration

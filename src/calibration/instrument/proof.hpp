@@ -43,7 +43,7 @@ struct UnseenPresses {
 class Proof {
  public:
   static constexpr std::size_t kLeastPresses = 8;  ///< On several taxels; fewer tell nothing.
-  static constexpr double kOfWrongCircuit = 0.5;   ///< Of the force: circuits described wrongly left 14 to 56 %.
+  static constexpr double kOfWrongCircuit = 0.5;  ///< A share of the force: circuits described wrongly left 14 to 56 %.
 
   Proof(const ArrayDescription& array, const CircuitFrames& frames, const Trainable& trainable);
 
@@ -52,7 +52,7 @@ class Proof {
   /// `fit`: the array by the loads that are left. Empty: it cannot be fitted or trained without a half.
   using Fit = std::function<std::optional<ArrayDescription>(std::span<const Load>)>;
   [[nodiscard]] std::optional<UnseenPresses> errors_of(const Fit& fit) const { return errors_of(fit, false); }
-  /// Of calibrations by single presses alone. Laws that are learned from several taxels take in a part of what is
+  /// Calibrations are by single presses alone. Laws that are learned from several taxels take in a part of what is
   /// wrong.
   [[nodiscard]] std::optional<UnseenPresses> errors_by_singles(const ArrayDescription& array) const;
 
@@ -65,7 +65,7 @@ class Proof {
   /// Presses on several taxels are farther off, over what the calibrations say, than single presses and than chance.
   [[nodiscard]] static bool do_not_add_up(const UnseenPresses& unseen);
   /// By how much any force may be off beyond what the calibrations say, relative: as presses on several taxels are.
-  /// What single presses do not show is the circuit, and grows with the others on the lines of a taxel, up to
+  /// The circuit is not shown by single presses: its error grows with the others on the lines of a taxel, up to
   /// kOfWrongCircuit. 0: as near as said.
   [[nodiscard]] double unexplained_share(const UnseenPresses& unseen) const;
 
