@@ -19,10 +19,10 @@
 #include <string>
 #include <vector>
 
-#include "dermis/acquisition/protocol.hpp"
-#include "dermis/core/quantile.hpp"
-#include "dermis/core/random.hpp"
-#include "dermis/layouts/layout.hpp"
+#include "dermis/bytes/devices/protocol.hpp"
+#include "dermis/bytes/layouts/layout.hpp"
+#include "dermis/touch/frames/quantile.hpp"
+#include "dermis/touch/frames/random.hpp"
 #include "rows.hpp"
 
 namespace dermis {
@@ -48,10 +48,10 @@ struct Stream {
 /// 32x32, or what the protocol has.
 Stream make_stream(const std::string& protocol) {
   Stream stream;
-  std::unique_ptr<acquisition::Encoder> encoder;
+  std::unique_ptr<bytes::devices::Encoder> encoder;
   for (const FrameShape& shape :
        {FrameShape{32, 32}, FrameShape{16, 16}, FrameShape{56, 28}, FrameShape{24, 32}, FrameShape{1, 64}}) {
-    auto made = acquisition::make_encoder({.name = protocol, .shape = shape});
+    auto made = bytes::devices::make_encoder({.name = protocol, .shape = shape});
     if (!made) continue;
     stream.shape = shape;
     encoder = std::move(made).value();
@@ -69,17 +69,18 @@ Stream make_stream(const std::string& protocol) {
   return stream;
 }
 
-using MakeDecoder = std::function<std::unique_ptr<layouts::Decoder>(const FrameShape&)>;
+using MakeDecoder = std::function<std::unique_ptr<bytes::layouts::Decoder>(const FrameShape&)>;
 
 MakeDecoder of_protocol(const std::string& name) {
-  return [name](const FrameShape& shape) { return acquisition::make_decoder({.name = name, .shape = shape}).value(); };
+  return
+      [name](const FrameShape& shape) { return bytes::devices::make_decoder({.name = name, .shape = shape}).value(); };
 }
 
 MakeDecoder of_layout(const std::string& keys) {
   return [keys](const FrameShape& shape) {
     const std::string size = fmt::format("[layout]\nrows = {}\ncols = {}\n", shape.rows, shape.cols);
-    layouts::Layout layout = layouts::layout_from_toml(size + keys, "layout").value();
-    return layouts::make_decoder(std::make_shared<const layouts::Layout>(std::move(layout)), 0, false);
+    bytes::layouts::Layout layout = bytes::layouts::layout_from_toml(size + keys, "layout").value();
+    return bytes::layouts::make_decoder(std::make_shared<const bytes::layouts::Layout>(std::move(layout)), 0, false);
   };
 }
 
@@ -190,7 +191,7 @@ class TableReporter final : public benchmark::BenchmarkReporter {
 
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
-  for (const std::string& protocol : dermis::acquisition::protocol_names()) {
+  for (const std::string& protocol : dermis::bytes::devices::protocol_names()) {
     if (protocol != "auto") dermis::register_protocol(protocol);
   }
   dermis::TableReporter reporter;

@@ -20,16 +20,16 @@
 #include <vector>
 
 #include "calibrated_model.hpp"
-#include "dermis/contacts/contact_tracker.hpp"
-#include "dermis/core/random.hpp"
-#include "dermis/health/ageing_monitor.hpp"
-#include "dermis/health/weight_check.hpp"
-#include "dermis/pipeline/pipeline.hpp"
-#include "dermis/simulation/adc.hpp"
-#include "dermis/simulation/readout_circuit.hpp"
-#include "dermis/simulation/reference_array.hpp"
-#include "dermis/simulation/rubber.hpp"
-#include "dermis/simulation/scene.hpp"
+#include "dermis/learn/health/ageing_monitor.hpp"
+#include "dermis/learn/health/weight_check.hpp"
+#include "dermis/learn/simulation/adc.hpp"
+#include "dermis/learn/simulation/readout_circuit.hpp"
+#include "dermis/learn/simulation/reference_array.hpp"
+#include "dermis/learn/simulation/rubber.hpp"
+#include "dermis/learn/simulation/scene.hpp"
+#include "dermis/touch/contacts/contact_tracker.hpp"
+#include "dermis/touch/frames/random.hpp"
+#include "dermis/touch/pipeline/pipeline.hpp"
 
 namespace dermis {
 namespace {
@@ -44,33 +44,33 @@ constexpr double kDriftAnHour = 0.02;  // of the unloaded conductance of a taxel
 constexpr double kSecondsOfHour = 3600.0;
 constexpr double kSupplyV = 5.0;
 
-simulation::RubberOptions sheet(std::uint64_t seed, bool remembers) {
-  simulation::RubberOptions rubber;
+learn::simulation::RubberOptions sheet(std::uint64_t seed, bool remembers) {
+  learn::simulation::RubberOptions rubber;
   rubber.seed = seed;
   if (remembers) rubber.memory.emplace();
   return rubber;
 }
 
 /// Of the new sheet: every taxel under single presses at 20 C and others, or under two weights where it remembers.
-pipeline::Model calibrated(const ArrayDescription& array, const simulation::RubberOptions& rubber) {
-  simulation::SimulationOptions options;
+touch::pipeline::Model calibrated(const ArrayDescription& array, const learn::simulation::RubberOptions& rubber) {
+  learn::simulation::SimulationOptions options;
   options.rubber = rubber;
   if (rubber.memory) options.scene = {kRateHz, array.taxel_count()};
   const char* const scene = rubber.memory ? "two_weights" : "calibration";
-  const auto simulator = need(simulation::Simulator::create(array, options, scene, rubber.seed + 1));
+  const auto simulator = need(learn::simulation::Simulator::create(array, options, scene, rubber.seed + 1));
   return calibrated_model(array, *simulator);
 }
 
 /// A sheet at work, and those who watch its age.
 class SheetAtWork {
  public:
-  SheetAtWork(const pipeline::Model& model, const simulation::RubberOptions& rubber, std::uint64_t seed)
+  SheetAtWork(const touch::pipeline::Model& model, const learn::simulation::RubberOptions& rubber, std::uint64_t seed)
       : model_(model),
         random_(seed),
-        rubber_(need(simulation::ConductiveRubber::create(rubber, model.array.rows, model.array.cols, seed))),
-        circuit_(need(simulation::ReadoutCircuit::create(model.array))),
+        rubber_(need(learn::simulation::ConductiveRubber::create(rubber, model.array.rows, model.array.cols, seed))),
+        circuit_(need(learn::simulation::ReadoutCircuit::create(model.array))),
         adc_(model.array.readout, 1.0),
-        pipeline_(need(pipeline::Pipeline::create(model))),
+        pipeline_(need(touch::pipeline::Pipeline::create(model))),
         monitor_(model),
         tracker_(model.array),
         drift_(model.array.taxel_count()) {
@@ -101,8 +101,8 @@ class SheetAtWork {
   }
 
   /// Puts the weight on once, anywhere.
-  [[nodiscard]] health::WeightFinding weigh(double celsius) {
-    health::WeightCheck check(model_, kWeightN);
+  [[nodiscard]] learn::health::WeightFinding weigh(double celsius) {
+    learn::health::WeightCheck check(model_, kWeightN);
     const std::size_t lines = model_.array.cols;
     const double x = random_.uniform(3.0, static_cast<double>(lines) - 4.0);
     const double y = random_.uniform(3.0, static_cast<double>(lines) - 4.0);
@@ -130,18 +130,18 @@ class SheetAtWork {
     return check.finding();
   }
 
-  [[nodiscard]] health::AgeingEvidence evidence() const { return monitor_.evidence(); }
+  [[nodiscard]] learn::health::AgeingEvidence evidence() const { return monitor_.evidence(); }
   [[nodiscard]] std::size_t touches() const { return touches_; }
 
  private:
-  const pipeline::Model& model_;
+  const touch::pipeline::Model& model_;
   Random random_;
-  simulation::ConductiveRubber rubber_;
-  simulation::ReadoutCircuit circuit_;
-  simulation::Adc adc_;
-  pipeline::Pipeline pipeline_;
-  health::AgeingMonitor monitor_;
-  contacts::ContactTracker tracker_;
+  learn::simulation::ConductiveRubber rubber_;
+  learn::simulation::ReadoutCircuit circuit_;
+  learn::simulation::Adc adc_;
+  touch::pipeline::Pipeline pipeline_;
+  learn::health::AgeingMonitor monitor_;
+  touch::contacts::ContactTracker tracker_;
   std::vector<double> drift_;
   double seconds_ = 0.0;
   ForceFrame force_;
@@ -153,8 +153,8 @@ class SheetAtWork {
 class Touches {
  public:
   Touches(const ArrayDescription& array, std::uint64_t seed)
-      : scene_(need(simulation::Scene::create("touches", array, {}, seed,
-                                              static_cast<std::size_t>(kSecondsOfHour * kRateHz), {kRateHz, {}}))) {}
+      : scene_(need(learn::simulation::Scene::create(
+            "touches", array, {}, seed, static_cast<std::size_t>(kSecondsOfHour * kRateHz), {kRateHz, {}}))) {}
 
   [[nodiscard]] std::size_t frames() const { return scene_.frame_count(); }
   const std::vector<double>& newtons(std::size_t frame) {
@@ -163,13 +163,14 @@ class Touches {
   }
 
  private:
-  simulation::Scene scene_;
-  simulation::SceneFrame frame_;
+  learn::simulation::Scene scene_;
+  learn::simulation::SceneFrame frame_;
 };
 
 /// Touches until the change is found; none within an hour: empty.
-std::optional<std::size_t> touches_until_found(const pipeline::Model& model, simulation::RubberOptions rubber,
-                                               health::AgeingEvidence& evidence) {
+std::optional<std::size_t> touches_until_found(const touch::pipeline::Model& model,
+                                               learn::simulation::RubberOptions rubber,
+                                               learn::health::AgeingEvidence& evidence) {
   rubber.gain_spread = kChange;
   SheetAtWork work(model, rubber, rubber.seed + 100);
   Touches touches(model.array, rubber.seed + 200);
@@ -181,17 +182,17 @@ std::optional<std::size_t> touches_until_found(const pipeline::Model& model, sim
   return std::nullopt;
 }
 
-void weigh_aged(const pipeline::Model& model, simulation::RubberOptions rubber) {
+void weigh_aged(const touch::pipeline::Model& model, learn::simulation::RubberOptions rubber) {
   for (const double change : {kChange, -kChange}) {
     rubber.gain = 1.0 + change;
     SheetAtWork work(model, rubber, rubber.seed + 300);
-    const health::WeightFinding finding = work.weigh(22.0);
+    const learn::health::WeightFinding finding = work.weigh(22.0);
     fmt::print("  gain {:+.0f} %: one weight reads {:+.1f} % (+- {:.1f} %), {}\n", 100.0 * change,
                100.0 * (finding.ratio - 1.0), 100.0 * finding.sigma, finding.has_aged() ? "found" : "not found");
   }
 }
 
-void use(const pipeline::Model& model, const simulation::RubberOptions& rubber, std::size_t hours) {
+void use(const touch::pipeline::Model& model, const learn::simulation::RubberOptions& rubber, std::size_t hours) {
   SheetAtWork work(model, rubber, rubber.seed + 400);
   std::size_t alarm_minutes = 0;
   std::size_t alarm_weights = 0;
@@ -207,7 +208,7 @@ void use(const pipeline::Model& model, const simulation::RubberOptions& rubber, 
     }
     if (work.weigh(celsius(1.0)).has_aged()) ++alarm_weights;
   }
-  const health::AgeingEvidence evidence = work.evidence();
+  const learn::health::AgeingEvidence evidence = work.evidence();
   fmt::print(
       "  healthy, {} h, {} touches: {} minutes with an alarm, {} of {} weights; gains differ by {:.1f} % (+- {:.1f} "
       "%)\n",
@@ -217,16 +218,16 @@ void use(const pipeline::Model& model, const simulation::RubberOptions& rubber, 
 
 int run(std::size_t sheets, std::size_t hours, bool remembers) {
   const std::size_t lines = remembers ? 8 : 16;  // two weights on every taxel take their time
-  const ArrayDescription array = simulation::reference_array({lines, lines});
+  const ArrayDescription array = learn::simulation::reference_array({lines, lines});
   for (std::size_t seed = 1; seed <= sheets; ++seed) {
-    const simulation::RubberOptions rubber = sheet(seed, remembers);
-    const pipeline::Model model = calibrated(array, rubber);
+    const learn::simulation::RubberOptions rubber = sheet(seed, remembers);
+    const touch::pipeline::Model model = calibrated(array, rubber);
     fmt::print("sheet {}: calibrated to {:.1f} %\n", seed,
-               100.0 * health::AgeingMonitor(model).evidence().calibrated_spread);
-    health::AgeingEvidence evidence;
+               100.0 * learn::health::AgeingMonitor(model).evidence().calibrated_spread);
+    learn::health::AgeingEvidence evidence;
     const std::optional<std::size_t> touches = touches_until_found(model, rubber, evidence);
     fmt::print("  gains {:.0f} % apart: {} touches; {}\n", 100.0 * kChange,
-               touches ? std::to_string(*touches) : "not found in all", health::describe(evidence));
+               touches ? std::to_string(*touches) : "not found in all", learn::health::describe(evidence));
     weigh_aged(model, rubber);
     if (hours > 0) use(model, rubber, hours);
     std::fflush(stdout);

@@ -4,14 +4,14 @@
 
 #include <vector>
 
-#include "dermis/calibration/calibrate.hpp"
-#include "dermis/simulation/simulator.hpp"
+#include "dermis/learn/calibration/calibrate.hpp"
+#include "dermis/learn/simulation/simulator.hpp"
 #include "need.hpp"
 
 namespace dermis {
 
 /// Of the array whose scene is simulated to its end.
-inline pipeline::Model calibrated_model(const ArrayDescription& array, simulation::Simulator& simulator) {
+inline touch::pipeline::Model calibrated_model(const ArrayDescription& array, learn::simulation::Simulator& simulator) {
   std::vector<RawFrame> frames;
   std::vector<Load> loads;
   RawFrame frame;
@@ -19,7 +19,7 @@ inline pipeline::Model calibrated_model(const ArrayDescription& array, simulatio
     frames.push_back(frame);
     loads.insert(loads.end(), simulator.loads().begin(), simulator.loads().end());
   }
-  return need(calibration::calibrate(array, frames, loads)).model;
+  return need(learn::calibration::calibrate(array, frames, loads)).model;
 }
 
 }  // namespace dermis

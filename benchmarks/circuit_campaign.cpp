@@ -21,15 +21,15 @@
 #include <utility>
 #include <vector>
 
-#include "dermis/calibration/calibrate.hpp"
-#include "dermis/calibration/calibration_plan.hpp"
-#include "dermis/calibration/evaluation.hpp"
-#include "dermis/calibration/sample_database.hpp"
-#include "dermis/core/random.hpp"
-#include "dermis/simulation/adc.hpp"
-#include "dermis/simulation/readout_circuit.hpp"
-#include "dermis/simulation/rubber.hpp"
-#include "dermis/simulation/simulator.hpp"
+#include "dermis/learn/calibration/calibrate.hpp"
+#include "dermis/learn/calibration/calibration_plan.hpp"
+#include "dermis/learn/calibration/evaluation.hpp"
+#include "dermis/learn/calibration/sample_database.hpp"
+#include "dermis/learn/simulation/adc.hpp"
+#include "dermis/learn/simulation/readout_circuit.hpp"
+#include "dermis/learn/simulation/rubber.hpp"
+#include "dermis/learn/simulation/simulator.hpp"
+#include "dermis/touch/frames/random.hpp"
 #include "need.hpp"
 
 namespace dermis {
@@ -71,7 +71,7 @@ std::vector<double> resistors(std::size_t count, double ohm, double spread, Rand
 struct Specimen {
   const Kind* kind = nullptr;
   ArrayDescription array;
-  simulation::SimulationOptions physics;
+  learn::simulation::SimulationOptions physics;
   Frames frames = Frames::guided;
   double kept = 1.0;          ///< Share of the single presses.
   double celsius = 25.0;      ///< Of presses by hand.
@@ -103,7 +103,7 @@ void draw_unloaded(Random& random, Specimen& specimen) {
   constexpr double kMostOhm = 10e6;
   constexpr double kLeastRatio = 5.0;  // to a taxel at 10 N
   const Readout& readout = specimen.array.readout;
-  simulation::RubberOptions& rubber = specimen.physics.rubber;
+  learn::simulation::RubberOptions& rubber = specimen.physics.rubber;
   const double count_ohm = readout.load_ohm[0] * (std::exp2(readout.adc_bits) - 1.0);  // reads one count
   const double least = std::max(kLeastOhm, kLeastRatio * rubber.resistance_at_10n_ohm);
   const double by_ohm = random.log_uniform(least, kMostOhm);
@@ -124,7 +124,7 @@ Specimen draw_specimen(std::uint64_t seed) {
   array.cols = lines(random, most_lines);
   array.taxel_area_m2 = kTaxelAreaM2;
   array.readout.supply_v = array.readout.adc_reference_v = kSupply;
-  simulation::RubberOptions& rubber = specimen.physics.rubber;
+  learn::simulation::RubberOptions& rubber = specimen.physics.rubber;
   rubber.seed = seed;
   rubber.resistance_at_10n_ohm = random.log_uniform(500.0, 10e3);
   if (random.below(2) == 0)
@@ -151,7 +151,8 @@ struct Recording {
 /// A scene of the simulator, and of the frames that press a share.
 void play(const Specimen& specimen, std::string_view scene, std::uint64_t seed, double kept, Recording& recording,
           std::optional<std::size_t> frames = {}) {
-  const auto simulator = need(simulation::Simulator::create(specimen.array, specimen.physics, scene, seed, frames));
+  const auto simulator =
+      need(learn::simulation::Simulator::create(specimen.array, specimen.physics, scene, seed, frames));
   Random random(seed);
   RawFrame frame;
   while (need(simulator->next(frame))) {
@@ -173,8 +174,9 @@ class Hand {
       : array_(specimen.array),
         celsius_(specimen.celsius),
         reports_celsius_(specimen.frames != Frames::guided),
-        rubber_(need(simulation::ConductiveRubber::create(specimen.physics.rubber, array_.rows, array_.cols, seed))),
-        circuit_(need(simulation::ReadoutCircuit::create(array_))),
+        rubber_(
+            need(learn::simulation::ConductiveRubber::create(specimen.physics.rubber, array_.rows, array_.cols, seed))),
+        circuit_(need(learn::simulation::ReadoutCircuit::create(array_))),
         adc_(array_.readout, specimen.physics.environment.adc_noise_lsb),
         random_(seed) {}
 
@@ -221,9 +223,9 @@ class Hand {
   ArrayDescription array_;
   double celsius_;
   bool reports_celsius_;
-  simulation::ConductiveRubber rubber_;
-  simulation::ReadoutCircuit circuit_;
-  simulation::Adc adc_;
+  learn::simulation::ConductiveRubber rubber_;
+  learn::simulation::ReadoutCircuit circuit_;
+  learn::simulation::Adc adc_;
   Random random_;
 };
 
@@ -235,7 +237,7 @@ Recording calibration_frames(const Specimen& specimen, std::uint64_t seed, Hand&
     if (specimen.frames == Frames::with_uniform_loads) play(specimen, "uniform", seed, kUniformShare, recording);
     return recording;
   }
-  const calibration::CalibrationPlan plan = calibration::default_plan(specimen.array);
+  const learn::calibration::CalibrationPlan plan = learn::calibration::default_plan(specimen.array);
   hand.record({}, kUnloadedFrames, 1, recording);
   for (std::size_t k = 0; k < plan.press_count(); ++k) {
     hand.record({{plan.taxel_of(k), plan.weight_of(k)}}, static_cast<int>(plan.frames_per_press()), kFramesOfMean,
@@ -251,7 +253,7 @@ Recording test_frames(const Specimen& specimen, std::uint64_t seed, Hand& hand) 
     play(specimen, "multitouch", seed, 1.0, recording, kTestFrames);
     return recording;
   }
-  const calibration::CalibrationPlan plan = calibration::default_plan(specimen.array);
+  const learn::calibration::CalibrationPlan plan = learn::calibration::default_plan(specimen.array);
   Random random(seed);
   for (std::size_t k = 0; k < kTestFrames; ++k) {
     std::vector<Press> presses;
@@ -274,8 +276,8 @@ struct Outcome {
   bool is_distinguishable = true;
   double median = 1.0;
   double seconds = 0.0;
-  calibration::Coverage coverage;
-  std::vector<calibration::PressPair> presses;  // that are asked for
+  learn::calibration::Coverage coverage;
+  std::vector<learn::calibration::PressPair> presses;  // that are asked for
 };
 
 bool is_kind(const Readout& readout, const Kind& kind) {
@@ -293,14 +295,14 @@ Outcome calibrate(const ArrayDescription& array, const Kind& truth, const Record
                   const Recording& judged) {
   Outcome outcome;
   const auto start = std::chrono::steady_clock::now();
-  const auto database = calibration::build_sample_database(array, recording.frames, recording.loads);
+  const auto database = learn::calibration::build_sample_database(array, recording.frames, recording.loads);
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!database) {
     outcome.circuit = database.error().message;
     return outcome;
   }
   if (database->circuit_fit) {
-    const calibration::CircuitFit& fit = *database->circuit_fit;
+    const learn::calibration::CircuitFit& fit = *database->circuit_fit;
     outcome.is_distinguishable = std::none_of(fit.candidates.begin(), fit.candidates.end(),
                                               [](const auto& candidate) { return candidate.indistinguishable; });
     outcome.presses = outcome.is_distinguishable ? fit.driver_presses : fit.discriminating_presses;
@@ -308,12 +310,12 @@ Outcome calibrate(const ArrayDescription& array, const Kind& truth, const Record
   outcome.circuit = name_of(database->array.readout);
   outcome.is_right = is_kind(database->array.readout, truth);
   outcome.is_none = database->array.readout.circuit == Circuit::none;
-  const auto model = calibration::calibrate(*database);
+  const auto model = learn::calibration::calibrate(*database);
   if (!model) {
     outcome.circuit += ": " + model.error().message;
     return outcome;
   }
-  const auto evaluation = need(calibration::evaluate(model->model, judged.frames, judged.loads));
+  const auto evaluation = need(learn::calibration::evaluate(model->model, judged.frames, judged.loads));
   outcome.median = evaluation.estimators.front().relative_error.median.value_or(1.0);
   outcome.coverage = evaluation.coverage;
   return outcome;
@@ -341,7 +343,7 @@ void count(const Outcome& found, const Outcome& known, Tally& tally) {
 
 void print(std::uint64_t seed, const Specimen& specimen, const Outcome& found, const Outcome& known, bool asked) {
   const ArrayDescription& truth = specimen.array;
-  const simulation::RubberOptions& rubber = specimen.physics.rubber;
+  const learn::simulation::RubberOptions& rubber = specimen.physics.rubber;
   const std::string verdict = !found.is_distinguishable ? "cannot tell"
                               : found.is_right          ? "right"
                                                         : "WRONG: " + found.circuit;
@@ -372,7 +374,7 @@ void judge(std::uint64_t seed, Tally& tally) {
   Outcome found = calibrate(unknown, *specimen.kind, recording, judged);
   const bool asks = !found.presses.empty();
   if (asks) {
-    for (const calibration::PressPair& pair : found.presses) {
+    for (const learn::calibration::PressPair& pair : found.presses) {
       hand.record({{pair.first, pair.newtons}, {pair.second, pair.newtons}}, 2, kFramesOfMean, recording);
     }
     found = calibrate(unknown, *specimen.kind, recording, judged);

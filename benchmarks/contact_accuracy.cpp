@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "calibrated_model.hpp"
-#include "dermis/contacts/contact_tracker.hpp"
-#include "dermis/pipeline/pipeline.hpp"
+#include "dermis/touch/contacts/contact_tracker.hpp"
+#include "dermis/touch/pipeline/pipeline.hpp"
 #include "support/pressure_patches.hpp"
 #include "support/reference_array.hpp"
 
@@ -33,20 +33,20 @@ double percentile(std::vector<double> values, double share) {
   return values[place];
 }
 
-pipeline::Model calibrate(const ArrayDescription& array) {
-  const auto simulator = need(simulation::Simulator::create(array, {}, "calibration", 1));
+touch::pipeline::Model calibrate(const ArrayDescription& array) {
+  const auto simulator = need(learn::simulation::Simulator::create(array, {}, "calibration", 1));
   return calibrated_model(array, *simulator);
 }
 
 /// The simulated array under loads of our own.
 class PressedArray {
  public:
-  PressedArray(const ArrayDescription& description, const pipeline::Model& model)
+  PressedArray(const ArrayDescription& description, const touch::pipeline::Model& model)
       : array(description),
-        rubber_(need(simulation::ConductiveRubber::create({}, array.rows, array.cols, 77))),
-        circuit_(need(simulation::ReadoutCircuit::create(array))),
+        rubber_(need(learn::simulation::ConductiveRubber::create({}, array.rows, array.cols, 77))),
+        circuit_(need(learn::simulation::ReadoutCircuit::create(array))),
         adc_(array.readout, 1.0),
-        pipeline_(need(pipeline::Pipeline::create(model))),
+        pipeline_(need(touch::pipeline::Pipeline::create(model))),
         siemens_(array.taxel_count()),
         ratio_(array.taxel_count()) {
     raw_.counts.resize(array.taxel_count());
@@ -72,10 +72,10 @@ class PressedArray {
   ForceFrame force;
 
  private:
-  simulation::ConductiveRubber rubber_;
-  simulation::ReadoutCircuit circuit_;
-  simulation::Adc adc_;
-  pipeline::Pipeline pipeline_;
+  learn::simulation::ConductiveRubber rubber_;
+  learn::simulation::ReadoutCircuit circuit_;
+  learn::simulation::Adc adc_;
+  touch::pipeline::Pipeline pipeline_;
   std::vector<double> siemens_;
   std::vector<double> ratio_;
   RawFrame raw_;
@@ -192,7 +192,7 @@ Errors single_contacts(PressedArray& pressed, double diameter_m, Profile profile
     const std::vector<double> truth = support::taxel_forces(pressed.array, {patch});
     const double newtons = sum_of(truth);
     const ForceFrame& force = pressed.press(truth);
-    contacts::ContactTracker tracker(pressed.array);
+    touch::contacts::ContactTracker tracker(pressed.array);
     tracker.process(force, report);
     if (newtons < 0.3) {
       ++errors.unseen;
@@ -275,7 +275,7 @@ void print_several_contacts(PressedArray& pressed) {
       }
       if (*std::min_element(newtons.begin(), newtons.end()) < 0.3) continue;
       ++frames;
-      contacts::ContactTracker tracker(pressed.array);
+      touch::contacts::ContactTracker tracker(pressed.array);
       tracker.process(pressed.press(all), report);
       if (report.contacts.size() != count) continue;
       ++right;
@@ -311,7 +311,7 @@ void print_elongated_contacts(PressedArray& pressed) {
         const PressurePatch patch{
             random.uniform(0.03, 0.12),  random.uniform(0.03, 0.12),     0.5e-3 * axis, 0.5e-3 * other_axis,
             random.uniform(-1.57, 1.57), random.log_uniform(5.0, 100.0), profile};
-        contacts::ContactTracker tracker(pressed.array);
+        touch::contacts::ContactTracker tracker(pressed.array);
         tracker.process(pressed.press(support::taxel_forces(pressed.array, {patch})), report);
         if (report.contacts.size() != 1) continue;
         const Contact& contact = report.contacts[0];
@@ -330,9 +330,9 @@ void print_elongated_contacts(PressedArray& pressed) {
 /// What a tracker says about the true contacts of a scene of moving contacts.
 class SceneJudge {
  public:
-  void judge(const std::vector<simulation::AppliedContact>& truth, const ContactReport& report) {
+  void judge(const std::vector<learn::simulation::AppliedContact>& truth, const ContactReport& report) {
     std::map<std::uint32_t, std::uint32_t> now;
-    for (const simulation::AppliedContact& patch : truth) {
+    for (const learn::simulation::AppliedContact& patch : truth) {
       if (patch.taxel_force_n < 0.3) continue;
       ++held;
       const Contact* const contact = nearest(patch, report);
@@ -357,7 +357,7 @@ class SceneJudge {
  private:
   static constexpr double kReach = 0.015;
 
-  static const Contact* nearest(const simulation::AppliedContact& patch, const ContactReport& report) {
+  static const Contact* nearest(const learn::simulation::AppliedContact& patch, const ContactReport& report) {
     const Contact* found = nullptr;
     double least = kReach;
     for (const Contact& contact : report.contacts) {
@@ -369,7 +369,7 @@ class SceneJudge {
     return found;
   }
 
-  void add_error(const simulation::AppliedContact& patch, const Contact& contact) {
+  void add_error(const learn::simulation::AppliedContact& patch, const Contact& contact) {
     const double dx = contact.position.x - patch.x_m;
     const double dy = contact.position.y - patch.y_m;
     if (patch.diameter_m >= 0.015) position_mm.push_back(1e3 * std::hypot(dx, dy));
@@ -387,14 +387,14 @@ void print_scene_line(std::uint64_t seed, const char* tracker, const SceneJudge&
 }
 
 /// Every frame with the tracker of the frames before, and with a new one that knows nothing of them.
-void print_scenes(const ArrayDescription& array, const pipeline::Model& model) {
+void print_scenes(const ArrayDescription& array, const touch::pipeline::Model& model) {
   fmt::print("scene contacts, 20 s each: contacts while 0.3 N or more are on taxels\n");
   fmt::print("{:>9}{:>14}{:>12}{:>9}{:>12}{:>12}{:>9}{:>8}{:>8}\n", "seed", "tracker", "in frames", "missed",
              "id changes", ">= 15 mm: p50", "p95 mm", "1 s", "2 s");
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    const auto simulator = need(simulation::Simulator::create(array, {}, "contacts", seed));
-    pipeline::Pipeline pipeline = need(pipeline::Pipeline::create(model));
-    contacts::ContactTracker tracker(array);
+    const auto simulator = need(learn::simulation::Simulator::create(array, {}, "contacts", seed));
+    touch::pipeline::Pipeline pipeline = need(touch::pipeline::Pipeline::create(model));
+    touch::contacts::ContactTracker tracker(array);
     SceneJudge with_history;
     SceneJudge without_history;
     RawFrame frame;
@@ -404,7 +404,7 @@ void print_scenes(const ArrayDescription& array, const pipeline::Model& model) {
       pipeline.process(frame, force);
       tracker.process(force, report);
       with_history.judge(simulator->truth().contacts, report);
-      contacts::ContactTracker(array).process(force, report);
+      touch::contacts::ContactTracker(array).process(force, report);
       without_history.judge(simulator->truth().contacts, report);
     }
     print_scene_line(seed, "tracked", with_history);
@@ -418,7 +418,7 @@ void print_scenes(const ArrayDescription& array, const pipeline::Model& model) {
 
 int main() {
   const dermis::ArrayDescription array = dermis::support::reference_array();
-  const dermis::pipeline::Model model = dermis::calibrate(array);
+  const dermis::touch::pipeline::Model model = dermis::calibrate(array);
   dermis::print_scenes(array, model);
   dermis::PressedArray pressed(array, model);
   dermis::print_single_contacts(pressed);

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "dermis/calibration/calibrate.hpp"
-#include "dermis/contacts/contact_tracker.hpp"
-#include "dermis/pipeline/pipeline.hpp"
-#include "dermis/simulation/simulator.hpp"
+#include "dermis/learn/calibration/calibrate.hpp"
+#include "dermis/learn/simulation/simulator.hpp"
+#include "dermis/touch/contacts/contact_tracker.hpp"
+#include "dermis/touch/pipeline/pipeline.hpp"
 #include "frame_times.hpp"
 #include "rows.hpp"
 #include "support/reference_array.hpp"
@@ -26,7 +26,7 @@ struct Recording {
 };
 
 Recording record(const ArrayDescription& array, std::string_view scene) {
-  auto simulator = simulation::Simulator::create(array, {}, scene, 1);
+  auto simulator = learn::simulation::Simulator::create(array, {}, scene, 1);
   Recording recording;
   RawFrame frame;
   while (*simulator.value()->next(frame)) {
@@ -41,11 +41,11 @@ struct Scene {
   explicit Scene(std::size_t lines)
       : array(support::reference_array(lines, lines)), frames(record(array, "contacts").frames) {
     const Recording presses = record(array, "calibration");
-    model = calibration::calibrate(array, presses.frames, presses.loads).value().model;
+    model = learn::calibration::calibrate(array, presses.frames, presses.loads).value().model;
   }
   ArrayDescription array;
   std::vector<RawFrame> frames;
-  pipeline::Model model;
+  touch::pipeline::Model model;
 };
 
 const Scene& scene() {
@@ -55,8 +55,8 @@ const Scene& scene() {
 
 void counts_to_contacts(benchmark::State& state) {
   std::vector<RawFrame> frames = scene().frames;
-  Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(scene().model);
-  contacts::ContactTracker tracker(scene().array);
+  Result<touch::pipeline::Pipeline> pipeline = touch::pipeline::Pipeline::create(scene().model);
+  touch::contacts::ContactTracker tracker(scene().array);
   ForceFrame force;
   ContactReport report;
   Nanos time{0};
@@ -71,14 +71,14 @@ void counts_to_contacts(benchmark::State& state) {
 }
 
 std::vector<ForceFrame> scene_forces() {
-  Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(scene().model);
+  Result<touch::pipeline::Pipeline> pipeline = touch::pipeline::Pipeline::create(scene().model);
   std::vector<ForceFrame> forces(scene().frames.size());
   for (std::size_t k = 0; k < forces.size(); ++k) pipeline->process(scene().frames[k], forces[k]);
   return forces;
 }
 
 void measure_tracker(benchmark::State& state, std::vector<ForceFrame> forces) {
-  contacts::ContactTracker tracker(scene().array);
+  touch::contacts::ContactTracker tracker(scene().array);
   ContactReport report;
   Nanos time{0};
   benchmarks::measure_frames(state, forces.size(), [&](std::size_t k) {
@@ -96,7 +96,7 @@ void newtons_to_contacts(benchmark::State& state) {
 /// Of the scene's frames those with so many contacts, in their order.
 void newtons_to_so_many_contacts(benchmark::State& state, std::size_t contacts) {
   const std::vector<ForceFrame> forces = scene_forces();
-  contacts::ContactTracker tracker(scene().array);
+  touch::contacts::ContactTracker tracker(scene().array);
   ContactReport report;
   std::vector<ForceFrame> chosen;
   for (const ForceFrame& force : forces) {

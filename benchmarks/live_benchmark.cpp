@@ -23,9 +23,9 @@
 #include <thread>
 #include <vector>
 
-#include "dermis/live/live_suit.hpp"
-#include "dermis/recordings/suit_recording.hpp"
-#include "dermis/simulation/simulator.hpp"
+#include "dermis/bytes/recordings/suit_recording.hpp"
+#include "dermis/learn/simulation/simulator.hpp"
+#include "dermis/live/suits/live_suit.hpp"
 #include "rows.hpp"
 #include "support/reference_array.hpp"
 
@@ -49,11 +49,11 @@ struct Settings {
 
 /// The law of the simulated rubber, but for its scatter: newtons = 10 (e / reference)^(1 / exponent), with temperature.
 /// Hidden units that add nothing take the time of those of a calibration.
-fusion::ForceNetworks networks_of_rubber(std::size_t taxels) {
-  const simulation::RubberOptions rubber;
+touch::fusion::ForceNetworks networks_of_rubber(std::size_t taxels) {
+  const learn::simulation::RubberOptions rubber;
   constexpr double kHalfSpanCelsius = 30.0;
-  fusion::ForceNetworks networks;
-  networks.shape = {fusion::kInputsWithTemperature, 4, 2};
+  touch::fusion::ForceNetworks networks;
+  networks.shape = {touch::fusion::kInputsWithTemperature, 4, 2};
   networks.unloaded.temperature.half_span_celsius = kHalfSpanCelsius;
   networks.unloaded.offset_siemens.assign(taxels, 1.0 / rubber.unloaded_ohm);
   networks.unloaded.per_celsius.assign(taxels, -rubber.temperature_coefficient / rubber.unloaded_ohm);
@@ -63,7 +63,7 @@ fusion::ForceNetworks networks_of_rubber(std::size_t taxels) {
   networks.gain.assign(taxels, 1.0F);
   networks.dead.assign(taxels, 0);
   networks.offset_sigma_siemens.assign(taxels, 2e-7F);
-  networks.relative_sigma.assign(fusion::kSigmaKnots * taxels, 0.02F);
+  networks.relative_sigma.assign(touch::fusion::kSigmaKnots * taxels, 0.02F);
   const auto fill = [&](std::size_t parameter, double value) {
     std::fill_n(networks.parameters.begin() + static_cast<std::ptrdiff_t>(parameter * taxels), taxels,
                 static_cast<float>(value));
@@ -76,7 +76,7 @@ fusion::ForceNetworks networks_of_rubber(std::size_t taxels) {
 }
 
 Frames simulate(const ArrayDescription& array, std::uint64_t seed) {
-  auto simulator = simulation::Simulator::create(array, {}, "contacts", seed, kSceneFrames);
+  auto simulator = learn::simulation::Simulator::create(array, {}, "contacts", seed, kSceneFrames);
   if (!simulator) std::abort();
   std::vector<RawFrame> frames(kSceneFrames);
   for (RawFrame& frame : frames) {
@@ -172,24 +172,25 @@ class Latencies {
 };
 
 /// Writes all frames with their forces, as `dermis serve --record` does.
-std::unique_ptr<recordings::SuitRecordingWriter> open_recording(const std::string& path, const Settings& settings) {
-  std::vector<recordings::RecordedArray> recorded(settings.arrays);
+std::unique_ptr<bytes::recordings::SuitRecordingWriter> open_recording(const std::string& path,
+                                                                       const Settings& settings) {
+  std::vector<bytes::recordings::RecordedArray> recorded(settings.arrays);
   for (std::size_t k = 0; k < settings.arrays; ++k) {
     recorded[k].name = fmt::format("array{}", k);
     recorded[k].shape = {kLines, kLines};
   }
-  auto writer = recordings::SuitRecordingWriter::create(path, std::move(recorded));
+  auto writer = bytes::recordings::SuitRecordingWriter::create(path, std::move(recorded));
   if (!writer) std::abort();
   return *std::move(writer);
 }
 
-std::vector<live::LiveArray> make_arrays(const Settings& settings, const std::vector<Frames>& scenes,
-                                         std::atomic<std::int64_t>& spent_ns) {
+std::vector<live::suits::LiveArray> make_arrays(const Settings& settings, const std::vector<Frames>& scenes,
+                                                std::atomic<std::int64_t>& spent_ns) {
   const ArrayDescription array = support::reference_array(kLines, kLines);
-  const auto model = std::make_shared<const pipeline::Model>(pipeline::Model{
+  const auto model = std::make_shared<const touch::pipeline::Model>(touch::pipeline::Model{
       .array = array, .networks = networks_of_rubber(array.taxel_count()), .baselines = {}, .provenance = {}});
   const Clock::time_point begin = Clock::now() + std::chrono::milliseconds(500);
-  std::vector<live::LiveArray> arrays;
+  std::vector<live::suits::LiveArray> arrays;
   for (std::size_t k = 0; k < settings.arrays; ++k) {
     // Devices are not in step.
     const auto phase = std::chrono::duration_cast<Nanos>(
@@ -210,17 +211,17 @@ struct Outcome {
 };
 
 Outcome run(const Settings& settings, const std::vector<Frames>& scenes, const std::string& recording) {
-  std::unique_ptr<recordings::SuitRecordingWriter> writer;
+  std::unique_ptr<bytes::recordings::SuitRecordingWriter> writer;
   if (!recording.empty()) writer = open_recording(recording, settings);
   Latencies latencies(settings);
   std::atomic<bool> is_written = true;
-  live::LiveOptions options;
-  options.on_result = [&](const live::ArrayResult& result) {
+  live::suits::LiveOptions options;
+  options.on_result = [&](const live::suits::ArrayResult& result) {
     latencies.add(result.array, Clock::now().time_since_epoch() - result.raw.acquisition.arrival_steady);
     if (writer && !writer->write(result.array, result.raw, result.force)) is_written = false;
   };
   std::atomic<std::int64_t> spent_ns = 0;
-  auto suit = live::LiveSuit::create(make_arrays(settings, scenes, spent_ns), std::move(options));
+  auto suit = live::suits::LiveSuit::create(make_arrays(settings, scenes, spent_ns), std::move(options));
   if (!suit) std::abort();
   const double before = processor_seconds();
   (*suit)->start();

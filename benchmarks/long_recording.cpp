@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "dermis/messages/ros_messages.hpp"
-#include "dermis/recordings/mcap.hpp"
+#include "dermis/bytes/recordings/mcap.hpp"
+#include "dermis/bytes/ros_messages/ros_messages.hpp"
 #include "need.hpp"
 
 namespace dermis {
@@ -37,34 +37,34 @@ double resident_megabytes() {
   return static_cast<double>(resident) * static_cast<double>(::sysconf(_SC_PAGESIZE)) / 1e6;
 }
 
-std::vector<Array> declare_arrays(recordings::McapWriter& mcap, std::size_t count) {
-  const auto declare = [&](const std::string& topic, const messages::MessageType& type) {
+std::vector<Array> declare_arrays(bytes::recordings::McapWriter& mcap, std::size_t count) {
+  const auto declare = [&](const std::string& topic, const bytes::ros_messages::MessageType& type) {
     return mcap.add_channel({topic, "cdr", type.name, "ros2msg", type.definition});
   };
   std::vector<Array> arrays;
   for (std::size_t i = 0; i < count; ++i) {
     const std::string name = "array" + std::to_string(i);
-    arrays.push_back({name, declare('/' + name + "/acquisition", messages::acquisition_type()),
-                      declare('/' + name + "/raw", messages::image_type())});
+    arrays.push_back({name, declare('/' + name + "/acquisition", bytes::ros_messages::acquisition_type()),
+                      declare('/' + name + "/raw", bytes::ros_messages::image_type())});
   }
   return arrays;
 }
 
-void add_frames(recordings::McapWriter& mcap, const std::vector<Array>& arrays, const RawFrame& frame) {
+void add_frames(bytes::recordings::McapWriter& mcap, const std::vector<Array>& arrays, const RawFrame& frame) {
   static std::vector<std::uint8_t> message;
   const auto sequence = static_cast<std::uint32_t>(*frame.acquisition.sequence);
   const auto log_time = static_cast<std::uint64_t>(frame.time.count());
   for (const Array& array : arrays) {
-    messages::encode_acquisition(frame, message);
+    bytes::ros_messages::encode_acquisition(frame, message);
     mcap.add_message({array.acquisition, sequence, log_time, log_time, message});
-    messages::encode_image(frame, kShape, array.name, message);
+    bytes::ros_messages::encode_image(frame, kShape, array.name, message);
     mcap.add_message({array.image, sequence, log_time, log_time, message});
   }
 }
 
 void write_recording(const std::string& path, std::uint64_t hours, std::size_t array_count) {
   constexpr std::uint64_t kChunksAnHour = std::chrono::hours(1) / kChunkTime;
-  const auto mcap = need(recordings::McapWriter::create(path, recordings::McapCompression::lz4));
+  const auto mcap = need(bytes::recordings::McapWriter::create(path, bytes::recordings::McapCompression::lz4));
   const std::vector<Array> arrays = declare_arrays(*mcap, array_count);
   RawFrame frame;
   frame.counts.assign(kShape.taxel_count(), 1000);

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <utility>
 
-#include "dermis/core/result.hpp"
+#include "dermis/touch/frames/result.hpp"
 
 namespace dermis {
 

@@ -11,10 +11,10 @@
 #include <cstdlib>
 #include <vector>
 
-#include "dermis/core/random.hpp"
-#include "dermis/fusion/material_memory.hpp"
-#include "dermis/pipeline/pipeline.hpp"
-#include "dermis/simulation/simulator.hpp"
+#include "dermis/learn/simulation/simulator.hpp"
+#include "dermis/touch/frames/random.hpp"
+#include "dermis/touch/fusion/material_memory.hpp"
+#include "dermis/touch/pipeline/pipeline.hpp"
 #include "frame_times.hpp"
 #include "rows.hpp"
 #include "support/random_networks.hpp"
@@ -24,10 +24,10 @@ namespace dermis {
 namespace {
 
 constexpr std::size_t kFrames = 256;
-constexpr fusion::MemoryLaw kLaw{{0.08F, 0.08F, 0.08F, 0.08F}, {0.02F, 0.03F, 0.03F}};
+constexpr touch::fusion::MemoryLaw kLaw{{0.08F, 0.08F, 0.08F, 0.08F}, {0.02F, 0.03F, 0.03F}};
 
 std::vector<RawFrame> multitouch_frames(const ArrayDescription& array) {
-  auto simulator = simulation::Simulator::create(array, {}, "multitouch", 1, kFrames);
+  auto simulator = learn::simulation::Simulator::create(array, {}, "multitouch", 1, kFrames);
   std::vector<RawFrame> frames(kFrames);
   for (RawFrame& frame : frames) {
     if (!simulator.value()->next(frame)) std::abort();
@@ -35,12 +35,13 @@ std::vector<RawFrame> multitouch_frames(const ArrayDescription& array) {
   return frames;
 }
 
-pipeline::Model random_model(const ArrayDescription& array) {
-  pipeline::Model model;
+touch::pipeline::Model random_model(const ArrayDescription& array) {
+  touch::pipeline::Model model;
   model.array = array;
-  model.networks = support::random_networks(array.taxel_count(), fusion::kInputsWithTemperature, 4, 1);
+  model.networks = support::random_networks(array.taxel_count(), touch::fusion::kInputsWithTemperature, 4, 1);
   // What the simulated array is, unloaded: else its taxels are found to be dead.
-  model.networks.unloaded.offset_siemens.assign(array.taxel_count(), 1.0 / simulation::RubberOptions{}.unloaded_ohm);
+  model.networks.unloaded.offset_siemens.assign(array.taxel_count(),
+                                                1.0 / learn::simulation::RubberOptions{}.unloaded_ohm);
   return model;
 }
 
@@ -49,9 +50,9 @@ void measure_pipeline(benchmark::State& state, bool remembers) {
   const ArrayDescription array = support::reference_array(lines, lines);
   std::vector<RawFrame> frames = multitouch_frames(array);
   Nanos time{0};
-  pipeline::Model model = random_model(array);
+  touch::pipeline::Model model = random_model(array);
   if (remembers) model.memory = kLaw;
-  Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(model);
+  Result<touch::pipeline::Pipeline> pipeline = touch::pipeline::Pipeline::create(model);
   ForceFrame force;
   bool checked = true;
   benchmarks::measure_frames(state, kFrames, [&](std::size_t k) {
@@ -75,7 +76,7 @@ void frame_of_a_material_with_memory(benchmark::State& state) {
 /// Of the forces that the networks give.
 void memory_alone(benchmark::State& state) {
   const auto lines = static_cast<std::size_t>(state.range(0));
-  fusion::MaterialMemory memory(kLaw, lines * lines);
+  touch::fusion::MaterialMemory memory(kLaw, lines * lines);
   const std::vector<float> noise(lines * lines, 1e-3F);
   Random random(1);
   std::vector<ForceFrame> frames(kFrames);
@@ -140,12 +141,12 @@ constexpr BadInput kBadInputs[] = {
 };
 
 /// Seconds of each frame.
-std::vector<double> time_frames(const pipeline::Model& model, std::vector<RawFrame>& frames) {
+std::vector<double> time_frames(const touch::pipeline::Model& model, std::vector<RawFrame>& frames) {
   using Clock = std::chrono::steady_clock;
   std::vector<double> least(frames.size(), 1.0);
   ForceFrame force;
   for (int timing = 0; timing < kTimings; ++timing) {
-    auto pipeline = pipeline::Pipeline::create(model);
+    auto pipeline = touch::pipeline::Pipeline::create(model);
     for (std::size_t k = 0; k < frames.size(); ++k) {
       const auto start = Clock::now();
       pipeline->process(frames[k], force);
@@ -156,7 +157,7 @@ std::vector<double> time_frames(const pipeline::Model& model, std::vector<RawFra
 }
 
 /// The frame that takes longest, of counts that are changed few at a time as long as that makes it slower.
-double search_slowest(const pipeline::Model& model, const std::vector<RawFrame>& good, Random& random) {
+double search_slowest(const touch::pipeline::Model& model, const std::vector<RawFrame>& good, Random& random) {
   constexpr int kSteps = 100;
   constexpr int kMostChanged = 8;
   double slowest = 0.0;
@@ -178,7 +179,7 @@ double search_slowest(const pipeline::Model& model, const std::vector<RawFrame>&
 std::vector<RawFrame> contact_frames(const ArrayDescription& array) {
   constexpr std::size_t kFrom = 150;  // something presses
   const std::size_t count = kFrom + kGoodFirst + kBadFrames;
-  auto simulator = simulation::Simulator::create(array, {}, "contacts", 1, count);
+  auto simulator = learn::simulation::Simulator::create(array, {}, "contacts", 1, count);
   std::vector<RawFrame> frames(count);
   for (RawFrame& frame : frames) {
     if (!simulator.value()->next(frame)) std::abort();
@@ -191,7 +192,7 @@ std::vector<RawFrame> contact_frames(const ArrayDescription& array) {
 void slowest_frame(benchmark::State& state) {
   const auto lines = static_cast<std::size_t>(state.range(0));
   const ArrayDescription array = support::reference_array(lines, lines);
-  const pipeline::Model model = random_model(array);
+  const touch::pipeline::Model model = random_model(array);
   std::vector<RawFrame> good = contact_frames(array);
   Random random(1);
   std::vector<double> times = time_frames(model, good);

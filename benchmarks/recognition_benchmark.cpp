@@ -8,9 +8,9 @@
 #include <numeric>
 #include <vector>
 
-#include "dermis/core/random.hpp"
-#include "dermis/recognition/learning.hpp"
-#include "dermis/recognition/recogniser.hpp"
+#include "dermis/learn/recognition/learning.hpp"
+#include "dermis/learn/recognition/recogniser.hpp"
+#include "dermis/touch/frames/random.hpp"
 #include "frame_times.hpp"
 #include "rows.hpp"
 
@@ -39,9 +39,9 @@ std::vector<float> touch(Random& random, std::size_t rows, std::size_t cols, std
   return frame;
 }
 
-recognition::LabelledFrames examples(std::size_t rows, std::size_t cols) {
+learn::recognition::LabelledFrames examples(std::size_t rows, std::size_t cols) {
   Random random(1);
-  recognition::LabelledFrames data;
+  learn::recognition::LabelledFrames data;
   data.layout.arrays = {{"skin", rows, cols, 0, 0.0, 0.0}};
   data.layout.readings = rows * cols;
   for (std::size_t i = 0; i < kClasses * kExamples; ++i) {
@@ -56,14 +56,14 @@ recognition::LabelledFrames examples(std::size_t rows, std::size_t cols) {
 void frame_to_class(benchmark::State& state) {
   const auto rows = static_cast<std::size_t>(state.range(0));
   const auto cols = static_cast<std::size_t>(state.range(1));
-  const recognition::LabelledFrames data = examples(rows, cols);
+  const learn::recognition::LabelledFrames data = examples(rows, cols);
   std::vector<std::size_t> all(data.labels.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  const auto learned = recognition::LearningSet::create(data)->learn(all);
-  auto recogniser = recognition::Recogniser::create(learned->classes, data.layout, 1);
+  const auto learned = learn::recognition::LearningSet::create(data)->learn(all);
+  auto recogniser = learn::recognition::Recogniser::create(learned->classes, data.layout, 1);
   std::size_t right = 0;
   benchmarks::measure_frames(state, all.size(), [&](std::size_t k) {
-    const recognition::Answer answer = recogniser->recognise(data.segment(data.labels[k]));
+    const learn::recognition::Answer answer = recogniser->recognise(data.segment(data.labels[k]));
     right += learned->classes.names[answer.likeliest] == data.labels[k].name ? 1 : 0;
   });
   state.counters["checked"] = 2 * right > all.size() ? 1 : 0;

@@ -15,9 +15,9 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "dermis/core/quantile.hpp"
-#include "dermis/recordings/recording.hpp"
-#include "dermis/simulation/simulator.hpp"
+#include "dermis/bytes/recordings/recording.hpp"
+#include "dermis/learn/simulation/simulator.hpp"
+#include "dermis/touch/frames/quantile.hpp"
 #include "rows.hpp"
 #include "support/reference_array.hpp"
 
@@ -31,7 +31,7 @@ constexpr std::size_t kFramesPerChunk = 50;
 
 std::vector<RawFrame> scene_frames() {
   const ArrayDescription array = support::reference_array(kShape.rows, kShape.cols);
-  auto simulator = simulation::Simulator::create(array, {}, "multitouch", 1, kScene);
+  auto simulator = learn::simulation::Simulator::create(array, {}, "multitouch", 1, kScene);
   std::vector<RawFrame> frames(kScene);
   for (RawFrame& frame : frames) {
     if (!simulator.value()->next(frame)) std::abort();
@@ -98,10 +98,10 @@ std::string recording_path() {
   return (std::filesystem::temp_directory_path() / "dermis_store_benchmark.mcap").string();
 }
 
-bool record(const std::vector<RawFrame>& frames, std::size_t count, recordings::McapCompression compression) {
-  recordings::RecordingOptions options;
+bool record(const std::vector<RawFrame>& frames, std::size_t count, bytes::recordings::McapCompression compression) {
+  bytes::recordings::RecordingOptions options;
   options.compression = compression;
-  const auto writer = recordings::RecordingWriter::create(recording_path(), kShape, options);
+  const auto writer = bytes::recordings::RecordingWriter::create(recording_path(), kShape, options);
   if (!writer) return false;
   for (std::size_t i = 0; i < count; ++i) {
     if (!(*writer)->write(frames[i % kScene])) return false;
@@ -110,7 +110,7 @@ bool record(const std::vector<RawFrame>& frames, std::size_t count, recordings::
 }
 
 bool read(const std::vector<RawFrame>& frames, std::size_t count) {
-  const auto reader = recordings::RecordingReader::open(recording_path());
+  const auto reader = bytes::recordings::RecordingReader::open(recording_path());
   if (!reader) return false;
   RawFrame frame;
   for (std::size_t i = 0; i < count; ++i) {
@@ -158,7 +158,7 @@ bool benchmark(bool smoke) {
     return static_cast<double>(table.frames() * kFrameBytes) /
            static_cast<double>(std::filesystem::file_size(recording_path()));
   };
-  using recordings::McapCompression;
+  using bytes::recordings::McapCompression;
   for (const McapCompression compression : {McapCompression::none, McapCompression::lz4, McapCompression::zstd}) {
     const std::string name = compression == McapCompression::none ? "none" : to_string(compression);
     table.measure(

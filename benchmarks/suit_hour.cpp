@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "dermis/recordings/frame_files.hpp"
-#include "dermis/recordings/suit_recording.hpp"
+#include "dermis/bytes/recordings/frame_files.hpp"
+#include "dermis/bytes/recordings/suit_recording.hpp"
 #include "need.hpp"
 
 namespace dermis {
@@ -20,7 +20,7 @@ constexpr std::uint64_t kFramesAMinute = 6000;
 constexpr Nanos kFrameTime = std::chrono::milliseconds(10);
 
 std::vector<RawFrame> read_frames(const std::string& path) {
-  const auto source = need(recordings::open_frames(path, {}));
+  const auto source = need(bytes::recordings::open_frames(path, {}));
   std::vector<RawFrame> frames;
   for (RawFrame frame; need(source->next(frame));) frames.push_back(frame);
   return frames;
@@ -28,9 +28,9 @@ std::vector<RawFrame> read_frames(const std::string& path) {
 
 void write_recording(const std::string& in, const std::string& out, std::uint64_t minutes) {
   std::vector<RawFrame> frames = read_frames(in);
-  std::vector<recordings::RecordedArray> arrays;
+  std::vector<bytes::recordings::RecordedArray> arrays;
   for (std::size_t k = 0; k < kArrays; ++k) arrays.push_back({.name = "array" + std::to_string(k), .shape = {16, 16}});
-  const auto recording = need(recordings::SuitRecordingWriter::create(out, arrays, {.live = false}));
+  const auto recording = need(bytes::recordings::SuitRecordingWriter::create(out, arrays, {.live = false}));
   for (std::uint64_t i = 0; i < minutes * kFramesAMinute; ++i) {
     for (std::size_t k = 0; k < kArrays; ++k) {
       RawFrame& frame = frames[(i + k * frames.size() / kArrays) % frames.size()];

@@ -17,13 +17,13 @@
 #include <utility>
 #include <vector>
 
-#include "dermis/calibration/calibrate.hpp"
-#include "dermis/core/quantile.hpp"
-#include "dermis/core/random.hpp"
-#include "dermis/pipeline/pipeline.hpp"
-#include "dermis/simulation/adc.hpp"
-#include "dermis/simulation/readout_circuit.hpp"
-#include "dermis/simulation/rubber.hpp"
+#include "dermis/learn/calibration/calibrate.hpp"
+#include "dermis/learn/simulation/adc.hpp"
+#include "dermis/learn/simulation/readout_circuit.hpp"
+#include "dermis/learn/simulation/rubber.hpp"
+#include "dermis/touch/frames/quantile.hpp"
+#include "dermis/touch/frames/random.hpp"
+#include "dermis/touch/pipeline/pipeline.hpp"
 #include "need.hpp"
 
 namespace dermis {
@@ -55,8 +55,8 @@ ArrayDescription mat() {
   return array;
 }
 
-simulation::RubberOptions velostat(std::uint64_t seed) {
-  simulation::RubberOptions rubber;
+learn::simulation::RubberOptions velostat(std::uint64_t seed) {
+  learn::simulation::RubberOptions rubber;
   rubber.seed = seed;
   rubber.resistance_at_10n_ohm = 10e3;
   rubber.resistance_spread = 0.24;
@@ -97,9 +97,9 @@ Recording record(const ArrayDescription& array, std::uint64_t seed) {
   for (std::size_t k = kLoads - 1; k > 0; --k) std::swap(kpa[k], kpa[random.below(k + 1)]);
   kpa.insert(kpa.begin(), kUnloaded, 0.0);
 
-  auto rubber = need(simulation::ConductiveRubber::create(velostat(seed), kRows, kCols, seed));
-  const auto circuit = need(simulation::ReadoutCircuit::create(array));
-  const simulation::Adc adc(array.readout, 1.0);
+  auto rubber = need(learn::simulation::ConductiveRubber::create(velostat(seed), kRows, kCols, seed));
+  const auto circuit = need(learn::simulation::ReadoutCircuit::create(array));
+  const learn::simulation::Adc adc(array.readout, 1.0);
   Recording recording;
   recording.kpa = kpa;
   std::vector<double> siemens(array.taxel_count());
@@ -198,13 +198,13 @@ struct Outcome {
 /// Calibrated without one load; then all frames run, as a stream.
 Outcome calibrate(const ArrayDescription& array, const Recording& recording, std::size_t left_out) {
   const auto start = std::chrono::steady_clock::now();
-  const auto calibration = need(calibration::calibrate(array, recording.frames, labels(recording, left_out)));
+  const auto calibration = need(learn::calibration::calibrate(array, recording.frames, labels(recording, left_out)));
   Outcome outcome;
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   outcome.networks = calibration.report.training.choice;
   for (const std::string& found : calibration.report.circuit) outcome.circuit += "\n    " + found;
   outcome.estimate.kpa = recording.kpa[left_out];
-  auto pipeline = need(pipeline::Pipeline::create(calibration.model));
+  auto pipeline = need(touch::pipeline::Pipeline::create(calibration.model));
   ForceFrame force;
   for (std::size_t k = 0; k < recording.frames.size(); ++k) {
     pipeline.process(recording.frames[k], force);
@@ -216,7 +216,7 @@ Outcome calibrate(const ArrayDescription& array, const Recording& recording, std
       ++outcome.unsolved_frames;
       outcome.faults.insert(fmt::format("frame {} of {:.1f} kPa cannot be solved", k, recording.kpa[k]));
     }
-    for (const compensation::LineFault& fault : pipeline.line_faults().faults()) {
+    for (const touch::compensation::LineFault& fault : pipeline.line_faults().faults()) {
       outcome.faults.insert(std::string(to_string(fault.kind)) + ' ' + place_name(fault, calibration.model.array));
     }
     if (k != left_out) continue;

@@ -11,9 +11,10 @@
 #include <string_view>
 #include <vector>
 
-#include "dermis/pipeline/model.hpp"
-#include "dermis/pipeline/pipeline.hpp"
-#include "dermis/recordings/frame_files.hpp"
+#include "dermis/bytes/models/model_file.hpp"
+#include "dermis/bytes/recordings/frame_files.hpp"
+#include "dermis/touch/pipeline/model.hpp"
+#include "dermis/touch/pipeline/pipeline.hpp"
 
 namespace dermis {
 namespace {
@@ -31,8 +32,8 @@ double microseconds_of_thread() {
 
 /// Of a frame, with keep() for each force.
 template <typename Keep>
-double time_of_frame(const pipeline::Model& model, const std::vector<RawFrame>& frames, const Keep& keep) {
-  pipeline::Pipeline pipeline = pipeline::Pipeline::create(model).value();
+double time_of_frame(const touch::pipeline::Model& model, const std::vector<RawFrame>& frames, const Keep& keep) {
+  touch::pipeline::Pipeline pipeline = touch::pipeline::Pipeline::create(model).value();
   ForceFrame force;
   const double begin = microseconds_of_thread();
   for (const RawFrame& frame : frames) {
@@ -43,9 +44,9 @@ double time_of_frame(const pipeline::Model& model, const std::vector<RawFrame>& 
 }
 
 int measure(const std::string& model_path, const std::string& frames_path, int passes) {
-  const Result<pipeline::Model> model = pipeline::read_model(model_path);
+  const Result<touch::pipeline::Model> model = bytes::models::read_model(model_path);
   if (!model) return fail(model.error().message);
-  const Result<std::vector<RawFrame>> frames = recordings::read_frames(frames_path);
+  const Result<std::vector<RawFrame>> frames = bytes::recordings::read_frames(frames_path);
   if (!frames) return fail(frames.error().message);
   for (int pass = 0; pass < passes; ++pass) {
     std::vector<ForceFrame> kept;

@@ -61,9 +61,9 @@ function(checked_modules variable)
 endfunction()
 
 # dermis_module(<name> [NUMERICS [PARSERS <sources>]] DEPENDS <modules> PRIVATE <third-party targets>): the static library
-# dermis::<name> from all sources of src/<name>, with the public headers of include/dermis/<name>.
+# dermis::<name> from all sources of this folder, with the public headers of include/dermis.
 #
-# NUMERICS read no byte from outside but in their PARSERS, and depend on each other, `files` and `core` alone.
+# NUMERICS read no byte from outside but in their PARSERS, and depend on each other and `files` alone.
 # With DERMIS_CHECK_NUMERICS, their tests run on dermis_<name>_checked: with assertions, which cost a release a quarter.
 # With DERMIS_NUMERICS_FROM, those libraries are taken from that tree, and of the module only the parsers are compiled.
 function(dermis_module name)
@@ -100,10 +100,10 @@ endfunction()
 add_custom_target(dermis_checked_numerics)
 
 # A release spends its time in the other modules: these take a third less to compile so.
-set(DERMIS_CALCULATES_LITTLE health operation report serve)
+set(DERMIS_CALCULATES_LITTLE health forces report serve)
 
 # Under the sanitizers, code is compiled twice as fast without optimisation; but the tests wait for numerics and for these.
-set(DERMIS_AWAITED core acquisition)
+set(DERMIS_AWAITED devices)
 
 # build_library(<target> <depends>) and borrow_library(<target>): what dermis_module() was asked for.
 function(build_library target)
@@ -120,9 +120,10 @@ function(build_library target)
 endfunction()
 
 function(borrow_library target)
+  cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE folder)
   add_library(${target} STATIC IMPORTED GLOBAL)
   set_target_properties(${target} PROPERTIES
-                        IMPORTED_LOCATION ${DERMIS_NUMERICS_FROM}/src/${name}/lib${target}_checked.a)
+                        IMPORTED_LOCATION ${DERMIS_NUMERICS_FROM}/${folder}/lib${target}_checked.a)
   set_headers(${target} INTERFACE)
   target_link_libraries(${target} INTERFACE ${MODULE_DEPENDS})
   foreach(library ${MODULE_PRIVATE})

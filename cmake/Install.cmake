@@ -5,7 +5,7 @@ get_property(modules GLOBAL PROPERTY DERMIS_MODULES)
 install(TARGETS dermis ${modules} EXPORT dermis-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 if(TARGET dermis_c)
   install(TARGETS dermis_c EXPORT dermis-targets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  install(FILES c/dermis.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  install(FILES bindings/c/dermis.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endif()
 if(TARGET dermis_fast_dds)
   install(TARGETS dermis_fast_dds LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
@@ -36,5 +36,5 @@ install(FILES ${PROJECT_BINARY_DIR}/dermis-config.cmake ${PROJECT_BINARY_DIR}/de
 
 # The messages as a package of ROS 2, in sources: each workspace builds it for its own ROS.
 set(package ${CMAKE_INSTALL_DATADIR}/dermis/ros/dermis_msgs)
-install(FILES ros/dermis_msgs/CMakeLists.txt ros/dermis_msgs/package.xml DESTINATION ${package} COMPONENT ros EXCLUDE_FROM_ALL)
-install(DIRECTORY src/messages/msg/dermis_msgs/ DESTINATION ${package}/msg COMPONENT ros EXCLUDE_FROM_ALL)
+install(FILES bindings/ros/dermis_msgs/CMakeLists.txt bindings/ros/dermis_msgs/package.xml DESTINATION ${package} COMPONENT ros EXCLUDE_FROM_ALL)
+install(DIRECTORY src/bytes/ros_messages/msg/dermis_msgs/ DESTINATION ${package}/msg COMPONENT ros EXCLUDE_FROM_ALL)

@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "dermis/files/frames_csv.hpp"
-#include "dermis/pipeline/model.hpp"
-#include "dermis/pipeline/pipeline.hpp"
+#include "dermis/bytes/files/frames_csv.hpp"
+#include "dermis/bytes/models/model_file.hpp"
+#include "dermis/touch/pipeline/model.hpp"
+#include "dermis/touch/pipeline/pipeline.hpp"
 
 namespace {
 
@@ -20,12 +21,12 @@ int fail(const dermis::Error& error) {
 
 int main(int argc, char** argv) {
   if (argc != 3) return fail(dermis::bad_input("usage: 01_run_pipeline MODEL FRAMES.csv"));
-  const auto model = dermis::pipeline::read_model(argv[1]);
+  const auto model = dermis::bytes::models::read_model(argv[1]);
   if (!model) return fail(model.error());
-  auto pipeline = dermis::pipeline::Pipeline::create(*model);
+  auto pipeline = dermis::touch::pipeline::Pipeline::create(*model);
   if (!pipeline) return fail(pipeline.error());
   const auto source =
-      dermis::files::FramesCsvReader::open(argv[2], dermis::FrameShape{model->array.rows, model->array.cols});
+      dermis::bytes::files::FramesCsvReader::open(argv[2], dermis::FrameShape{model->array.rows, model->array.cols});
   if (!source) return fail(source.error());
 
   dermis::RawFrame raw;      // counts, with the temperature and the supply where they are known

@@ -7,10 +7,11 @@
 #include <string_view>
 #include <vector>
 
-#include "dermis/calibration/calibrate.hpp"
-#include "dermis/calibration/evaluation.hpp"
-#include "dermis/pipeline/model.hpp"
-#include "dermis/simulation/simulator.hpp"
+#include "dermis/bytes/models/model_file.hpp"
+#include "dermis/learn/calibration/calibrate.hpp"
+#include "dermis/learn/calibration/evaluation.hpp"
+#include "dermis/learn/simulation/simulator.hpp"
+#include "dermis/touch/pipeline/model.hpp"
 
 namespace {
 
@@ -39,7 +40,7 @@ dermis::ArrayDescription make_array() {
 }
 
 dermis::Result<Recording> record(const dermis::ArrayDescription& array, std::string_view scene, std::uint64_t seed) {
-  const auto simulator = dermis::simulation::Simulator::create(array, {}, scene, seed);
+  const auto simulator = dermis::learn::simulation::Simulator::create(array, {}, scene, seed);
   if (!simulator) return simulator.error();
   Recording recording;
   dermis::RawFrame frame;
@@ -60,18 +61,18 @@ int main(int argc, char** argv) {
 
   const auto presses = record(array, "calibration", 1);
   if (!presses) return fail(presses.error());
-  const auto calibration = dermis::calibration::calibrate(array, presses->frames, presses->loads);
+  const auto calibration = dermis::learn::calibration::calibrate(array, presses->frames, presses->loads);
   if (!calibration) return fail(calibration.error());
   std::printf("%s\n", calibration->report.training.choice.c_str());
-  if (const auto written = dermis::pipeline::write_model(argv[1], calibration->model); !written) {
+  if (const auto written = dermis::bytes::models::write_model(argv[1], calibration->model); !written) {
     return fail(written.error());
   }
 
   const auto contacts = record(array, "multitouch", 2);
   if (!contacts) return fail(contacts.error());
-  const auto evaluation = dermis::calibration::evaluate(calibration->model, contacts->frames, contacts->loads);
+  const auto evaluation = dermis::learn::calibration::evaluate(calibration->model, contacts->frames, contacts->loads);
   if (!evaluation) return fail(evaluation.error());
-  for (const dermis::calibration::EstimatorResult& result : evaluation->estimators) {
+  for (const dermis::learn::calibration::EstimatorResult& result : evaluation->estimators) {
     std::printf("%-20s median %6.2f %%  p99 %6.2f %%\n", result.name.c_str(),
                 100.0 * result.relative_error.median.value_or(0.0), 100.0 * result.relative_error.p99.value_or(0.0));
   }

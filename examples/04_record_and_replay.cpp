@@ -8,12 +8,13 @@
 #include <fstream>
 #include <vector>
 
-#include "dermis/acquisition/device_source.hpp"
-#include "dermis/acquisition/protocol.hpp"
-#include "dermis/pipeline/model.hpp"
-#include "dermis/pipeline/pipeline.hpp"
-#include "dermis/recordings/frame_files.hpp"
-#include "dermis/recordings/recording.hpp"
+#include "dermis/bytes/devices/device_source.hpp"
+#include "dermis/bytes/devices/protocol.hpp"
+#include "dermis/bytes/models/model_file.hpp"
+#include "dermis/bytes/recordings/frame_files.hpp"
+#include "dermis/bytes/recordings/recording.hpp"
+#include "dermis/touch/pipeline/model.hpp"
+#include "dermis/touch/pipeline/pipeline.hpp"
 
 namespace {
 
@@ -26,7 +27,7 @@ using dermis::Status;
 
 /// What a device would have sent of the frames of a file.
 Status send(FrameSource& frames, const FrameShape& shape, const std::string& path) {
-  const auto encoder = dermis::acquisition::make_encoder({.name = "dermis", .shape = shape});
+  const auto encoder = dermis::bytes::devices::make_encoder({.name = "dermis", .shape = shape});
   if (!encoder) return encoder.error();
   std::vector<std::uint8_t> bytes;
   RawFrame frame;
@@ -43,9 +44,9 @@ Status send(FrameSource& frames, const FrameShape& shape, const std::string& pat
 }
 
 /// The forces of all frames of `source`, which go into `sink` on the way where there is one.
-Result<std::vector<float>> forces_of(const dermis::pipeline::Model& model, FrameSource& source,
+Result<std::vector<float>> forces_of(const dermis::touch::pipeline::Model& model, FrameSource& source,
                                      dermis::FrameSink* sink) {
-  auto pipeline = dermis::pipeline::Pipeline::create(model);
+  auto pipeline = dermis::touch::pipeline::Pipeline::create(model);
   if (!pipeline) return pipeline.error();
   std::vector<float> newtons;
   RawFrame raw;
@@ -67,22 +68,22 @@ Result<std::vector<float>> forces_of(const dermis::pipeline::Model& model, Frame
 }
 
 Status run(const std::string& model_path, const std::string& frames_path, const std::string& recording_path) {
-  const auto model = dermis::pipeline::read_model(model_path);
+  const auto model = dermis::bytes::models::read_model(model_path);
   if (!model) return model.error();
   const FrameShape shape{model->array.rows, model->array.cols};
-  const auto frames = dermis::recordings::open_frames(frames_path, {.shape = shape});
+  const auto frames = dermis::bytes::recordings::open_frames(frames_path, {.shape = shape});
   if (!frames) return frames.error();
   const std::string sent = recording_path + ".bytes";
   if (Status done = send(**frames, shape, sent); !done) return done;
 
-  const auto device = dermis::acquisition::open_device("file:" + sent + "?protocol=dermis", {.shape = shape});
+  const auto device = dermis::bytes::devices::open_device("file:" + sent + "?protocol=dermis", {.shape = shape});
   if (!device) return device.error();
-  const auto recording = dermis::recordings::RecordingWriter::create(recording_path, shape);
+  const auto recording = dermis::bytes::recordings::RecordingWriter::create(recording_path, shape);
   if (!recording) return recording.error();
   const auto live = forces_of(*model, **device, recording->get());
   if (!live) return live.error();
 
-  const auto replay = dermis::recordings::open_frames(recording_path);
+  const auto replay = dermis::bytes::recordings::open_frames(recording_path);
   if (!replay) return replay.error();
   const auto replayed = forces_of(*model, **replay, nullptr);
   if (!replayed) return replayed.error();

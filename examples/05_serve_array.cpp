@@ -10,9 +10,10 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "dermis/pipeline/model.hpp"
-#include "dermis/serve/session.hpp"
-#include "dermis/sources/open_source.hpp"
+#include "dermis/bytes/models/model_file.hpp"
+#include "dermis/live/sources/open_source.hpp"
+#include "dermis/out/serve/session.hpp"
+#include "dermis/touch/pipeline/model.hpp"
 
 namespace {
 
@@ -30,15 +31,15 @@ int main(int argc, char** argv) {
   for (const int signal : {SIGINT, SIGALRM}) std::signal(signal, [](int) { stop = true; });
   if (argc > 3) alarm(static_cast<unsigned>(std::atoi(argv[3])));
 
-  auto model = dermis::pipeline::read_model(argv[2]);
+  auto model = dermis::bytes::models::read_model(argv[2]);
   if (!model) return fail(model.error());
-  auto source = dermis::sources::open_source(argv[1], {.array = &model->array, .stop = &stop});
+  auto source = dermis::live::sources::open_source(argv[1], {.array = &model->array, .stop = &stop});
   if (!source) return fail(source.error());
-  auto suit = dermis::serve::suit_of_one(*std::move(source), *std::move(model));
+  auto suit = dermis::out::serve::suit_of_one(*std::move(source), *std::move(model));
   if (!suit) return fail(suit.error());
-  dermis::serve::SessionOptions options;
+  dermis::out::serve::SessionOptions options;
   options.server.port = 0;  // any that is free
-  const auto session = dermis::serve::Session::create(*std::move(suit), options);
+  const auto session = dermis::out::serve::Session::create(*std::move(suit), options);
   if (!session) return fail(session.error());
   std::printf("serving at ws://127.0.0.1:%d/\n", (*session)->port());
   const auto ended = (*session)->run(stop);

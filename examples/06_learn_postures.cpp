@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "dermis/recognition/dataset.hpp"
-#include "dermis/recognition/learning.hpp"
-#include "dermis/recognition/recogniser.hpp"
+#include "dermis/learn/recognition/dataset.hpp"
+#include "dermis/learn/recognition/learning.hpp"
+#include "dermis/learn/recognition/recogniser.hpp"
 
 int main(int argc, char** argv) {
-  using namespace dermis::recognition;  // NOLINT(google-build-using-namespace)
+  using namespace dermis::learn::recognition;  // NOLINT(google-build-using-namespace)
   const std::string folder = argc > 1 ? argv[1] : ".";
   if (!std::filesystem::exists(folder + "/frames.npy")) {
     std::printf("skipped: no postures are learned, for there is no %s/frames.npy\n", folder.c_str());

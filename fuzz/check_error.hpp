@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "dermis/core/result.hpp"
+#include "dermis/touch/frames/result.hpp"
 
 namespace dermis::fuzz {
 

@@ -10,12 +10,12 @@
 #include <span>
 #include <vector>
 
-#include "dermis/layouts/decoder.hpp"
+#include "dermis/bytes/layouts/decoder.hpp"
 
 namespace dermis::fuzz {
 
-using layouts::Decoder;
-using layouts::DecoderCounts;
+using bytes::layouts::Decoder;
+using bytes::layouts::DecoderCounts;
 using Bytes = std::span<const std::uint8_t>;
 
 inline void require(bool is_so) {

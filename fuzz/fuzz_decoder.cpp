@@ -10,9 +10,9 @@
 #include <cstdlib>
 
 #include "decoding.hpp"
-#include "dermis/acquisition/protocol.hpp"
+#include "dermis/bytes/devices/protocol.hpp"
 
-namespace dermis::acquisition {
+namespace dermis::bytes::devices {
 namespace {
 
 constexpr std::array kProtocols = {"dermis",   "flexitac", "m1616",        "pressure-mat", "wuji", "3dvitac",
@@ -31,10 +31,10 @@ ProtocolOptions options_of(std::uint8_t choice) {
 }
 
 }  // namespace
-}  // namespace dermis::acquisition
+}  // namespace dermis::bytes::devices
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace dermis::acquisition;
+  using namespace dermis::bytes::devices;
   using namespace dermis::fuzz;
   if (size < 2) return 0;
   const ProtocolOptions options = options_of(data[0]);

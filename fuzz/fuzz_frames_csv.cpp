@@ -4,11 +4,11 @@
 #include <sstream>
 
 #include "check_error.hpp"
-#include "dermis/files/frames_csv.hpp"
+#include "dermis/bytes/files/frames_csv.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   auto bytes = std::make_unique<std::istringstream>(std::string(reinterpret_cast<const char*>(data), size));
-  const auto reader = dermis::files::FramesCsvReader::open(std::move(bytes), "fuzz");
+  const auto reader = dermis::bytes::files::FramesCsvReader::open(std::move(bytes), "fuzz");
   if (!reader) {
     dermis::fuzz::check_error(reader.error());
     return 0;

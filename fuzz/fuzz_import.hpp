@@ -10,13 +10,13 @@
 #include <string>
 
 #include "check_error.hpp"
-#include "dermis/importers/import_options.hpp"
+#include "dermis/bytes/formats/import_options.hpp"
 
 namespace dermis::fuzz {
 
 /// Reads all frames that an importer finds in the bytes.
 template <typename Open>
-int import_frames(Open open, std::span<const std::uint8_t> data, importers::ImportOptions options = {}) {
+int import_frames(Open open, std::span<const std::uint8_t> data, bytes::formats::ImportOptions options = {}) {
   options.notice = options.loss = [](const std::string& line) {
     if (line.find('\n') != std::string::npos) std::abort();
   };

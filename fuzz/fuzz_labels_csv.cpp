@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "dermis/recognition/dataset.hpp"
+#include "dermis/learn/recognition/dataset.hpp"
 #include "fuzz_table.hpp"
 
 // Labels that pass the checks name frames that are there.
@@ -13,12 +13,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   constexpr std::size_t kFrames = 100;
   const auto table = dermis::fuzz::table_of(data, size);
   if (!table) return 0;
-  auto labels = dermis::recognition::labels_of(*table, "class");
+  auto labels = dermis::learn::recognition::labels_of(*table, "class");
   if (!labels) {
     dermis::fuzz::check_error(labels.error());
     return 0;
   }
-  const dermis::recognition::LabelledFrames frames{
+  const dermis::learn::recognition::LabelledFrames frames{
       {.arrays = {{.name = "skin"}}, .readings = 1}, std::vector<float>(kFrames), {}, *std::move(labels)};
   if (!frames.check_labels()) return 0;
   for (const auto& label : frames.labels) {

@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "check_error.hpp"
-#include "dermis/files/loads_csv.hpp"
+#include "dermis/bytes/files/loads_csv.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   dermis::ArrayDescription array;
@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   array.taxel_area_m2 = 1e-4;
   constexpr std::size_t kFrames = 10;
   std::istringstream bytes(std::string(reinterpret_cast<const char*>(data), size));
-  const auto loads = dermis::files::read_loads(bytes, "fuzz", array, kFrames);
+  const auto loads = dermis::bytes::files::read_loads(bytes, "fuzz", array, kFrames);
   if (!loads) {
     dermis::fuzz::check_error(loads.error());
     return 0;

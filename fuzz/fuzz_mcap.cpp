@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "check_error.hpp"
-#include "dermis/recordings/recording.hpp"
+#include "dermis/bytes/recordings/recording.hpp"
 
 namespace {
 
@@ -15,7 +15,7 @@ std::unique_ptr<std::istringstream> stream_of(const std::uint8_t* data, std::siz
 
 /// All arrays, to the end and from the middle again.
 void read_suit(const std::uint8_t* data, std::size_t size) {
-  const auto suit = dermis::recordings::SuitRecordingReader::open(stream_of(data, size), "fuzz");
+  const auto suit = dermis::bytes::recordings::SuitRecordingReader::open(stream_of(data, size), "fuzz");
   if (!suit) return;
   dermis::RawFrame frame;
   std::size_t array = 0;
@@ -41,7 +41,7 @@ void check_recovery_error(dermis::Error error) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const auto recording = dermis::recordings::RecordingReader::open(stream_of(data, size), "fuzz");
+  const auto recording = dermis::bytes::recordings::RecordingReader::open(stream_of(data, size), "fuzz");
   if (!recording) dermis::fuzz::check_error(recording.error());
   dermis::RawFrame frame;
   while (recording) {
@@ -51,7 +51,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (frame.counts.size() != (*recording)->shape()->taxel_count()) std::abort();
   }
   read_suit(data, size);
-  const auto recovery = dermis::recordings::recover_recording(stream_of(data, size), "fuzz", "/dev/null");
+  const auto recovery = dermis::bytes::recordings::recover_recording(stream_of(data, size), "fuzz", "/dev/null");
   if (!recovery) check_recovery_error(recovery.error());
   return 0;
 }

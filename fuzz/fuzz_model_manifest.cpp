@@ -5,10 +5,10 @@
 #include <string_view>
 
 #include "check_error.hpp"
-#include "dermis/fleet/model_manifest.hpp"
+#include "dermis/live/fleet/model_manifest.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using dermis::fleet::manifest_from_json;
+  using dermis::live::fleet::manifest_from_json;
   const auto manifest = manifest_from_json({reinterpret_cast<const char*>(data), size});
   if (!manifest) {
     dermis::fuzz::check_line(manifest.error());

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/importers/packed10.hpp"
+#include "dermis/bytes/formats/packed10.hpp"
 #include "fuzz_import.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  return dermis::fuzz::import_frames(dermis::importers::open_packed10, {data, size},
+  return dermis::fuzz::import_frames(dermis::bytes::formats::open_packed10, {data, size},
                                      {.shape = dermis::FrameShape{2, 3}, .rate_hz = 100.0});
 }

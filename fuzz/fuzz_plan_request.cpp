@@ -4,11 +4,11 @@
 #include <string_view>
 
 #include "check_error.hpp"
-#include "dermis/calibration/plan_request.hpp"
+#include "dermis/learn/calibration/plan_request.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  const auto request = dermis::calibration::plan_request_from_json(text);
+  const auto request = dermis::learn::calibration::plan_request_from_json(text);
   if (!request) {
     dermis::fuzz::check_line(request.error());
     return 0;

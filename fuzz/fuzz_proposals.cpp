@@ -5,23 +5,24 @@
 #include <cstdint>
 
 #include "decoding.hpp"
-#include "dermis/describing/proposals.hpp"
-#include "dermis/layouts/layout.hpp"
+#include "dermis/bytes/layouts/layout.hpp"
+#include "dermis/bytes/proposals/proposals.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace dermis;
   if (size < 2) return 0;
-  describing::Known known;
+  bytes::proposals::Known known;
   if (data[0] > 0) known.rows = data[0];
   if (data[1] > 0) known.cols = data[1];
-  const auto proposals = describing::propose({data + 2, size - 2}, known);
-  fuzz::require(proposals.size() <= describing::kMostProposals);
-  for (const describing::Proposal& proposal : proposals) {
-    const auto layout = layouts::layout_from_toml(proposal.toml, "fuzz");
+  const auto proposals = bytes::proposals::propose({data + 2, size - 2}, known);
+  fuzz::require(proposals.size() <= bytes::proposals::kMostProposals);
+  for (const bytes::proposals::Proposal& proposal : proposals) {
+    const auto layout = bytes::layouts::layout_from_toml(proposal.toml, "fuzz");
     fuzz::require(layout.has_value() && layout->arrays.front().shape == proposal.shape);
     fuzz::require(proposal.frames > 0 && proposal.example.size() == proposal.shape.taxel_count());
     fuzz::require(proposal.left_share >= 0.0 && proposal.left_share <= 1.0);
-    for (const describing::Part& part : proposal.parts) fuzz::require(part.begin <= part.end && part.end <= size - 2);
+    for (const bytes::proposals::Part& part : proposal.parts)
+      fuzz::require(part.begin <= part.end && part.end <= size - 2);
   }
   return 0;
 }

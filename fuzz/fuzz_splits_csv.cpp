@@ -3,6 +3,6 @@
 #include "fuzz_splits.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  dermis::fuzz::fuzz_splits(data, size, dermis::recognition::splits_of);
+  dermis::fuzz::fuzz_splits(data, size, dermis::learn::recognition::splits_of);
   return 0;
 }

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "stream/access.hpp"
-#include "stream/client.hpp"
+#include "out/websocket/access.hpp"
+#include "out/websocket/client.hpp"
 
-using namespace dermis::stream;
+using namespace dermis::out::websocket;
 
 /// The first byte tells text from binary; a client with everything on offer gets the message.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

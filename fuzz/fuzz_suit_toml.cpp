@@ -5,11 +5,11 @@
 #include <string>
 
 #include "check_error.hpp"
-#include "dermis/files/suit_toml.hpp"
+#include "dermis/bytes/files/suit_toml.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto suit =
-      dermis::files::suit_from_toml({reinterpret_cast<const char*>(data), size}, "fuzz", [](const std::string&) {
+      dermis::bytes::files::suit_from_toml({reinterpret_cast<const char*>(data), size}, "fuzz", [](const std::string&) {
         return std::vector<dermis::Vector3>{{0.0, 0.0, 0.0}};
       });
   if (!suit) {

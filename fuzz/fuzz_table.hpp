@@ -8,14 +8,14 @@
 #include <string>
 
 #include "check_error.hpp"
-#include "dermis/files/csv_table.hpp"
+#include "dermis/bytes/files/csv_table.hpp"
 
 namespace dermis::fuzz {
 
 /// The bytes as a table; empty where they are none.
-inline std::optional<files::CsvTable> table_of(const std::uint8_t* data, std::size_t size) {
+inline std::optional<bytes::files::CsvTable> table_of(const std::uint8_t* data, std::size_t size) {
   std::istringstream bytes(std::string(reinterpret_cast<const char*>(data), size));
-  Result<files::CsvTable> table = files::CsvTable::read(bytes, "fuzz");
+  Result<bytes::files::CsvTable> table = bytes::files::CsvTable::read(bytes, "fuzz");
   if (table) return *std::move(table);
   check_error(table.error());
   return std::nullopt;

@@ -6,12 +6,12 @@
 #include <sstream>
 
 #include "check_error.hpp"
-#include "dermis/files/taxel_tables_csv.hpp"
+#include "dermis/bytes/files/taxel_tables_csv.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   auto bytes = std::make_unique<std::istringstream>(std::string(reinterpret_cast<const char*>(data), size));
-  auto reader =
-      dermis::files::TaxelTablesReader::open(std::move(bytes), "fuzz", 2, 3, dermis::files::TableValues::not_negative);
+  auto reader = dermis::bytes::files::TaxelTablesReader::open(std::move(bytes), "fuzz", 2, 3,
+                                                              dermis::bytes::files::TableValues::not_negative);
   std::array<double, 6> table{};
   while (true) {
     const dermis::Result<bool> got_frame = reader.next(table);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/importers/text_matrix.hpp"
+#include "dermis/bytes/formats/text_matrix.hpp"
 #include "fuzz_import.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  return dermis::fuzz::import_frames(dermis::importers::open_text_matrix, {data, size}, {.rate_hz = 100.0});
+  return dermis::fuzz::import_frames(dermis::bytes::formats::open_text_matrix, {data, size}, {.rate_hz = 100.0});
 }

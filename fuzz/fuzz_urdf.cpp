@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "check_error.hpp"
-#include "dermis/importers/urdf.hpp"
+#include "dermis/bytes/formats/urdf.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const auto body = dermis::importers::body_from_urdf({reinterpret_cast<const char*>(data), size}, "fuzz");
+  const auto body = dermis::bytes::formats::body_from_urdf({reinterpret_cast<const char*>(data), size}, "fuzz");
   if (!body) {
     dermis::fuzz::check_error(body.error());
     return 0;

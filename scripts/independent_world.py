@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """A world of its own judges the sums of forces: a sheet, its circuit and its ADC in numpy, which share nothing with
-src/simulation.
+src/learn/simulation.
 
 It calibrates `dermis` on single presses, one at a time, and asks `dermis run --totals` about frames of which nothing
 touches and frames with one to four contacts. It prints the mean of the untouched sums, the bias of the touched ones,

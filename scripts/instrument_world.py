@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
-"""Judges instruments that are not ideal, in a world that shares nothing with src/simulation.
+"""Judges instruments that are not ideal, in a world that shares nothing with src/learn/simulation.
 
 A 10x10 divider with grounded idle rows: 30 ohm drivers, 60 ohm of contact in series with each taxel, 220 ohm loads,
 12 bits. Readings come from the nodal equations, solved by numpy. Each fault is told in array.toml, fitted ("fit"), or

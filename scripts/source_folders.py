@@ -4,9 +4,9 @@
 """The folders with sources in C++, for formatters, linters, checks of words and rules of architecture. Prints all, for
 scripts in bash."""
 
-# Of each plugin, the module that loads it: its header is all that the plugin knows of the project, beside core.
-PLUGINS = {"dds": "dds", "modbus": "buses", "mpi": "paper", "nats": "fleet"}
-PRODUCTION = ("include", "src", "apps", "c", "python", *PLUGINS)
+# Of each plugin, the room that loads it: its header is all that the plugin knows of the project, beside frames.
+PLUGINS = {"dds": "live/dds", "modbus": "live/buses", "mpi": "paper", "nats": "live/fleet"}
+PRODUCTION = ("include", "src", "apps", "bindings", "plugins")
 ALL = (*PRODUCTION, "examples", "benchmarks", "fuzz", "tests")
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-sys.path.append(str(Path(__file__).resolve().parent.parent / "python"))
+sys.path.append(str(Path(__file__).resolve().parent.parent / "bindings/python"))
 import build_backend
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -103,7 +103,7 @@ def make_wheel(python, tools):
     environment = {
         **os.environ,
         "CMAKE_ARGS": " ".join(launcher),
-        "PYTHONPATH": f"{ROOT / 'python'}:{ROOT / 'scripts'}:{packages}",
+        "PYTHONPATH": f"{ROOT / 'bindings/python'}:{ROOT / 'scripts'}:{packages}",
     }
     subprocess.run([python, "-c", build], cwd=ROOT, env=environment, check=True, stdout=sys.stderr)
     (wheel,) = raw.glob("*.whl")

@@ -53,12 +53,12 @@ writeFileSync(
 namespace {
 
 ${arrays.join("\n")}
-constexpr std::array<dermis::stream::Asset, ${files.length}> kAssets{{
+constexpr std::array<dermis::out::websocket::Asset, ${files.length}> kAssets{{
 ${table.join("\n")}
 }};
 
 }  // namespace
 
-std::span<const dermis::stream::Asset> dermis::viewer::assets() { return kAssets; }
+std::span<const dermis::out::websocket::Asset> dermis::viewer::assets() { return kAssets; }
 `,
 );

@@ -4,11 +4,11 @@
 
 #include <span>
 
-#include "dermis/stream/server.hpp"
+#include "dermis/out/websocket/server.hpp"
 
 namespace dermis::viewer {
 
 /// The files of the viewer, "/index.html" among them.
-[[nodiscard]] std::span<const stream::Asset> assets();
+[[nodiscard]] std::span<const out::websocket::Asset> assets();
 
 }  // namespace dermis::viewer

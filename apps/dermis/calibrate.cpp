@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/calibration/calibrate.hpp"
+#include "dermis/learn/calibration/calibrate.hpp"
 
 #include <fmt/core.h>
 
@@ -13,12 +13,13 @@
 
 #include "calibration_input.hpp"
 #include "commands.hpp"
-#include "dermis/calibration/strip_training.hpp"
-#include "dermis/core/version.hpp"
-#include "dermis/files/content_hash.hpp"
-#include "dermis/files/loads_csv.hpp"
-#include "dermis/pipeline/model.hpp"
-#include "dermis/sources/source_name.hpp"
+#include "dermis/bytes/files/content_hash.hpp"
+#include "dermis/bytes/files/loads_csv.hpp"
+#include "dermis/bytes/models/model_file.hpp"
+#include "dermis/learn/calibration/strip_training.hpp"
+#include "dermis/live/sources/source_name.hpp"
+#include "dermis/touch/frames/version.hpp"
+#include "dermis/touch/pipeline/model.hpp"
 #include "interruption.hpp"
 #include "kept_model.hpp"
 #include "status_line.hpp"
@@ -26,8 +27,8 @@
 namespace dermis::app {
 namespace {
 
-using calibration::Calibration;
-using calibration::CalibrationReport;
+using learn::calibration::Calibration;
+using learn::calibration::CalibrationReport;
 
 using Clock = std::chrono::steady_clock;
 
@@ -48,13 +49,13 @@ struct CalibrateOptions {
 };
 
 Status add_hashes(const CalibrateOptions& options, std::map<std::string, std::string>& provenance) {
-  const Result<sources::SourceName> from = sources::SourceName::parse(options.files.frames);
+  const Result<live::sources::SourceName> from = live::sources::SourceName::parse(options.files.frames);
   if (!from) return from.error();
   const std::string& frames = from->file;
   for (const auto& [key, path] : {std::pair{"array hash", &options.files.array}, std::pair{"frames hash", &frames},
                                   std::pair{"loads hash", &options.files.loads}}) {
     if (std::filesystem::is_directory(*path)) continue;  // of pictures
-    const Result<std::string> hash = files::content_hash(*path);
+    const Result<std::string> hash = bytes::files::content_hash(*path);
     if (!hash) return hash.error();
     provenance[key] = *hash;
   }
@@ -63,7 +64,7 @@ Status add_hashes(const CalibrateOptions& options, std::map<std::string, std::st
 }
 
 void print_text(const CalibrationReport& report, const ArrayDescription& array) {
-  const calibration::TrainingReport& training = report.training;
+  const learn::calibration::TrainingReport& training = report.training;
   fmt::print("{} labelled frames, {} rejected{}\n", report.frames, report.frames_rejected,
              report.frames_rejected > 0 ? " (" + report.first_rejection + ")" : "");
   for (const std::string& remark : report.remarks) fmt::print("{}\n", remark);
@@ -74,8 +75,8 @@ void print_text(const CalibrationReport& report, const ArrayDescription& array) 
   if (!report.memory.empty()) fmt::print("{}\n", report.memory);
   fmt::print("loads {:.3g} to {:.3g} N", training.lightest_newtons, training.heaviest_newtons);
   if (training.uses_temperature) fmt::print(", {:.1f} to {:.1f} C", training.lowest_celsius, training.highest_celsius);
-  fmt::print("\nfit: {}\n", calibration::describe_fit(training, array));
-  fmt::print("1-sigma: {}\n", calibration::describe(report.uncertainty, array));
+  fmt::print("\nfit: {}\n", learn::calibration::describe_fit(training, array));
+  fmt::print("1-sigma: {}\n", learn::calibration::describe(report.uncertainty, array));
   if (std::max(training.median_fit_error, training.shared_leave_one_out_error) > kPoorFit) {
     fmt::print(stderr,
                "warning: a poor fit; do frames and loads belong together, and are circuit and polarity right?\n");
@@ -84,7 +85,8 @@ void print_text(const CalibrationReport& report, const ArrayDescription& array) 
     fmt::print("dead taxel {}: it does not answer to its loads\n", array.taxel_name(taxel));
   }
   fmt::print("time:");
-  for (const calibration::StageTime& stage : report.stages) fmt::print(" {} {:.2f} s", stage.stage, stage.seconds);
+  for (const learn::calibration::StageTime& stage : report.stages)
+    fmt::print(" {} {:.2f} s", stage.stage, stage.seconds);
   fmt::print("\n");
 }
 
@@ -94,7 +96,7 @@ nlohmann::ordered_json taxel_names(const std::vector<std::size_t>& taxels, const
   return names;
 }
 
-nlohmann::ordered_json circuit_json(const calibration::CircuitFit& fit) {
+nlohmann::ordered_json circuit_json(const learn::calibration::CircuitFit& fit) {
   const Readout& readout = fit.array.readout;
   nlohmann::ordered_json json = {{"kind", to_string(readout.circuit)},
                                  {"idle_rows", to_string(readout.idle_rows)},
@@ -107,11 +109,11 @@ nlohmann::ordered_json circuit_json(const calibration::CircuitFit& fit) {
                                  {"statements", fit.statements},
                                  {"telling_presses", nlohmann::ordered_json::array()},
                                  {"candidates", nlohmann::ordered_json::array()}};
-  for (const calibration::PressPair& pair : fit.discriminating_presses) {
+  for (const learn::calibration::PressPair& pair : fit.discriminating_presses) {
     json["telling_presses"].push_back(
         {{"taxels", {fit.array.taxel_name(pair.first), fit.array.taxel_name(pair.second)}}, {"newtons", pair.newtons}});
   }
-  for (const calibration::CircuitCandidate& candidate : fit.candidates) {
+  for (const learn::calibration::CircuitCandidate& candidate : fit.candidates) {
     json["candidates"].push_back({{"name", candidate.name},
                                   {"misfit", candidate.misfit},  // null: not possible, or not resolved
                                   {"chosen", candidate.chosen},
@@ -121,8 +123,8 @@ nlohmann::ordered_json circuit_json(const calibration::CircuitFit& fit) {
 }
 
 void print_json(const CalibrationReport& report, const ArrayDescription& array,
-                const std::optional<calibration::CircuitFit>& circuit) {
-  const calibration::TrainingReport& training = report.training;
+                const std::optional<learn::calibration::CircuitFit>& circuit) {
+  const learn::calibration::TrainingReport& training = report.training;
   nlohmann::ordered_json json = {{"frames", report.frames},
                                  {"frames_rejected", report.frames_rejected},
                                  {"remarks", report.remarks},
@@ -146,8 +148,8 @@ void print_json(const CalibrationReport& report, const ArrayDescription& array,
                                  {"dead_taxels", taxel_names(training.dead_taxels, array)},
                                  {"seconds", nlohmann::ordered_json::object()}};
   if (circuit) json["circuit"] = circuit_json(*circuit);
-  for (const calibration::StageTime& stage : report.stages) json["seconds"][stage.stage] = stage.seconds;
-  const calibration::UncertaintyReport& uncertainty = report.uncertainty;
+  for (const learn::calibration::StageTime& stage : report.stages) json["seconds"][stage.stage] = stage.seconds;
+  const learn::calibration::UncertaintyReport& uncertainty = report.uncertainty;
   json["adc_noise_counts"] = uncertainty.adc_noise_counts.value_or(array.readout.adc_noise_counts);
   if (uncertainty.relative_sigma) json["relative_sigma"] = *uncertainty.relative_sigma;
   if (uncertainty.relative_sigma_of_shared) {
@@ -168,31 +170,31 @@ Status calibrate(const CalibrateOptions& options) {
   const Result<CalibrationInput> input = CalibrationInput::read(options.files, options.out);
   if (!input) return input.error();
   const auto& [array, settle, frames, loads] = *input;
-  const auto positions = files::read_touch_positions(options.files.loads, array, frames.size());
+  const auto positions = bytes::files::read_touch_positions(options.files.loads, array, frames.size());
   if (!positions) return positions.error();
   const double read_s = seconds_since(start);
 
   Progress progress(array.name);
   progress.show("circuit", 0.0);
   start = Clock::now();
-  const auto database = calibration::build_sample_database(array, frames, loads, settle,
-                                                           [&](double share) { progress.show("circuit", share); });
+  const auto database = learn::calibration::build_sample_database(
+      array, frames, loads, settle, [&](double share) { progress.show("circuit", share); });
   if (!database) return database.error();
   const double circuit_s = seconds_since(start);
   progress.show("circuit", 1.0);
-  Result<Calibration> calibration = calibration::calibrate(
+  Result<Calibration> calibration = learn::calibration::calibrate(
       *database, frames, [&](const std::string& stage, double share) { progress.show(stage, share); });
   if (!calibration) return calibration.error();
   if (!positions->empty()) {
-    Result<contacts::StripTable> strip = calibration::train_strip(calibration->model, frames, *positions);
+    Result<touch::contacts::StripTable> strip = learn::calibration::train_strip(calibration->model, frames, *positions);
     if (!strip) return strip.error();
     calibration->model.strip = *std::move(strip);
   }
-  std::vector<calibration::StageTime>& stages = calibration->report.stages;
+  std::vector<learn::calibration::StageTime>& stages = calibration->report.stages;
   stages.insert(stages.begin(), {{"reading", read_s}, {"circuit", circuit_s}});
   if (Status hashed = add_hashes(options, calibration->model.provenance); !hashed) return hashed;
   if (Status kept = keep_earlier_model(options.out); !kept) return kept;
-  if (Status written = pipeline::write_model(options.out, calibration->model); !written) return written;
+  if (Status written = bytes::models::write_model(options.out, calibration->model); !written) return written;
   options.json ? print_json(calibration->report, array, database->circuit_fit) : print_text(calibration->report, array);
   if (!options.json && calibration->model.strip) {
     fmt::print("positions along the strip: learned from {} touches, \u00b1 {:.2f} mm\n", positions->size(),

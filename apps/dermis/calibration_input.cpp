@@ -4,9 +4,9 @@
 
 #include <utility>
 
-#include "dermis/files/array_toml.hpp"
-#include "dermis/files/loads_csv.hpp"
-#include "dermis/sources/open_source.hpp"
+#include "dermis/bytes/files/array_toml.hpp"
+#include "dermis/bytes/files/loads_csv.hpp"
+#include "dermis/live/sources/open_source.hpp"
 #include "seconds.hpp"
 #include "source_options.hpp"
 #include "writable.hpp"
@@ -23,12 +23,12 @@ void CalibrationFiles::add(Command& command) {
 Result<CalibrationInput> CalibrationInput::read(const CalibrationFiles& files, const std::string& out) {
   const Result<Nanos> settle = nanos_from_seconds(files.settle_s, "--settle");
   if (!settle) return settle.error();
-  Result<ArrayDescription> array = files::read_array(files.array);
+  Result<ArrayDescription> array = bytes::files::read_array(files.array);
   if (!array) return array.error();
   if (Status writable = out.empty() ? Done{} : check_writable(out); !writable) return writable.error();
-  Result<std::vector<RawFrame>> frames = sources::read_frames(files.frames, source_options(&*array));
+  Result<std::vector<RawFrame>> frames = live::sources::read_frames(files.frames, source_options(&*array));
   if (!frames) return frames.error();
-  Result<std::vector<Load>> loads = files::read_loads(files.loads, *array, frames->size());
+  Result<std::vector<Load>> loads = bytes::files::read_loads(files.loads, *array, frames->size());
   if (!loads) return loads.error();
   return CalibrationInput{*std::move(array), *settle, *std::move(frames), *std::move(loads)};
 }

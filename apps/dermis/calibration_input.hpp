@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "command_line.hpp"
-#include "dermis/core/array_description.hpp"
-#include "dermis/core/frames.hpp"
-#include "dermis/core/loads.hpp"
-#include "dermis/core/result.hpp"
+#include "dermis/touch/frames/array_description.hpp"
+#include "dermis/touch/frames/frames.hpp"
+#include "dermis/touch/frames/loads.hpp"
+#include "dermis/touch/frames/result.hpp"
 
 namespace dermis::app {
 

@@ -6,17 +6,17 @@
 #include <string>
 
 #include "commands.hpp"
-#include "dermis/files/force_text.hpp"
-#include "dermis/health/weight_check.hpp"
-#include "dermis/operation/operation.hpp"
+#include "dermis/bytes/files/force_text.hpp"
+#include "dermis/learn/health/weight_check.hpp"
+#include "dermis/live/forces/operation.hpp"
 #include "process_all.hpp"
 #include "source_options.hpp"
 
 namespace dermis::app {
 namespace {
 
-using health::WeightFinding;
-using operation::Operation;
+using learn::health::WeightFinding;
+using live::forces::Operation;
 
 constexpr int kExitAged = 3;
 
@@ -29,7 +29,7 @@ struct CheckOptions {
 /// The zero follows idle taxels, as it does in use.
 Result<WeightFinding> weigh(Operation& operation, double weight_n) {
   operation.pipeline.drift().set_options({.track = true});
-  health::WeightCheck check(operation.model, weight_n);
+  learn::health::WeightCheck check(operation.model, weight_n);
   const Status done =
       process_all(operation, [&](const RawFrame& /*raw*/, const ForceFrame& force) { check.add(force); });
   if (!done) return done.error();
@@ -37,16 +37,16 @@ Result<WeightFinding> weigh(Operation& operation, double weight_n) {
 }
 
 Result<int> check(const CheckOptions& options) {
-  const Result<double> weight_n = files::parse_force(options.weight);
+  const Result<double> weight_n = bytes::files::parse_force(options.weight);
   if (!weight_n) return bad_input("--weight: " + weight_n.error().message);
   if (!(*weight_n > 0.0 && *weight_n <= 1e6)) return bad_input("--weight: must be above 0 and at most 1e6 N");
   const Result<std::unique_ptr<Operation>> operation =
-      operation::open_operation(options.model, options.in, source_options());
+      live::forces::open_operation(options.model, options.in, source_options());
   if (!operation) return operation.error();
   const Result<WeightFinding> finding = weigh(**operation, *weight_n);
   if (!finding) return finding.error();
-  if (finding->presses.empty()) return failed(options.in + ": " + health::describe(*finding));
-  fmt::print("{}", health::describe(*finding));
+  if (finding->presses.empty()) return failed(options.in + ": " + learn::health::describe(*finding));
+  fmt::print("{}", learn::health::describe(*finding));
   return finding->has_aged() ? kExitAged : 0;
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "dermis/core/result.hpp"
+#include "dermis/touch/frames/result.hpp"
 
 namespace dermis::app {
 

@@ -10,19 +10,19 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "dermis/files/array_toml.hpp"
-#include "dermis/files/taxel_tables_csv.hpp"
-#include "dermis/health/circuit_advice.hpp"
-#include "dermis/health/circuit_inversion.hpp"
-#include "dermis/simulation/readout_circuit.hpp"
+#include "dermis/bytes/files/array_toml.hpp"
+#include "dermis/bytes/files/taxel_tables_csv.hpp"
+#include "dermis/learn/health/circuit_advice.hpp"
+#include "dermis/learn/health/circuit_inversion.hpp"
+#include "dermis/learn/simulation/readout_circuit.hpp"
 #include "status_line.hpp"
 
 namespace dermis::app {
 namespace {
 
-using files::TableValues;
-using files::TaxelTablesReader;
-using files::TaxelTablesWriter;
+using bytes::files::TableValues;
+using bytes::files::TaxelTablesReader;
+using bytes::files::TaxelTablesWriter;
 
 struct ForwardOptions {
   std::string array;
@@ -51,7 +51,7 @@ Error in_file(const std::string& path, const Error& error) {
 
 /// An array with a circuit that can be computed.
 Result<ArrayDescription> read_known_circuit(const std::string& path) {
-  Result<ArrayDescription> array = files::read_array(path);
+  Result<ArrayDescription> array = bytes::files::read_array(path);
   if (!array) return array;
   if (array->readout.circuit == Circuit::none) {
     return bad_input(path + ": circuit = \"none\" has nothing to compute; name the circuit and its resistances");
@@ -64,7 +64,7 @@ Result<ArrayDescription> read_known_circuit(const std::string& path) {
 
 Result<double> noise_ratio(const InvertOptions& options, const ArrayDescription& array) {
   if (!options.noise_ratio) {
-    const Result<double> noise = health::adc_noise_ratio(array);
+    const Result<double> noise = learn::health::adc_noise_ratio(array);
     return noise ? *noise : Result<double>(in_file(options.array, noise.error()));
   }
   if (std::isfinite(*options.noise_ratio) && *options.noise_ratio > 0.0) return *options.noise_ratio;
@@ -74,7 +74,7 @@ Result<double> noise_ratio(const InvertOptions& options, const ArrayDescription&
 Status circuit_forward(const ForwardOptions& options) {
   const Result<ArrayDescription> array = read_known_circuit(options.array);
   if (!array) return array.error();
-  const Result<simulation::ReadoutCircuit> circuit = simulation::ReadoutCircuit::create(*array);
+  const Result<learn::simulation::ReadoutCircuit> circuit = learn::simulation::ReadoutCircuit::create(*array);
   if (!circuit) return in_file(options.array, circuit.error());
   Result<TaxelTablesReader> in =
       TaxelTablesReader::open(options.conductance, array->rows, array->cols, TableValues::not_negative);
@@ -97,7 +97,7 @@ Status circuit_invert(const InvertOptions& options) {
   if (!array) return array.error();
   const Result<double> noise = noise_ratio(options, *array);
   if (!noise) return noise.error();
-  Result<health::CircuitInversion> inversion = health::CircuitInversion::create(*array, *noise);
+  Result<learn::health::CircuitInversion> inversion = learn::health::CircuitInversion::create(*array, *noise);
   if (!inversion) return in_file(options.array, inversion.error());
   Result<TaxelTablesReader> in =
       TaxelTablesReader::open(options.readings, array->rows, array->cols, TableValues::finite);
@@ -135,13 +135,13 @@ Status circuit_invert(const InvertOptions& options) {
                   options.readings, first_unsolved_line, unsolved, frames, options.out));
 }
 
-nlohmann::ordered_json precision_json(const std::optional<health::Precision>& precision) {
+nlohmann::ordered_json precision_json(const std::optional<learn::health::Precision>& precision) {
   if (!precision) return nullptr;
   return {
       {"mean", precision->mean}, {"median", precision->median}, {"p95", precision->p95}, {"worst", precision->worst}};
 }
 
-void print_json(const health::CircuitAdvice& advice) {
+void print_json(const learn::health::CircuitAdvice& advice) {
   nlohmann::ordered_json json = {{"noise_ratio", advice.noise_ratio},
                                  {"best_load_ohm", advice.loads[advice.best].load_ohm},
                                  {"best", precision_json(advice.loads[advice.best].precision)},
@@ -150,14 +150,14 @@ void print_json(const health::CircuitAdvice& advice) {
                                  {"most_drive_ohm", nullptr},
                                  {"loads", nlohmann::ordered_json::array()}};
   if (advice.ideal_drivers) json["most_drive_ohm"] = advice.most_drive_ohm;
-  for (const health::ResistorChoice& choice : advice.loads) {
+  for (const learn::health::ResistorChoice& choice : advice.loads) {
     json["loads"].push_back({{"load_ohm", choice.load_ohm}, {"precision", precision_json(choice.precision)}});
   }
   fmt::print("{}\n", json.dump(2));
 }
 
 Status circuit_advise(const AdviseOptions& options) {
-  const health::TaxelRange taxels{options.range_ohm[0], options.range_ohm[1]};
+  const learn::health::TaxelRange taxels{options.range_ohm[0], options.range_ohm[1]};
   constexpr double kMostOhm = 1e12;
   if (!(taxels.least_ohm > 0.0 && taxels.least_ohm < taxels.most_ohm && taxels.most_ohm <= kMostOhm)) {
     return bad_input("--range: must be two resistances of a taxel in ohm, more than 0, the least first");
@@ -165,11 +165,11 @@ Status circuit_advise(const AdviseOptions& options) {
   const Result<ArrayDescription> array = read_known_circuit(options.array);
   if (!array) return array.error();
   Progress progress;
-  const Result<health::CircuitAdvice> advice =
-      health::advise_circuit(*array, taxels, [&](double share) { progress.show("advice", share); });
+  const Result<learn::health::CircuitAdvice> advice =
+      learn::health::advise_circuit(*array, taxels, [&](double share) { progress.show("advice", share); });
   if (!advice) return in_file(options.array, advice.error());
   progress.show("advice", 1.0);
-  options.json ? print_json(*advice) : fmt::print("{}", health::describe(*advice, *array));
+  options.json ? print_json(*advice) : fmt::print("{}", learn::health::describe(*advice, *array));
   return Done{};
 }
 

@@ -23,13 +23,14 @@
 #include <utility>
 #include <vector>
 
-#include "dermis/core/nearest_name.hpp"
-#include "dermis/core/version.hpp"
-#include "dermis/files/force_text.hpp"
-#include "dermis/files/safetensors.hpp"
-#include "dermis/files/text.hpp"
-#include "dermis/pipeline/model.hpp"
-#include "dermis/recognition/classes_file.hpp"
+#include "dermis/bytes/files/force_text.hpp"
+#include "dermis/bytes/files/safetensors.hpp"
+#include "dermis/bytes/files/text.hpp"
+#include "dermis/bytes/models/model_file.hpp"
+#include "dermis/learn/recognition/classes_file.hpp"
+#include "dermis/touch/frames/nearest_name.hpp"
+#include "dermis/touch/frames/version.hpp"
+#include "dermis/touch/pipeline/model.hpp"
 #include "reference.hpp"
 #include "status_line.hpp"
 
@@ -55,7 +56,7 @@ std::string check_count(const std::string& text) {
 
 std::string check_number(const std::string& text) {
   double number = 0.0;
-  return files::parse_number(text, number) ? "" : fmt::format("'{}' is no number", text);
+  return bytes::files::parse_number(text, number) ? "" : fmt::format("'{}' is no number", text);
 }
 
 template <typename Value>
@@ -110,7 +111,7 @@ const CLI::App& chosen_command(const CLI::App& app) {
 /// The commands at and below `command` that take an option, by their whole names in quotes.
 std::vector<std::string> takers_of(const std::string& option, const CLI::App& command, const std::string& name) {
   std::vector<std::string> takers;
-  if (command.get_option_no_throw(option) != nullptr) takers.push_back(files::in_quotes(name));
+  if (command.get_option_no_throw(option) != nullptr) takers.push_back(bytes::files::in_quotes(name));
   for (const CLI::App* each : command.get_subcommands(nullptr)) {
     const std::vector<std::string> below = takers_of(option, *each, name + " " + each->get_name());
     takers.insert(takers.end(), below.begin(), below.end());
@@ -140,7 +141,7 @@ std::string force_in_two(const std::string& argument, std::span<char* const> arg
   if (found == arguments.end()) return "";
   const std::string number = *std::prev(found);
   const bool is_number = check_number(number).empty() && !check_number(argument).empty();
-  if (!is_number || !files::parse_force(number + argument)) return "";
+  if (!is_number || !bytes::files::parse_force(number + argument)) return "";
   return fmt::format("; write '{0} {1}' in quotes, or {0}{1}", number, argument);
 }
 
@@ -162,12 +163,12 @@ std::string names_of(std::span<const CommandEntry> commands) {
 
 /// Says which of the command's files, of those that dermis writes, were written before such files had checksums.
 void tell_missing_checksums(const CLI::App& command) {
-  static constexpr std::array<std::pair<const char*, files::FileFormat>, 2> kFiles{
-      {{"--model", pipeline::kModelFormat}, {"--classes", recognition::kClassesFormat}}};
+  static constexpr std::array<std::pair<const char*, bytes::files::FileFormat>, 2> kFiles{
+      {{"--model", bytes::models::kModelFormat}, {"--classes", learn::recognition::kClassesFormat}}};
   for (const auto& [name, format] : kFiles) {
     const CLI::Option* const option = command.get_option_no_throw(name);
     if (option == nullptr || option->count() == 0) continue;
-    if (const auto note = files::checksum_note(option->as<std::string>(), format)) print_notice(*note);
+    if (const auto note = bytes::files::checksum_note(option->as<std::string>(), format)) print_notice(*note);
   }
 }
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "dermis/core/result.hpp"
+#include "dermis/touch/frames/result.hpp"
 #include "file_places.hpp"
 
 // All of CLI11 that the commands see: its headers cost seconds in every file that includes them.

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "dermis/files/array_toml.hpp"
-#include "dermis/recordings/conversion.hpp"
-#include "dermis/recordings/recording.hpp"
+#include "dermis/bytes/files/array_toml.hpp"
+#include "dermis/bytes/recordings/conversion.hpp"
+#include "dermis/bytes/recordings/recording.hpp"
 #include "described_file.hpp"
 #include "interruption.hpp"
 #include "lost_input.hpp"
@@ -22,7 +22,7 @@
 namespace dermis::app {
 namespace {
 
-using recordings::FrameFormat;
+using bytes::recordings::FrameFormat;
 
 struct ConvertOptions {
   std::string in;
@@ -41,11 +41,11 @@ Status check_rate(const ConvertOptions& options) {
 }
 
 Status check(const ConvertOptions& options) {
-  const Result<FrameFormat> in = recordings::recognise_frames(options.in);
+  const Result<FrameFormat> in = bytes::recordings::recognise_frames(options.in);
   if (!in) return in.error();
-  const Result<FrameFormat> out = recordings::output_format(options.out);
+  const Result<FrameFormat> out = bytes::recordings::output_format(options.out);
   if (!out) return out.error();
-  if (options.rate_hz && recordings::has_times(*in)) {
+  if (options.rate_hz && bytes::recordings::has_times(*in)) {
     return bad_input(fmt::format("--rate: '{}' has times of its own; leave --rate out", options.in));
   }
   return check_rate(options);
@@ -65,17 +65,17 @@ Result<std::optional<FrameShape>> wanted_shape(const ConvertOptions& options,
 
 Result<std::optional<ArrayDescription>> read_array(const ConvertOptions& options) {
   if (options.array.empty()) return std::optional<ArrayDescription>();
-  Result<ArrayDescription> array = files::read_array(options.array);
+  Result<ArrayDescription> array = bytes::files::read_array(options.array);
   if (!array) return array.error();
   return std::optional(std::move(*array));
 }
 
 Result<std::vector<std::string>> convert_described(const DescribedFile& file, const ConvertOptions& options,
-                                                   const recordings::ConversionOptions& how) {
+                                                   const bytes::recordings::ConversionOptions& how) {
   const Result<std::unique_ptr<FrameSource>> source = file.open();
   if (!source) return source.error();
   Result<std::vector<std::string>> left_out =
-      recordings::convert_frames(**source, !(*source)->is_live(), options.out, how);
+      bytes::recordings::convert_frames(**source, !(*source)->is_live(), options.out, how);
   const SourceStatistics statistics = (*source)->statistics();
   if (left_out && statistics.damaged_frames > 0) {
     print_notice(fmt::format("{}: {} damaged frames are left out", options.in, statistics.damaged_frames));
@@ -92,11 +92,12 @@ Status convert(const ConvertOptions& options) {
   const Result<std::optional<FrameShape>> shape = wanted_shape(options, *array);
   if (!shape) return shape.error();
   file.shape = *shape;
-  const recordings::ConversionOptions how = {
+  const bytes::recordings::ConversionOptions how = {
       .input = {.shape = *shape, .rate_hz = options.rate_hz, .notice = print_notice, .loss = note_loss},
       .array = *array ? &**array : nullptr};
   const Result<std::vector<std::string>> left_out =
-      is_described ? convert_described(file, options, how) : recordings::convert_frames(options.in, options.out, how);
+      is_described ? convert_described(file, options, how)
+                   : bytes::recordings::convert_frames(options.in, options.out, how);
   if (!left_out) return left_out.error();
   if (!left_out->empty()) print_notice(fmt::format("{}: left out: {}", options.out, fmt::join(*left_out, ", ")));
   return Done{};

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "dermis/datasets/dataset_files.hpp"
-#include "dermis/datasets/episodes.hpp"
+#include "dermis/out/datasets/dataset_files.hpp"
+#include "dermis/out/datasets/episodes.hpp"
 #include "lost_input.hpp"
 #include "status_line.hpp"
 #include "stop_flag.hpp"
@@ -24,13 +24,13 @@ struct DatasetCommandOptions {
   std::string format = "lerobot";
   std::uint64_t window = 1;
   std::string task = "touch";
-  datasets::EpisodeOptions episodes{};
+  out::datasets::EpisodeOptions episodes{};
 };
 
-void print_tally(const datasets::EpisodeTally& tally, const DatasetCommandOptions& options) {
+void print_tally(const out::datasets::EpisodeTally& tally, const DatasetCommandOptions& options) {
   print_notice(fmt::format("{} episode{}, {} steps in {}", tally.episodes, tally.episodes == 1 ? "" : "s", tally.steps,
                            options.out));
-  for (const datasets::ArrayTally& array : tally.arrays) {
+  for (const out::datasets::ArrayTally& array : tally.arrays) {
     if (array.missed == 0) continue;
     const bool is_short = array.most_fresh > options.window;
     const std::string mend = is_short ? fmt::format("; --window {} holds all between two steps", array.most_fresh) : "";
@@ -39,17 +39,18 @@ void print_tally(const datasets::EpisodeTally& tally, const DatasetCommandOption
 }
 
 Status make_dataset(DatasetCommandOptions& options) {
-  const Result<datasets::DatasetFormat> format = datasets::dataset_format(options.format);
+  const Result<out::datasets::DatasetFormat> format = out::datasets::dataset_format(options.format);
   if (!format) return format.error();
   options.episodes.window = options.window;
   options.episodes.stop = &stop_flag();
   options.episodes.notice = print_notice;
   options.episodes.loss = note_loss;
   if (Status valid = options.episodes.validate(); !valid) return valid;
-  const auto sink =
-      datasets::create_dataset(options.out, {.format = *format, .fps = options.episodes.fps, .task = options.task});
+  const auto sink = out::datasets::create_dataset(
+      options.out, {.format = *format, .fps = options.episodes.fps, .task = options.task});
   if (!sink) return sink.error();
-  const Result<datasets::EpisodeTally> tally = datasets::make_episodes(options.recordings, options.episodes, **sink);
+  const Result<out::datasets::EpisodeTally> tally =
+      out::datasets::make_episodes(options.recordings, options.episodes, **sink);
   if (!tally) return tally.error();
   print_tally(*tally, options);
   return Done{};
@@ -63,7 +64,7 @@ void add_dataset(Command& command) {
       .required();
   command.option("--out", options->out, "Folder to write, which must not exist yet").required();
   command.option("--format", options->format, "Layout: LeRobot v3, HDF5 of ACT or of robomimic, zarr replay buffer")
-      .one_of(datasets::dataset_formats())
+      .one_of(out::datasets::dataset_formats())
       .shows_default();
   command.input_file("--model", options->episodes.model,
                      "Model file of the array, or suit.toml of several; without one there are no forces");

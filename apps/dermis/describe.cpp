@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "dermis/core/array_description.hpp"
-#include "dermis/describing/proposals.hpp"
-#include "dermis/files/atomic_file.hpp"
+#include "dermis/bytes/files/atomic_file.hpp"
+#include "dermis/bytes/proposals/proposals.hpp"
+#include "dermis/touch/frames/array_description.hpp"
 #include "interruption.hpp"
 #include "proposal_text.hpp"
 #include "source_bytes.hpp"
@@ -25,7 +25,7 @@
 namespace dermis::app {
 namespace {
 
-using describing::Proposal;
+using bytes::proposals::Proposal;
 
 struct DescribeOptions {
   std::string source;
@@ -41,7 +41,7 @@ const std::vector<std::string>& units() {
   return kUnits;
 }
 
-Status set_unit(const std::string& unit, describing::Known& known) {
+Status set_unit(const std::string& unit, bytes::proposals::Known& known) {
   if (std::find(units().begin(), units().end(), unit) == units().end()) {
     return bad_input("--unit: must be counts, volts, ohms, kPa or newtons");
   }
@@ -49,8 +49,8 @@ Status set_unit(const std::string& unit, describing::Known& known) {
   return Done{};
 }
 
-Result<describing::Known> known_of(const DescribeOptions& options) {
-  describing::Known known;
+Result<bytes::proposals::Known> known_of(const DescribeOptions& options) {
+  bytes::proposals::Known known;
   for (const auto& [name, lines, into] :
        {std::tuple{"--rows", options.rows, &known.rows}, {"--cols", options.cols, &known.cols}}) {
     if (lines && (*lines < 1 || *lines > kMaxLines))
@@ -103,7 +103,7 @@ Status ask_lines(const std::string& name, std::size_t likely, std::optional<std:
 }
 
 /// Asks for what the bytes cannot tell; true where an answer says more than was known.
-Result<bool> ask(const Proposal& proposal, describing::Known& known) {
+Result<bool> ask(const Proposal& proposal, bytes::proposals::Known& known) {
   for (const std::string& key : proposal.open) {
     Status answered = Done{};
     if (key == "rows") answered = ask_lines("rows", proposal.shape.rows, known.rows);
@@ -122,7 +122,7 @@ void print_text(const DescribeOptions& options, const SourceBytes& source, const
 }
 
 Status write_layout(const DescribeOptions& options, const Proposal& proposal) {
-  Result<files::AtomicFile> file = files::AtomicFile::create(options.out);
+  Result<bytes::files::AtomicFile> file = bytes::files::AtomicFile::create(options.out);
   if (!file) return file.error();
   file->write("# Of " + options.source + ", by dermis describe: " + proposal.summary + "\n" + proposal.toml);
   return file->commit();
@@ -137,13 +137,13 @@ Result<std::size_t> chosen_of(const std::vector<Proposal>& proposals) {
 }
 
 Status describe(const DescribeOptions& options) {
-  Result<describing::Known> known = known_of(options);
+  Result<bytes::proposals::Known> known = known_of(options);
   if (!known) return known.error();
   const Result<SourceBytes> source = read_source_bytes(options.source);
   if (!source) return source.error();
   const bool is_file_that_is_known = !source->known.empty() && !source->is_stream;
   std::vector<Proposal> proposals;
-  if (!is_file_that_is_known) proposals = describing::propose(source->bytes, *known);
+  if (!is_file_that_is_known) proposals = bytes::proposals::propose(source->bytes, *known);
   if (options.json) print_json(options, *source, proposals);
   if (!options.json) print_text(options, *source, proposals);
   if (proposals.empty()) {
@@ -159,7 +159,7 @@ Status describe(const DescribeOptions& options) {
     const Result<bool> answered = ask(proposals.front(), *known);
     if (!answered) return answered.error();
     if (*answered) {
-      proposals = describing::propose(source->bytes, *known);
+      proposals = bytes::proposals::propose(source->bytes, *known);
       if (proposals.empty())
         return bad_input(fmt::format("'{}': no layout of this shape reads these bytes", options.source));
       print_text(options, *source, proposals);

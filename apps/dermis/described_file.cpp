@@ -4,9 +4,9 @@
 
 #include <filesystem>
 
-#include "dermis/acquisition/device_source.hpp"
-#include "dermis/fleet/stream_address.hpp"
-#include "dermis/sources/open_source.hpp"
+#include "dermis/bytes/devices/device_source.hpp"
+#include "dermis/live/fleet/stream_address.hpp"
+#include "dermis/live/sources/open_source.hpp"
 #include "lost_input.hpp"
 #include "status_line.hpp"
 #include "stop_flag.hpp"
@@ -14,8 +14,8 @@
 namespace dermis::app {
 namespace {
 
-acquisition::SourceUri uri_of_path(const std::string& name) {
-  acquisition::SourceUri uri;
+bytes::devices::SourceUri uri_of_path(const std::string& name) {
+  bytes::devices::SourceUri uri;
   uri.text = name;
   const std::size_t mark = std::filesystem::exists(name) ? std::string::npos : name.rfind('#');
   uri.path = name.substr(0, mark);
@@ -27,7 +27,7 @@ acquisition::SourceUri uri_of_path(const std::string& name) {
 /// The frames of a robot, of which a file is to be made or told.
 Result<std::unique_ptr<FrameSource>> open_stream(const std::string& name) {
   Result<std::unique_ptr<FrameSource>> stream =
-      sources::open_source(name, {.stop = &stop_flag(), .notice = print_notice});
+      live::sources::open_source(name, {.stop = &stop_flag(), .notice = print_notice});
   if (stream && (*stream)->is_live()) return bad_input("'" + name + "': has no end; add from=1&to=last");
   return stream;
 }
@@ -35,20 +35,20 @@ Result<std::unique_ptr<FrameSource>> open_stream(const std::string& name) {
 }  // namespace
 
 bool DescribedFile::is_described() const {
-  return !layout.empty() || acquisition::is_source_uri(name);
+  return !layout.empty() || bytes::devices::is_source_uri(name);
 }
 
 Result<std::unique_ptr<FrameSource>> DescribedFile::open() const {
-  if (fleet::is_stream_address(name)) return open_stream(name);
-  const bool is_uri = acquisition::is_source_uri(name);
-  Result<acquisition::SourceUri> uri = is_uri ? acquisition::parse_source_uri(name) : uri_of_path(name);
+  if (live::fleet::is_stream_address(name)) return open_stream(name);
+  const bool is_uri = bytes::devices::is_source_uri(name);
+  Result<bytes::devices::SourceUri> uri = is_uri ? bytes::devices::parse_source_uri(name) : uri_of_path(name);
   if (!uri) return uri.error();
-  if (uri->transport != acquisition::Transport::file) return bad_input("'" + name + "': name a file, as file:PATH");
+  if (uri->transport != bytes::devices::Transport::file) return bad_input("'" + name + "': name a file, as file:PATH");
   if (is_uri && !layout.empty()) return bad_input("--layout: '" + name + "' is a URI; write layout= in it");
   if (!layout.empty()) uri->protocol.layout = layout;
   if (rate_hz) uri->rate_hz = rate_hz;
   if (shape) uri->protocol.shape = shape;
-  return acquisition::open_device(*std::move(uri), {.notice = print_notice});
+  return bytes::devices::open_device(*std::move(uri), {.notice = print_notice});
 }
 
 }  // namespace dermis::app

@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "dermis/calibration/turned_lines.hpp"
-#include "dermis/files/array_toml.hpp"
-#include "dermis/files/loads_csv.hpp"
-#include "dermis/health/examination.hpp"
-#include "dermis/health/raw_examination.hpp"
-#include "dermis/operation/operation.hpp"
-#include "dermis/sources/open_source.hpp"
+#include "dermis/bytes/files/array_toml.hpp"
+#include "dermis/bytes/files/loads_csv.hpp"
+#include "dermis/learn/calibration/turned_lines.hpp"
+#include "dermis/learn/health/examination.hpp"
+#include "dermis/learn/health/raw_examination.hpp"
+#include "dermis/live/forces/operation.hpp"
+#include "dermis/live/sources/open_source.hpp"
 #include "process_all.hpp"
 #include "source_options.hpp"
 #include "stop_flag.hpp"
@@ -23,8 +23,8 @@
 namespace dermis::app {
 namespace {
 
-using health::Diagnosis;
-using operation::Operation;
+using learn::health::Diagnosis;
+using live::forces::Operation;
 using Json = nlohmann::ordered_json;
 
 struct DoctorOptions {
@@ -40,14 +40,14 @@ Json or_null(const std::optional<T>& value) {
   return value ? Json(*value) : Json();
 }
 
-Json fault_json(const health::FaultHistory& history, const ArrayDescription& array) {
-  const compensation::LineFault& fault = history.fault;
+Json fault_json(const learn::health::FaultHistory& history, const ArrayDescription& array) {
+  const touch::compensation::LineFault& fault = history.fault;
   Json json = {{"kind", to_string(fault.kind)},
                {"place", place_name(fault, array)},
                {"since_frame", fault.frame},
                {"until_frame", or_null(history.until)},
                {"grounded", fault.grounded}};
-  if (fault.kind == compensation::LineFaultKind::drifting_driver) json["drive_ohm"] = fault.drive_ohm;
+  if (fault.kind == touch::compensation::LineFaultKind::drifting_driver) json["drive_ohm"] = fault.drive_ohm;
   return json;
 }
 
@@ -72,12 +72,13 @@ void print_json(const Diagnosis& diagnosis, const ArrayDescription& array) {
                {"faults", Json::array()},
                {"problems", diagnosis.findings},
                {"remarks", diagnosis.remarks}};
-  for (const health::FaultHistory& history : diagnosis.faults) json["faults"].push_back(fault_json(history, array));
+  for (const learn::health::FaultHistory& history : diagnosis.faults)
+    json["faults"].push_back(fault_json(history, array));
   fmt::print("{}\n", json.dump(2));
 }
 
 Result<Diagnosis> examine(Operation& operation) {
-  health::Examination examination(operation.model);
+  learn::health::Examination examination(operation.model);
   const Status done = process_all(operation, [&](const RawFrame& raw, const ForceFrame& force) {
     examination.add(raw, force, operation.pipeline);
   });
@@ -90,7 +91,7 @@ Status result_of(const std::vector<std::string>& findings, const char* what) {
   return failed(fmt::format("{}: {} finding{}", what, findings.size(), findings.size() == 1 ? "" : "s"));
 }
 
-void print_json(const health::RawDiagnosis& diagnosis) {
+void print_json(const learn::health::RawDiagnosis& diagnosis) {
   Json remarks = Json::array();
   if (diagnosis.remark) remarks.push_back(*diagnosis.remark);
   const Json json = {{"healthy", diagnosis.problems().empty()},
@@ -115,14 +116,14 @@ ArrayDescription of_shape(FrameShape shape) {
 
 struct ExaminedCounts {
   FrameShape shape;
-  health::RawDiagnosis diagnosis;
+  learn::health::RawDiagnosis diagnosis;
   std::vector<RawFrame> frames;  ///< Where they are kept.
 };
 
 Result<ExaminedCounts> examine_counts(const std::string& from, const ArrayDescription* array, bool keeps_frames) {
-  const auto source = sources::open_source(from, source_options(array));
+  const auto source = live::sources::open_source(from, source_options(array));
   if (!source) return source.error();
-  std::optional<health::RawExamination> examination;
+  std::optional<learn::health::RawExamination> examination;
   ExaminedCounts examined;
   RawFrame raw;
   while (!stop_flag().load()) {
@@ -143,9 +144,9 @@ Result<ExaminedCounts> examine_counts(const std::string& from, const ArrayDescri
 
 /// Whether the taxels answer that were pressed.
 Status examine_places(const std::string& path, const ArrayDescription& array, ExaminedCounts& examined) {
-  const Result<std::vector<Load>> loads = files::read_loads(path, array, examined.frames.size());
+  const Result<std::vector<Load>> loads = bytes::files::read_loads(path, array, examined.frames.size());
   if (!loads) return loads.error();
-  auto turned = calibration::find_turned_lines(array, examined.frames, *loads);
+  auto turned = learn::calibration::find_turned_lines(array, examined.frames, *loads);
   if (turned) examined.diagnosis.findings.push_back(*std::move(turned));
   return Done{};
 }
@@ -154,7 +155,7 @@ Status examine_places(const std::string& path, const ArrayDescription& array, Ex
 Status doctor_without_model(const DoctorOptions& options) {
   std::optional<ArrayDescription> array;
   if (!options.array.empty()) {
-    Result<ArrayDescription> read = files::read_array(options.array);
+    Result<ArrayDescription> read = bytes::files::read_array(options.array);
     if (!read) return read.error();
     array = *std::move(read);
   }
@@ -164,20 +165,20 @@ Status doctor_without_model(const DoctorOptions& options) {
     const ArrayDescription known = array.value_or(of_shape(examined->shape));
     if (Status done = examine_places(options.loads, known, *examined); !done) return done;
   }
-  const health::RawDiagnosis& diagnosis = examined->diagnosis;
-  options.json ? print_json(diagnosis) : fmt::print("{}", health::describe(diagnosis, examined->shape));
+  const learn::health::RawDiagnosis& diagnosis = examined->diagnosis;
+  options.json ? print_json(diagnosis) : fmt::print("{}", learn::health::describe(diagnosis, examined->shape));
   return result_of(diagnosis.problems(), "the readings are doubtful");
 }
 
 Status doctor(const DoctorOptions& options) {
   if (options.model.empty()) return doctor_without_model(options);
   const Result<std::unique_ptr<Operation>> operation =
-      operation::open_operation(options.model, options.in, source_options());
+      live::forces::open_operation(options.model, options.in, source_options());
   if (!operation) return operation.error();
   const Result<Diagnosis> diagnosis = examine(**operation);
   if (!diagnosis) return diagnosis.error();
-  const pipeline::Model& model = (*operation)->model;
-  options.json ? print_json(*diagnosis, model.array) : fmt::print("{}", health::describe(*diagnosis, model));
+  const touch::pipeline::Model& model = (*operation)->model;
+  options.json ? print_json(*diagnosis, model.array) : fmt::print("{}", learn::health::describe(*diagnosis, model));
   return result_of(diagnosis->findings, "the array is not healthy");
 }
 

@@ -9,18 +9,18 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "dermis/acquisition/byte_stream.hpp"
-#include "dermis/acquisition/protocol.hpp"
-#include "dermis/acquisition/source_uri.hpp"
-#include "dermis/sources/emulated_device.hpp"
+#include "dermis/bytes/devices/byte_stream.hpp"
+#include "dermis/bytes/devices/protocol.hpp"
+#include "dermis/bytes/devices/source_uri.hpp"
+#include "dermis/live/sources/emulated_device.hpp"
 #include "source_options.hpp"
 #include "stop_flag.hpp"
 
 namespace dermis::app {
 namespace {
 
-using acquisition::ByteStream;
-using acquisition::Transport;
+using bytes::devices::ByteStream;
+using bytes::devices::Transport;
 
 struct EmulateOptions {
   std::string protocol;
@@ -34,19 +34,19 @@ Status emulate(const EmulateOptions& options) {
   if (options.rate_hz && !(*options.rate_hz > 0.0 && *options.rate_hz <= 1e6)) {
     return bad_input("--rate: must be above 0 and at most 1e6 frames a second");
   }
-  const Result<acquisition::SourceUri> target = acquisition::parse_target_uri(options.to);
+  const Result<bytes::devices::SourceUri> target = bytes::devices::parse_target_uri(options.to);
   if (!target) return bad_input("--to: " + target.error().message);
-  Result<std::unique_ptr<FrameSource>> source = sources::open_source(options.in, source_options());
+  Result<std::unique_ptr<FrameSource>> source = live::sources::open_source(options.in, source_options());
   if (!source) return source.error();
   const std::optional<FrameShape> shape = (*source)->shape();
   if (!shape) return bad_input("'" + options.in + "': tells no shape; give a recording");
-  acquisition::ProtocolOptions protocol;
+  bytes::devices::ProtocolOptions protocol;
   protocol.name = options.protocol;
   protocol.shape = shape;
   protocol.delimited = target->protocol.delimited;
-  Result<std::unique_ptr<acquisition::Encoder>> encoder = acquisition::make_encoder(protocol);
+  Result<std::unique_ptr<bytes::devices::Encoder>> encoder = bytes::devices::make_encoder(protocol);
   if (!encoder) return bad_input("--protocol: " + encoder.error().message);
-  Result<std::unique_ptr<ByteStream>> stream = acquisition::make_target_stream(*target);
+  Result<std::unique_ptr<ByteStream>> stream = bytes::devices::make_target_stream(*target);
   if (!stream) return stream.error();
 
   const Result<bool> opened = (*stream)->open(Nanos{});
@@ -55,13 +55,13 @@ Status emulate(const EmulateOptions& options) {
     fmt::print("{}\n", (*stream)->name());
     std::fflush(stdout);
   }
-  sources::EmulatedDevice device(*std::move(stream), target->transport, *std::move(encoder), stop_flag());
+  live::sources::EmulatedDevice device(*std::move(stream), target->transport, *std::move(encoder), stop_flag());
   if (!*opened) {
     if (Status there = device.wait_for_reader(); !there) return there;
   }
   do {
     if (!*source) {
-      source = sources::open_source(options.in, source_options());
+      source = live::sources::open_source(options.in, source_options());
       if (!source) return source.error();
     }
     if (Status played = device.play(**source, options.rate_hz); !played) return played;
@@ -74,7 +74,7 @@ Status emulate(const EmulateOptions& options) {
 
 void add_emulate(Command& command) {
   auto options = std::make_shared<EmulateOptions>();
-  std::vector<std::string> protocols = acquisition::protocol_names();
+  std::vector<std::string> protocols = bytes::devices::protocol_names();
   std::erase(protocols, "auto");
   command.option("--protocol", options->protocol, "What the device speaks").one_of(protocols).required();
   command.input("--in", options->in, "Frames to send: a recording, another file of frames, or sim:SCENE").required();

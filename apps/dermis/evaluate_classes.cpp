@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "confusion_table.hpp"
-#include "dermis/recognition/classes_file.hpp"
-#include "dermis/recognition/evaluation.hpp"
+#include "dermis/learn/recognition/classes_file.hpp"
+#include "dermis/learn/recognition/evaluation.hpp"
 #include "recognising/force_source.hpp"
 #include "source_options.hpp"
 #include "touch_finding.hpp"
@@ -16,8 +16,8 @@
 namespace dermis::app {
 namespace {
 
-using recognition::Classes;
-using recognition::ClassesEvaluation;
+using learn::recognition::Classes;
+using learn::recognition::ClassesEvaluation;
 
 void print_json(const Classes& classes, const ClassesEvaluation& evaluation) {
   const nlohmann::ordered_json json = {{"accuracy", evaluation.accuracy},
@@ -44,17 +44,17 @@ void print_text(const Classes& classes, const ClassesEvaluation& evaluation) {
 }  // namespace
 
 Status evaluate_classes(const std::string& path, recognising::ExampleOptions examples, bool json) {
-  const Result<Classes> classes = recognition::read_classes(path);
+  const Result<Classes> classes = learn::recognition::read_classes(path);
   if (!classes) return classes.error();
   if (examples.data.labels.empty()) return bad_input("--labels is required: which frames are of which class");
   if (!examples.in.empty()) {
     if (Status checked = recognising::check_loads(classes->layout, path, examples.model); !checked) return checked;
   }
-  examples.arrays = recognition::names_of(classes->layout.arrays);
-  Result<recognition::LabelledFrames> data = recognising::read_examples(examples, source_options());
+  examples.arrays = learn::recognition::names_of(classes->layout.arrays);
+  Result<learn::recognition::LabelledFrames> data = recognising::read_examples(examples, source_options());
   if (!data) return data.error();
   if (examples.data.rate_hz == 0.0) data->layout.rate_hz = classes->layout.rate_hz;
-  const Result<ClassesEvaluation> evaluation = recognition::evaluate_classes(*classes, *data);
+  const Result<ClassesEvaluation> evaluation = learn::recognition::evaluate_classes(*classes, *data);
   if (!evaluation) return bad_input(path + ": " + evaluation.error().message);
   if (json) {
     print_json(*classes, *evaluation);

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "dermis/core/result.hpp"
+#include "dermis/touch/frames/result.hpp"
 #include "recognising/labelled_examples.hpp"
 
 namespace dermis::app {

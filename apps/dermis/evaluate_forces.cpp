@@ -7,15 +7,15 @@
 #include <cmath>
 #include <optional>
 
-#include "dermis/report/evaluation_report.hpp"
-#include "dermis/report/wording.hpp"
+#include "dermis/out/report/evaluation_report.hpp"
+#include "dermis/out/report/wording.hpp"
 #include "labelled_recording.hpp"
 #include "report_origin.hpp"
 
 namespace dermis::app {
 namespace {
 
-using calibration::Evaluation;
+using learn::calibration::Evaluation;
 
 std::string percent(const std::optional<double>& share) {
   if (!share) return "-";
@@ -27,7 +27,7 @@ std::string newtons(const std::optional<double>& value) {
   return std::isfinite(*value) ? fmt::format("{:.3f} N", *value) : "no force";
 }
 
-void print_sums(const calibration::SumErrors& sums) {
+void print_sums(const learn::calibration::SumErrors& sums) {
   if (sums.untouched > 0) {
     fmt::print("sums of {} untouched frames: mean {:+.4f} N, {:.1f} % within 2 sigma\n", sums.untouched,
                *sums.untouched_mean_n, 100.0 * *sums.untouched_within_2_sigma);
@@ -47,8 +47,8 @@ void print_text(const Evaluation& evaluation) {
              first.ghost_n.count, first.totals_judged);
   fmt::print("{:<20}{:>12}{:>12}{:>12}{:>12}{:>12}{:>12}\n", "estimator", "median", "p95", "p99", "max", "ghost p99",
              "total rmse");
-  for (const calibration::EstimatorResult& result : evaluation.estimators) {
-    fmt::print("{:<20}{:>12}{:>12}{:>12}{:>12}{:>12}{:>12}\n", report::estimator_words(result.name),
+  for (const learn::calibration::EstimatorResult& result : evaluation.estimators) {
+    fmt::print("{:<20}{:>12}{:>12}{:>12}{:>12}{:>12}{:>12}\n", out::report::estimator_words(result.name),
                percent(result.relative_error.median), percent(result.relative_error.p95),
                percent(result.relative_error.p99), percent(result.relative_error.max), newtons(result.ghost_n.p99),
                newtons(result.total_rmse_n));
@@ -60,7 +60,7 @@ void print_text(const Evaluation& evaluation) {
         evaluation.coverage.count, 100.0 * *evaluation.coverage.share_68, 100.0 * *evaluation.coverage.share_95);
   }
   print_sums(evaluation.sums);
-  const calibration::BoundComparison& bound = evaluation.bound;
+  const learn::calibration::BoundComparison& bound = evaluation.bound;
   if (bound.frames > 0) {
     fmt::print("Cramer-Rao bound of the ADC noise: {:.2f} % of the force (median of {} taxels); dermis {:.2f} %\n",
                100.0 * bound.median_bound, bound.taxels, 100.0 * bound.median_deviation);
@@ -85,19 +85,19 @@ void add_force_evaluation(Command& command, ForceEvaluation& evaluation) {
   command.output_folder("--report", evaluation.report, {"index.html"}, "Folder for an HTML report with pictures");
 }
 
-Status evaluate_forces(const ForceEvaluation& options, calibration::FurtherEstimator* further) {
+Status evaluate_forces(const ForceEvaluation& options, learn::calibration::FurtherEstimator* further) {
   if (Status checked = check_needed(options); !checked) return checked;
   const Result<LabelledRecording> recording = LabelledRecording::read(options.model, options.frames, options.loads);
   if (!recording) return recording.error();
   const auto& [model, frames, loads] = *recording;
-  const Result<Evaluation> evaluation = calibration::evaluate(model, frames, loads, further);
+  const Result<Evaluation> evaluation = learn::calibration::evaluate(model, frames, loads, further);
   if (!evaluation) return evaluation.error();
   if (!options.report.empty()) {
-    const report::Origin origin = report_origin({options.frames, options.loads, options.model}, frames);
-    Status written = report::write_evaluation_report(options.report, *evaluation, model, origin);
+    const out::report::Origin origin = report_origin({options.frames, options.loads, options.model}, frames);
+    Status written = out::report::write_evaluation_report(options.report, *evaluation, model, origin);
     if (!written) return written;
   }
-  options.json ? fmt::print("{}\n", calibration::to_json(*evaluation)) : print_text(*evaluation);
+  options.json ? fmt::print("{}\n", learn::calibration::to_json(*evaluation)) : print_text(*evaluation);
   if (evaluation->most_have_forces) return Done{};
   return failed(options.frames + ": " + evaluation->most_have_forces.error().message);
 }

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "command_line.hpp"
-#include "dermis/calibration/evaluation.hpp"
-#include "dermis/core/result.hpp"
+#include "dermis/learn/calibration/evaluation.hpp"
+#include "dermis/touch/frames/result.hpp"
 
 namespace dermis::app {
 
@@ -23,6 +23,6 @@ struct ForceEvaluation {
 void add_force_evaluation(Command& command, ForceEvaluation& evaluation);
 
 /// Prints what dermis, its look-up tables and a `further` estimator (or null) make of known loads.
-[[nodiscard]] Status evaluate_forces(const ForceEvaluation& evaluation, calibration::FurtherEstimator* further);
+[[nodiscard]] Status evaluate_forces(const ForceEvaluation& evaluation, learn::calibration::FurtherEstimator* further);
 
 }  // namespace dermis::app

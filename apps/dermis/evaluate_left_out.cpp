@@ -12,17 +12,17 @@
 #include <vector>
 
 #include "calibration_input.hpp"
-#include "dermis/calibration/recorded_presses.hpp"
-#include "dermis/core/quantile.hpp"
-#include "dermis/pipeline/pipeline.hpp"
+#include "dermis/learn/calibration/recorded_presses.hpp"
+#include "dermis/touch/frames/quantile.hpp"
+#include "dermis/touch/pipeline/pipeline.hpp"
 #include "status_line.hpp"
 
 namespace dermis::app {
 namespace {
 
-using calibration::Calibration;
-using calibration::RecordedPress;
-using operation::ForceTables;
+using learn::calibration::Calibration;
+using learn::calibration::RecordedPress;
+using live::forces::ForceTables;
 
 /// Means over the loaded frames of a press.
 struct JudgedPress {
@@ -33,7 +33,7 @@ struct JudgedPress {
 
 Result<JudgedPress> judge(const RecordedPress& press, std::span<const std::optional<double>> newtons,
                           const Calibration& calibration, const std::vector<RawFrame>& frames, ForceTables& tables) {
-  Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(calibration.model);
+  Result<touch::pipeline::Pipeline> pipeline = touch::pipeline::Pipeline::create(calibration.model);
   if (!pipeline) return pipeline.error();
   JudgedPress judged{press};
   double count = 0.0;
@@ -110,15 +110,15 @@ Status evaluate_left_out(const LeftOutEvaluation& evaluation, const std::string&
   const Result<CalibrationInput> input = CalibrationInput::read({evaluation.array, frames_path, loads_path, 0.0}, {});
   if (!input) return input.error();
   const auto& [array, settle, frames, loads] = *input;
-  pipeline::Model of_array;
+  touch::pipeline::Model of_array;
   of_array.array = array;
   Result<ForceTables> tables = ForceTables::create(evaluation.tables, of_array);
   if (!tables) return tables.error();
-  const std::vector<RecordedPress> presses = calibration::recorded_presses(frames, loads);
+  const std::vector<RecordedPress> presses = learn::calibration::recorded_presses(frames, loads);
   std::vector<JudgedPress> judged;
   Progress progress(array.name);
   progress.show("presses", 0.0);
-  Status done = calibration::judge_each_left_out(
+  Status done = learn::calibration::judge_each_left_out(
       array, frames, loads, presses,
       [&](const RecordedPress& press, std::span<const std::optional<double>> newtons,
           const Calibration& without_it) -> Status {

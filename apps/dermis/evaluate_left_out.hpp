@@ -5,8 +5,8 @@
 #include <string>
 
 #include "command_line.hpp"
-#include "dermis/core/result.hpp"
-#include "dermis/operation/force_tables.hpp"
+#include "dermis/live/forces/force_tables.hpp"
+#include "dermis/touch/frames/result.hpp"
 
 namespace dermis::app {
 
@@ -14,7 +14,7 @@ namespace dermis::app {
 struct LeftOutEvaluation {
   std::string leave_out;  ///< "press"; empty: of a model.
   std::string array;
-  operation::ForceTablePaths tables;
+  live::forces::ForceTablePaths tables;
 };
 
 /// Declares --leave-out, --array, --out, --totals and --contacts; `evaluation` must live as long as the action.

@@ -5,7 +5,7 @@
 namespace dermis::app {
 
 Option add_example_options(Command& command, recognising::ExampleOptions& examples) {
-  recognition::DatasetFiles& data = examples.data;
+  learn::recognition::DatasetFiles& data = examples.data;
   command.input("--in", examples.in, "Recordings, or other files of frames, whose frames the labels count");
   command.flag("--tare", examples.tare, "Take the first second of each --in as zero load: nothing may touch then");
   command.flag("--tare-force", examples.tare_force, "The same, whatever load stands on the array");

@@ -11,10 +11,10 @@
 #include <system_error>
 #include <utility>
 
-#include "dermis/files/file_kind.hpp"
-#include "dermis/files/input.hpp"
-#include "dermis/files/suit_toml.hpp"
-#include "dermis/sources/source_name.hpp"
+#include "dermis/bytes/files/file_kind.hpp"
+#include "dermis/bytes/files/input.hpp"
+#include "dermis/bytes/files/suit_toml.hpp"
+#include "dermis/live/sources/source_name.hpp"
 #include "status_line.hpp"
 
 namespace dermis::app {
@@ -59,20 +59,20 @@ bool would_be_lost(const std::string& path) {
 
 /// The file of a path or of a source; empty where there is none.
 std::string file_of(const std::string& name) {
-  const Result<sources::SourceName> source = sources::SourceName::parse(name);
+  const Result<live::sources::SourceName> source = live::sources::SourceName::parse(name);
   return source ? source->file : std::string();
 }
 
 /// The files that a suit.toml names, which are read with it; none for any other file.
 std::vector<std::string> files_of_suit(const std::string& path) {
-  const Result<std::string> text = files::read_file(path, kMostToml);
+  const Result<std::string> text = bytes::files::read_file(path, kMostToml);
   if (!text) return {};
   std::vector<std::string> named;
   const auto read_positions = [&](const std::string& positions) {
     named.push_back(positions);
-    return files::read_positions(positions);
+    return bytes::files::read_positions(positions);
   };
-  const Result<SuitDescription> suit = files::suit_from_toml(*text, path, read_positions);
+  const Result<SuitDescription> suit = bytes::files::suit_from_toml(*text, path, read_positions);
   if (!suit) return named;
   named.insert(named.end(), {suit->classes, suit->body});
   for (const SuitArray& array : suit->arrays) {
@@ -166,8 +166,8 @@ Status FilePlaces::check(bool is_forced) const {
     if (output.can_be_made_again && output.can_be_made_again()) continue;
     for (const std::string& path : output.paths()) {
       if (!would_be_lost(path)) continue;
-      const std::string first_bytes = files::first_bytes_of(path, kLooked);
-      if (output.is_model && files::kind_of(first_bytes) == files::kSafetensorsKind) continue;
+      const std::string first_bytes = bytes::files::first_bytes_of(path, kLooked);
+      if (output.is_model && bytes::files::kind_of(first_bytes) == bytes::files::kSafetensorsKind) continue;
       if (!is_forced && !is_result(first_bytes)) {
         return bad_input(fmt::format("{}: '{}' exists; name another, or replace it with --force", output.option, path));
       }

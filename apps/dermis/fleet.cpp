@@ -12,12 +12,13 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "dermis/files/input.hpp"
-#include "dermis/fleet/hub.hpp"
-#include "dermis/fleet/job_queue.hpp"
-#include "dermis/fleet/model_store.hpp"
-#include "dermis/fleet/server_files.hpp"
-#include "dermis/pipeline/model.hpp"
+#include "dermis/bytes/files/input.hpp"
+#include "dermis/bytes/models/model_file.hpp"
+#include "dermis/live/fleet/hub.hpp"
+#include "dermis/live/fleet/job_queue.hpp"
+#include "dermis/live/fleet/model_store.hpp"
+#include "dermis/live/fleet/server_files.hpp"
+#include "dermis/touch/pipeline/model.hpp"
 #include "fleet_connection.hpp"
 #include "fleet_robots.hpp"
 #include "status_line.hpp"
@@ -28,7 +29,7 @@ namespace {
 constexpr std::size_t kShownDigits = 8;  // of a SHA-256
 
 struct InitOptions {
-  fleet::FleetPlan plan;
+  live::fleet::FleetPlan plan;
   std::string out;
 };
 
@@ -38,7 +39,7 @@ struct AddOptions {
 };
 
 Status init(const InitOptions& options) {
-  const Result<std::vector<std::string>> written = fleet::write_server_files(options.plan, options.out);
+  const Result<std::vector<std::string>> written = live::fleet::write_server_files(options.plan, options.out);
   if (!written) return written.error();
   for (const std::string& path : *written) print_notice("wrote " + path);
   if (written->empty()) print_notice(options.out + ": has all already");
@@ -46,7 +47,7 @@ Status init(const InitOptions& options) {
 }
 
 Status add(const AddOptions& options) {
-  const Result<std::unique_ptr<fleet::Hub>> hub = connect_fleet<fleet::Hub>(options.hub);
+  const Result<std::unique_ptr<live::fleet::Hub>> hub = connect_fleet<live::fleet::Hub>(options.hub);
   if (!hub) return hub.error();
   for (const std::string& robot : options.robots) {
     if (Status added = (*hub)->add_robot(robot); !added) return added;
@@ -61,9 +62,9 @@ struct SubmitOptions {
 };
 
 Status submit(const SubmitOptions& options) {
-  const Result<std::vector<fleet::Job>> jobs = fleet::read_jobs(options.jobs);
+  const Result<std::vector<live::fleet::Job>> jobs = live::fleet::read_jobs(options.jobs);
   if (!jobs) return jobs.error();
-  const Result<std::unique_ptr<fleet::JobQueue>> queue = connect_fleet<fleet::JobQueue>(options.hub);
+  const Result<std::unique_ptr<live::fleet::JobQueue>> queue = connect_fleet<live::fleet::JobQueue>(options.hub);
   if (!queue) return queue.error();
   for (std::size_t i = 0; i < jobs->size(); ++i) {
     const Status submitted = (*queue)->submit((*jobs)[i]);
@@ -75,15 +76,16 @@ Status submit(const SubmitOptions& options) {
 }
 
 Status show_jobs(const std::string& text) {
-  const Result<std::unique_ptr<fleet::JobQueue>> queue = connect_fleet<fleet::JobQueue>(text);
+  const Result<std::unique_ptr<live::fleet::JobQueue>> queue = connect_fleet<live::fleet::JobQueue>(text);
   if (!queue) return queue.error();
-  const Result<fleet::JobCounts> counts = (*queue)->counts();
+  const Result<live::fleet::JobCounts> counts = (*queue)->counts();
   if (!counts) return counts.error();
   fmt::print("waiting {}, taken {}, done {}, given up {}\n", counts->waiting, counts->taken, counts->done,
              counts->given_up);
-  const Result<std::vector<fleet::JobOutcome>> given_up = (*queue)->given_up();
+  const Result<std::vector<live::fleet::JobOutcome>> given_up = (*queue)->given_up();
   if (!given_up) return given_up.error();
-  for (const fleet::JobOutcome& outcome : *given_up) fmt::print("given up: {}: {}\n", outcome.name, outcome.error);
+  for (const live::fleet::JobOutcome& outcome : *given_up)
+    fmt::print("given up: {}: {}\n", outcome.name, outcome.error);
   return Done{};
 }
 
@@ -102,15 +104,15 @@ Status for_arrays(const ModelOptions& options, const Use& use) {
     if (slash == std::string::npos) return bad_input(fmt::format("--for: '{}' must be ROBOT/ARRAY", text));
     places.emplace_back(text.substr(0, slash), text.substr(slash + 1));
     for (const std::string& name : {places.back().first, places.back().second}) {
-      if (Status good = fleet::check_name("--for", name); !good) return good;
+      if (Status good = live::fleet::check_name("--for", name); !good) return good;
     }
   }
-  const Result<std::unique_ptr<fleet::ModelStore>> store = connect_fleet<fleet::ModelStore>(options.hub);
+  const Result<std::unique_ptr<live::fleet::ModelStore>> store = connect_fleet<live::fleet::ModelStore>(options.hub);
   if (!store) return store.error();
   for (const auto& [robot, array] : places) {
-    const Result<fleet::ModelManifest> manifest = use(**store, robot, array);
+    const Result<live::fleet::ModelManifest> manifest = use(**store, robot, array);
     if (!manifest) return manifest.error();
-    const fleet::PushedModel& model = manifest->current_model();
+    const live::fleet::PushedModel& model = manifest->current_model();
     print_notice(fmt::format("{}/{}: is to use model {} ({}, {})", robot, array, model.number, model.name,
                              model.sha256.substr(0, kShownDigits)));
   }
@@ -119,29 +121,29 @@ Status for_arrays(const ModelOptions& options, const Use& use) {
 
 Status push(const ModelOptions& options) {
   if (options.model.ends_with(".toml")) return bad_input(options.model + ": is no model file; calibrate writes one");
-  if (const auto model = pipeline::read_model(options.model); !model) return model.error();
-  const Result<std::string> bytes = files::read_file(options.model, fleet::ModelManifest::kMostBytes);
+  if (const auto model = bytes::models::read_model(options.model); !model) return model.error();
+  const Result<std::string> bytes = bytes::files::read_file(options.model, live::fleet::ModelManifest::kMostBytes);
   if (!bytes) return bytes.error();
   const std::string name = std::filesystem::path(options.model).filename().string();
-  return for_arrays(options, [&](fleet::ModelStore& store, const std::string& robot, const std::string& array) {
+  return for_arrays(options, [&](live::fleet::ModelStore& store, const std::string& robot, const std::string& array) {
     return store.push(robot, array, name, *bytes);
   });
 }
 
 Status roll_back(const ModelOptions& options) {
-  return for_arrays(options, [](fleet::ModelStore& store, const std::string& robot, const std::string& array) {
+  return for_arrays(options, [](live::fleet::ModelStore& store, const std::string& robot, const std::string& array) {
     return store.roll_back(robot, array);
   });
 }
 
 Status show_models(const std::string& text) {
-  const Result<std::unique_ptr<fleet::ModelStore>> store = connect_fleet<fleet::ModelStore>(text);
+  const Result<std::unique_ptr<live::fleet::ModelStore>> store = connect_fleet<live::fleet::ModelStore>(text);
   if (!store) return store.error();
-  const Result<std::vector<fleet::ModelManifest>> manifests = (*store)->all();
+  const Result<std::vector<live::fleet::ModelManifest>> manifests = (*store)->all();
   if (!manifests) return manifests.error();
   fmt::print("{:<24} {:>7} {:<8} {:>10} {:<20} {}\n", "robot/array", "number", "sha256", "kB", "pushed (UTC)", "model");
-  for (const fleet::ModelManifest& manifest : *manifests) {
-    for (const fleet::PushedModel& model : manifest.models) {
+  for (const live::fleet::ModelManifest& manifest : *manifests) {
+    for (const live::fleet::PushedModel& model : manifest.models) {
       const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(model.time).count();
       fmt::print("{:<24} {:>7} {} {:>10.1f} {:%Y-%m-%d %H:%M:%S}  {}\n", manifest.robot + "/" + manifest.array,
                  fmt::format("{}{}", model.number == manifest.current ? "*" : "", model.number),

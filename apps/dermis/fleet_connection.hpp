@@ -5,15 +5,15 @@
 #include <memory>
 #include <string>
 
-#include "dermis/core/result.hpp"
-#include "dermis/fleet/stream_address.hpp"
+#include "dermis/live/fleet/stream_address.hpp"
+#include "dermis/touch/frames/result.hpp"
 
 namespace dermis::app {
 
 /// Connects a Hub, a JobQueue or a ModelStore to the server of an address that the user gave.
 template <typename Served>
 Result<std::unique_ptr<Served>> connect_fleet(const std::string& text) {
-  const Result<fleet::BrokerAddress> address = fleet::parse_broker_address(text);
+  const Result<live::fleet::BrokerAddress> address = live::fleet::parse_broker_address(text);
   if (!address) return address.error();
   return Served::connect(*address);
 }

@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "dermis/fleet/hub.hpp"
-#include "dermis/stream/server.hpp"
+#include "dermis/live/fleet/hub.hpp"
+#include "dermis/out/websocket/server.hpp"
 #include "fleet_connection.hpp"
 #include "server_address.hpp"
 #include "status_line.hpp"
@@ -30,7 +30,7 @@ constexpr std::uint16_t kPagePort = 8090;
 
 struct PageOptions {
   std::string hub;
-  stream::ServerOptions server{};
+  out::websocket::ServerOptions server{};
 };
 
 Nanos now() {
@@ -50,9 +50,9 @@ struct Sums {
   double most_gain_change = -1.0;  ///< Below 0: none is known.
 };
 
-Sums sums_of(const std::vector<fleet::ArrayHealth>& arrays) {
+Sums sums_of(const std::vector<live::fleet::ArrayHealth>& arrays) {
   Sums sums;
-  for (const fleet::ArrayHealth& array : arrays) {
+  for (const live::fleet::ArrayHealth& array : arrays) {
     sums.rate_hz += array.rate_hz;
     sums.lost += array.lost;
     sums.masked_taxels += array.masked_taxels;
@@ -62,7 +62,7 @@ Sums sums_of(const std::vector<fleet::ArrayHealth>& arrays) {
 }
 
 /// "arrays frames/s lost masked drift", or dashes.
-std::string figures_of(const fleet::RobotState& robot) {
+std::string figures_of(const live::fleet::RobotState& robot) {
   if (!robot.health) return fmt::format("{:>6} {:>9} {:>8} {:>7} {:>6}", "-", "-", "-", "-", "-");
   const Sums sums = sums_of(robot.health->arrays);
   const std::string drift = sums.most_gain_change < 0.0 ? "-" : fmt::format("{:.0f} %", 100.0 * sums.most_gain_change);
@@ -71,13 +71,13 @@ std::string figures_of(const fleet::RobotState& robot) {
 }
 
 /// "silent", "chest: 2 faults; chest: calibrate".
-std::string remarks_on(const fleet::RobotState& robot) {
+std::string remarks_on(const live::fleet::RobotState& robot) {
   std::vector<std::string> remarks;
   if (!robot.health_error.empty()) remarks.push_back(robot.health_error);
   if (robot.is_silent(now())) remarks.emplace_back("silent");
   if (robot.health) {
-    for (const fleet::ArrayHealth& array : robot.health->arrays) {
-      if (array.level != fleet::ArrayHealth::Level::good) remarks.push_back(array.name + ": " + array.message);
+    for (const live::fleet::ArrayHealth& array : robot.health->arrays) {
+      if (array.level != live::fleet::ArrayHealth::Level::good) remarks.push_back(array.name + ": " + array.message);
       if (array.left_out > 0) {
         remarks.push_back(fmt::format("{}: {} frames were not published", array.name, array.left_out));
       }
@@ -91,13 +91,13 @@ std::string remarks_on(const fleet::RobotState& robot) {
 }
 
 Status list(const std::string& text) {
-  const Result<std::unique_ptr<fleet::Hub>> hub = connect_fleet<fleet::Hub>(text);
+  const Result<std::unique_ptr<live::fleet::Hub>> hub = connect_fleet<live::fleet::Hub>(text);
   if (!hub) return hub.error();
-  const Result<std::vector<fleet::RobotState>> robots = (*hub)->robots();
+  const Result<std::vector<live::fleet::RobotState>> robots = (*hub)->robots();
   if (!robots) return robots.error();
   fmt::print("{:<24} {:>12} {:>10} {:>12} {:>8} {:>12} {:>6} {:>9} {:>8} {:>7} {:>6}  {}\n", "robot", "messages", "MB",
              "last before", "lag", "told before", "arrays", "frames/s", "lost", "masked", "drift", "remarks");
-  for (const fleet::RobotState& robot : *robots) {
+  for (const live::fleet::RobotState& robot : *robots) {
     fmt::print("{:<24} {:>12} {:>10.1f} {:>12} {:>8} {:>12} {}  {}\n", robot.name, robot.messages,
                static_cast<double>(robot.bytes) / 1e6, age_of(robot.last), robot.lag, age_of(robot.health_time),
                figures_of(robot), remarks_on(robot));
@@ -106,9 +106,9 @@ Status list(const std::string& text) {
 }
 
 /// Those of the viewer, with the page of fleets at "/".
-std::vector<stream::Asset> page_assets() {
-  std::vector<stream::Asset> assets;
-  for (stream::Asset asset : viewer::assets()) {
+std::vector<out::websocket::Asset> page_assets() {
+  std::vector<out::websocket::Asset> assets;
+  for (out::websocket::Asset asset : viewer::assets()) {
     if (asset.path == "/index.html") continue;
     if (asset.path == "/fleet.html") asset.path = "/index.html";
     assets.push_back(asset);
@@ -118,14 +118,15 @@ std::vector<stream::Asset> page_assets() {
 
 Status serve_page(PageOptions& options) {
   const std::atomic<bool>& stop = stop_flag();
-  const Result<std::unique_ptr<fleet::Hub>> hub = connect_fleet<fleet::Hub>(options.hub);
+  const Result<std::unique_ptr<live::fleet::Hub>> hub = connect_fleet<live::fleet::Hub>(options.hub);
   if (!hub) return hub.error();
   options.server.notice = print_notice;
-  const Result<std::unique_ptr<stream::Server>> server = stream::Server::create(options.server, page_assets());
+  const Result<std::unique_ptr<out::websocket::Server>> server =
+      out::websocket::Server::create(options.server, page_assets());
   if (!server) return server.error();
-  fleet::FleetState fleet{.hub = fleet::without_password(options.hub)};
+  live::fleet::FleetState fleet{.hub = live::fleet::without_password(options.hub)};
   const auto look = [&] {
-    Result<std::vector<fleet::RobotState>> robots = (*hub)->robots();
+    Result<std::vector<live::fleet::RobotState>> robots = (*hub)->robots();
     fleet.error = robots ? "" : robots.error().message;
     if (robots) fleet.robots = *std::move(robots);
     (*server)->set_document("/fleet.json", "application/json", fleet_to_json(fleet, now()));

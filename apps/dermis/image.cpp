@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "dermis/files/atomic_file.hpp"
-#include "dermis/report/frame_picture.hpp"
+#include "dermis/bytes/files/atomic_file.hpp"
+#include "dermis/out/report/frame_picture.hpp"
 #include "seconds.hpp"
 #include "source_options.hpp"
 #include "stop_flag.hpp"
@@ -66,12 +66,13 @@ Status check(const ImageOptions& options) {
   return Done{};
 }
 
-std::string bytes_of(const ImageOptions& options, const std::vector<report::FramePicture>& pictures) {
+std::string bytes_of(const ImageOptions& options, const std::vector<out::report::FramePicture>& pictures) {
   if (options.to_s) {
-    return report::frame_film(pictures, std::chrono::duration_cast<std::chrono::milliseconds>(views::kPictureTime));
+    return out::report::frame_film(pictures,
+                                   std::chrono::duration_cast<std::chrono::milliseconds>(views::kPictureTime));
   }
-  if (options.out.ends_with(".svg")) return report::svg_document(report::frame_drawing(pictures.front()));
-  return report::frame_png(pictures.front());
+  if (options.out.ends_with(".svg")) return out::report::svg_document(out::report::frame_drawing(pictures.front()));
+  return out::report::frame_png(pictures.front());
 }
 
 Status image(const ImageOptions& options) {
@@ -80,10 +81,10 @@ Status image(const ImageOptions& options) {
   if (!range) return range.error();
   const Result<std::unique_ptr<ArrayView>> view = ArrayView::open(options.in, options.model, source_options());
   if (!view) return view.error();
-  const Result<std::vector<report::FramePicture>> pictures =
+  const Result<std::vector<out::report::FramePicture>> pictures =
       views::draw_pictures(**view, *range, options.high, &stop_flag());
   if (!pictures) return pictures.error();
-  Result<files::AtomicFile> file = files::AtomicFile::create(options.out);
+  Result<bytes::files::AtomicFile> file = bytes::files::AtomicFile::create(options.out);
   if (!file) return file.error();
   file->write(bytes_of(options, *pictures));
   if (Status committed = file->commit(); !committed) return committed;

@@ -12,14 +12,15 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "dermis/files/array_toml.hpp"
-#include "dermis/files/file_kind.hpp"
-#include "dermis/files/input.hpp"
-#include "dermis/fleet/stream_address.hpp"
-#include "dermis/pipeline/model.hpp"
-#include "dermis/recordings/frame_file_info.hpp"
-#include "dermis/recordings/frame_files.hpp"
-#include "dermis/report/model_facts.hpp"
+#include "dermis/bytes/files/array_toml.hpp"
+#include "dermis/bytes/files/file_kind.hpp"
+#include "dermis/bytes/files/input.hpp"
+#include "dermis/bytes/models/model_file.hpp"
+#include "dermis/bytes/recordings/frame_file_info.hpp"
+#include "dermis/bytes/recordings/frame_files.hpp"
+#include "dermis/live/fleet/stream_address.hpp"
+#include "dermis/out/report/model_facts.hpp"
+#include "dermis/touch/pipeline/model.hpp"
 #include "described_file.hpp"
 #include "shape_options.hpp"
 #include "unread_bytes.hpp"
@@ -27,7 +28,7 @@
 namespace dermis::app {
 namespace {
 
-using recordings::FrameFileInfo;
+using bytes::recordings::FrameFileInfo;
 
 struct InfoOptions {
   std::string file;
@@ -59,7 +60,7 @@ Json or_null(const std::string& text) {
   return text.empty() ? Json(nullptr) : Json(text);
 }
 
-Json array_json(const recordings::RecordedArrayInfo& array) {
+Json array_json(const bytes::recordings::RecordedArrayInfo& array) {
   return {{"name", array.name},
           {"rows", array.shape ? Json(array.shape->rows) : Json(nullptr)},
           {"cols", array.shape ? Json(array.shape->cols) : Json(nullptr)},
@@ -98,15 +99,15 @@ void print_json(const std::string& file, const std::string& format, const FrameF
                {"software", or_null(info.software)},
                {"arrays", Json::array()},
                {"topics", Json::array()}};
-  for (const recordings::RecordedArrayInfo& array : info.arrays) json["arrays"].push_back(array_json(array));
-  for (const recordings::RecordingTopic& topic : info.topics) {
+  for (const bytes::recordings::RecordedArrayInfo& array : info.arrays) json["arrays"].push_back(array_json(array));
+  for (const bytes::recordings::RecordingTopic& topic : info.topics) {
     json["topics"].push_back({{"name", topic.name}, {"type", topic.type}, {"messages", topic.messages}});
   }
   print_json(json);
 }
 
 std::string mend_of(const FrameFileInfo& info) {
-  const bool is_recording = info.format == recordings::FrameFormat::mcap;
+  const bool is_recording = info.format == bytes::recordings::FrameFormat::mcap;
   return is_recording ? "'dermis recover' makes it so" : "its last frame is cut off";
 }
 
@@ -115,7 +116,7 @@ void print_line(const char* what, const std::string& value) {
 }
 
 /// "chest  16x16  1000 frames, 0 lost (with its description), model fnv1a64:..."
-std::string array_text(const recordings::RecordedArrayInfo& array) {
+std::string array_text(const bytes::recordings::RecordedArrayInfo& array) {
   std::string text = array.name;
   if (array.shape) text += fmt::format("  {}x{}", array.shape->rows, array.shape->cols);
   text += fmt::format("  {} frames, {} lost", array.frames, array.lost);
@@ -140,12 +141,12 @@ void print_text(const std::string& format, const FrameFileInfo& info) {
     print_line("temperature",
                fmt::format("{:.2f} to {:.2f} C", info.temperature_celsius->first, info.temperature_celsius->second));
   }
-  for (const recordings::RecordedArrayInfo& array : info.arrays) print_line("array", array_text(array));
+  for (const bytes::recordings::RecordedArrayInfo& array : info.arrays) print_line("array", array_text(array));
   print_line("array", info.notes.name + (info.notes.array_toml.empty() ? "" : " (with its description)"));
   print_line("model", info.notes.model_hash);
   print_line("simulated", info.notes.simulation);
   print_line("software", info.software);
-  for (const recordings::RecordingTopic& topic : info.topics) {
+  for (const bytes::recordings::RecordingTopic& topic : info.topics) {
     fmt::print("{:<14}{}  {}  {} messages\n", "topic", topic.name, topic.type, topic.messages);
   }
 }
@@ -162,39 +163,39 @@ void print(const InfoOptions& options, const std::string& format, const FrameFil
 struct Described {
   const char* format;
   ArrayDescription array;
-  std::vector<report::Fact> calibration{};
+  std::vector<out::report::Fact> calibration{};
 };
 
 /// Reads a file that is a description by its content; empty for any other.
 Result<std::optional<Described>> read_described(const std::string& path) {
   constexpr std::size_t kLooked = 4096;
-  const std::string_view kind = files::kind_of(files::first_bytes_of(path, kLooked));
-  if (recordings::frame_format(path)) return std::optional<Described>();
-  if (kind == files::kTomlKind) {
-    Result<ArrayDescription> array = files::read_array(path);
+  const std::string_view kind = bytes::files::kind_of(bytes::files::first_bytes_of(path, kLooked));
+  if (bytes::recordings::frame_format(path)) return std::optional<Described>();
+  if (kind == bytes::files::kTomlKind) {
+    Result<ArrayDescription> array = bytes::files::read_array(path);
     if (!array) return array.error();
     return std::optional(Described{"description of an array", *std::move(array)});
   }
-  if (kind != files::kSafetensorsKind) return std::optional<Described>();
-  const Result<pipeline::Model> model = pipeline::read_model(path);
+  if (kind != bytes::files::kSafetensorsKind) return std::optional<Described>();
+  const Result<touch::pipeline::Model> model = bytes::models::read_model(path);
   if (!model) return model.error();
-  return std::optional(Described{"model", model->array, report::calibration_facts(*model)});
+  return std::optional(Described{"model", model->array, out::report::calibration_facts(*model)});
 }
 
-Json json_of(const std::vector<report::Fact>& facts) {
+Json json_of(const std::vector<out::report::Fact>& facts) {
   Json json = Json::object();
   for (const auto& [name, text] : facts) json[name] = text;
   return json;
 }
 
 void print_described(const InfoOptions& options, const Described& described) {
-  const std::vector<report::Fact> array = report::array_facts(described.array);
+  const std::vector<out::report::Fact> array = out::report::array_facts(described.array);
   if (options.json) {
     const Json json = {{"file", options.file},
                        {"format", described.format},
                        {"array", json_of(array)},
                        {"calibration", json_of(described.calibration)},
-                       {"array_toml", files::array_to_toml(described.array)}};
+                       {"array_toml", bytes::files::array_to_toml(described.array)}};
     return print_json(json);
   }
   constexpr const char* kWide = "{:<25}{}\n";
@@ -211,7 +212,7 @@ Error with_look(Error error, const std::string& file) {
 
 /// Numbers without a head are one frame, or many.
 std::string other_look(const std::string& file, const FrameFileInfo& info) {
-  const bool is_one = info.format == recordings::FrameFormat::text_matrix && info.frames == 1;
+  const bool is_one = info.format == bytes::recordings::FrameFormat::text_matrix && info.frames == 1;
   return is_one ? look_of_unread_file(file) : std::string();
 }
 
@@ -219,9 +220,9 @@ std::string other_look(const std::string& file, const FrameFileInfo& info) {
 Status print_info(const InfoOptions& options, const DescribedFile& file) {
   const Result<std::unique_ptr<FrameSource>> source = file.open();
   if (!source) return source.error();
-  const Result<FrameFileInfo> info = recordings::frame_source_info(**source);
+  const Result<FrameFileInfo> info = bytes::recordings::frame_source_info(**source);
   if (!info) return info.error();
-  print(options, fleet::is_stream_address(options.file) ? "frames of a stream" : "bytes of a layout", *info);
+  print(options, live::fleet::is_stream_address(options.file) ? "frames of a stream" : "bytes of a layout", *info);
   return Done{};
 }
 
@@ -236,9 +237,9 @@ Status print_info(const InfoOptions& options) {
     print_described(options, **described);
     return Done{};
   }
-  const Result<FrameFileInfo> info = recordings::frame_file_info(options.file, *shape);
+  const Result<FrameFileInfo> info = bytes::recordings::frame_file_info(options.file, *shape);
   if (!info) return with_look(info.error(), options.file);
-  print(options, recordings::to_string(info->format), *info, other_look(options.file, *info));
+  print(options, bytes::recordings::to_string(info->format), *info, other_look(options.file, *info));
   if (info->frames == 0) {
     return bad_input(options.file + ": has no frame" + (info->unread.empty() ? "" : ": " + info->unread));
   }

@@ -8,7 +8,7 @@
 #include <mutex>
 #include <thread>
 
-#include "dermis/files/output_place.hpp"
+#include "dermis/bytes/files/output_place.hpp"
 #include "status_line.hpp"
 
 namespace dermis::app {
@@ -36,7 +36,7 @@ bool is_ignored(int signal_number) {  // by nohup
 void wait_for(sigset_t signals) {
   int received = 0;
   if (sigwait(&signals, &received) != 0) return;
-  files::remove_unfinished_files();
+  bytes::files::remove_unfinished_files();
   notice().mutex.lock();
   if (!notice().text.empty()) print_notice("dermis: " + notice().text);
   ::_exit(kExitSignalled + received);

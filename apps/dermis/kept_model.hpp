@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <string>
 
-#include "dermis/core/result.hpp"
-#include "dermis/files/kept_copy.hpp"
+#include "dermis/bytes/files/kept_copy.hpp"
+#include "dermis/touch/frames/result.hpp"
 #include "status_line.hpp"
 
 namespace dermis::app {
@@ -16,7 +16,7 @@ namespace dermis::app {
 inline Status keep_earlier_model(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return Done{};
-  const Result<std::string> copy = files::keep_copy(path, std::chrono::system_clock::now());
+  const Result<std::string> copy = bytes::files::keep_copy(path, std::chrono::system_clock::now());
   if (!copy) return copy.error();
   print_notice("'" + path + "' as it was: '" + *copy + "'");
   return Done{};

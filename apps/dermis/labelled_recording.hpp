@@ -5,16 +5,16 @@
 #include <string>
 #include <vector>
 
-#include "dermis/core/frames.hpp"
-#include "dermis/core/loads.hpp"
-#include "dermis/core/result.hpp"
-#include "dermis/pipeline/model.hpp"
+#include "dermis/touch/frames/frames.hpp"
+#include "dermis/touch/frames/loads.hpp"
+#include "dermis/touch/frames/result.hpp"
+#include "dermis/touch/pipeline/model.hpp"
 
 namespace dermis::app {
 
 /// A model, and frames of its array under known loads.
 struct LabelledRecording {
-  pipeline::Model model;
+  touch::pipeline::Model model;
   std::vector<RawFrame> frames;
   std::vector<Load> loads;
 

@@ -11,13 +11,13 @@
 
 #include "commands.hpp"
 #include "confusion_table.hpp"
-#include "dermis/files/atomic_file.hpp"
-#include "dermis/recognition/classes_file.hpp"
-#include "dermis/recognition/comparison.hpp"
-#include "dermis/recognition/dataset.hpp"
-#include "dermis/recognition/learning.hpp"
-#include "dermis/recognition/predictions.hpp"
-#include "dermis/report/recognition_report.hpp"
+#include "dermis/bytes/files/atomic_file.hpp"
+#include "dermis/learn/recognition/classes_file.hpp"
+#include "dermis/learn/recognition/comparison.hpp"
+#include "dermis/learn/recognition/dataset.hpp"
+#include "dermis/learn/recognition/learning.hpp"
+#include "dermis/learn/recognition/predictions.hpp"
+#include "dermis/out/report/recognition_report.hpp"
 #include "example_options.hpp"
 #include "interruption.hpp"
 #include "kept_model.hpp"
@@ -29,11 +29,11 @@
 namespace dermis::app {
 namespace {
 
-using recognition::Answers;
-using recognition::LabelledFrames;
-using recognition::Learned;
-using recognition::LearningSet;
-using recognition::Split;
+using learn::recognition::Answers;
+using learn::recognition::LabelledFrames;
+using learn::recognition::Learned;
+using learn::recognition::LearningSet;
+using learn::recognition::Split;
 using Clock = std::chrono::steady_clock;
 
 struct LearnOptions {
@@ -65,16 +65,16 @@ Status check_options(const LearnOptions& options) {
 Status write_predictions(const std::string& path, const LabelledFrames& data, const LearningSet& set,
                          const std::vector<Split>& splits, Answers answers, Progress& progress) {
   const auto show = [&](double share) { progress.show("splits", share); };
-  const Result<std::string> lines = recognition::predictions_of(data, set, splits, answers, show);
+  const Result<std::string> lines = learn::recognition::predictions_of(data, set, splits, answers, show);
   if (!lines) return lines.error();
-  Result<files::AtomicFile> file = files::AtomicFile::create(path);
+  Result<bytes::files::AtomicFile> file = bytes::files::AtomicFile::create(path);
   if (!file) return file.error();
   file->write(*lines);
   return file->commit();
 }
 
 void print_report(const Learned& learned, double seconds) {
-  const recognition::LearningReport& report = learned.report;
+  const learn::recognition::LearningReport& report = learned.report;
   const std::int64_t examples =
       std::accumulate(learned.classes.examples.begin(), learned.classes.examples.end(), std::int64_t{0});
   const double rate_hz = learned.classes.layout.rate_hz;
@@ -85,7 +85,7 @@ void print_report(const Learned& learned, double seconds) {
              report.by_group ? "of whole recordings, subjects or sessions" : "in order of time",
              100.0 * report.calibration_error);
   print_confusion(learned.classes.names, report.confusion);
-  const std::vector<std::string> lines = recognition::advice(learned);
+  const std::vector<std::string> lines = learn::recognition::advice(learned);
   if (!lines.empty()) fmt::print("\n");
   for (const std::string& line : lines) fmt::print("{}\n", line);
 }
@@ -94,10 +94,10 @@ void print_report(const Learned& learned, double seconds) {
 Status write_report(const std::string& folder, const LabelledFrames& data, const LearningSet& set,
                     const Learned& learned, Progress& progress) {
   if (folder.empty()) return Done{};
-  const auto estimators = recognition::compare_estimators(data, set, learned, {},
-                                                          [&](double share) { progress.show("comparison", share); });
+  const auto estimators = learn::recognition::compare_estimators(
+      data, set, learned, {}, [&](double share) { progress.show("comparison", share); });
   if (!estimators) return estimators.error();
-  return report::write_recognition_report(folder, data, learned, *estimators);
+  return out::report::write_recognition_report(folder, data, learned, *estimators);
 }
 
 Status write_model(const LearnOptions& options, const LabelledFrames& data, const LearningSet& set,
@@ -106,9 +106,9 @@ Status write_model(const LearnOptions& options, const LabelledFrames& data, cons
   std::iota(all.begin(), all.end(), std::size_t{0});
   Result<Learned> learned = set.learn(all);
   if (!learned) return learned.error();
-  learned->classes.touches = recognition::learn_touches(data);
+  learned->classes.touches = learn::recognition::learn_touches(data);
   if (Status kept = keep_earlier_model(options.out); !kept) return kept;
-  if (Status written = recognition::write_classes(options.out, learned->classes); !written) return written;
+  if (Status written = learn::recognition::write_classes(options.out, learned->classes); !written) return written;
   print_report(*learned, std::chrono::duration<double>(Clock::now() - start).count());
   if (const auto& touches = learned->classes.touches) {
     print_finding(data, *touches);
@@ -127,12 +127,12 @@ Status learn(const LearnOptions& options) {
   std::vector<Split> splits;
   std::vector<Split> open_splits;
   if (!options.splits.empty()) {
-    Result<std::vector<Split>> read = recognition::read_splits(options.splits, data->labels);
+    Result<std::vector<Split>> read = learn::recognition::read_splits(options.splits, data->labels);
     if (!read) return read.error();
     splits = *std::move(read);
   }
   if (!options.open.empty()) {
-    Result<std::vector<Split>> read = recognition::read_open_splits(options.open, data->labels);
+    Result<std::vector<Split>> read = learn::recognition::read_open_splits(options.open, data->labels);
     if (!read) return read.error();
     open_splits = *std::move(read);
   }

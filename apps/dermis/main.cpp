@@ -11,7 +11,7 @@
 #include <system_error>
 
 #include "commands.hpp"
-#include "dermis/files/output_place.hpp"
+#include "dermis/bytes/files/output_place.hpp"
 #include "file_places.hpp"
 #include "lost_input.hpp"
 #include "status_line.hpp"
@@ -70,7 +70,7 @@ Result<int> perform(const Action& action) {
 /// Whoever reads the standard output has enough, as head has after some lines.
 bool has_reader_gone(const Error& error) {
   return error.message == cannot_print(EPIPE).message ||
-         error.message == files::cannot_write(kStandardOutput, EPIPE).message;
+         error.message == bytes::files::cannot_write(kStandardOutput, EPIPE).message;
 }
 
 int exit_status(const Error& error) {

@@ -7,7 +7,7 @@
 #include <cctype>
 #include <string_view>
 
-#include "dermis/core/version.hpp"
+#include "dermis/touch/frames/version.hpp"
 #include "reference.hpp"
 
 namespace dermis::app {

@@ -11,7 +11,7 @@
 #include <system_error>
 
 #include "commands.hpp"
-#include "dermis/files/atomic_file.hpp"
+#include "dermis/bytes/files/atomic_file.hpp"
 #include "dermis/paper/bank_reproduction.hpp"
 #include "dermis/paper/paper_report.hpp"
 #include "dermis/paper/peaks_reproduction.hpp"
@@ -36,8 +36,8 @@ constexpr paper::BankEffort kQuickBank{10, 20};
 constexpr std::size_t kQuickSide = 4;
 constexpr std::size_t kPaperSide = 16;
 
-double max_relative_error(const calibration::Evaluation& evaluation, const std::string& estimator) {
-  for (const calibration::EstimatorResult& result : evaluation.estimators) {
+double max_relative_error(const learn::calibration::Evaluation& evaluation, const std::string& estimator) {
+  for (const learn::calibration::EstimatorResult& result : evaluation.estimators) {
     if (result.name == estimator) return result.relative_error.max.value_or(NAN);
   }
   return NAN;
@@ -106,7 +106,7 @@ Status check_folder(const std::string& directory) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
   if (error) return failed("cannot make the directory '" + directory + "': " + error.message());
-  const Result<files::AtomicFile> writable = files::AtomicFile::create(directory + "/index.html");
+  const Result<bytes::files::AtomicFile> writable = bytes::files::AtomicFile::create(directory + "/index.html");
   if (!writable) return writable.error();
   return Done{};
 }

@@ -23,7 +23,7 @@
 namespace dermis::app {
 namespace {
 
-using calibration::SampleDatabase;
+using learn::calibration::SampleDatabase;
 using paper::BankTrainingReport;
 using paper::Ranks;
 
@@ -69,8 +69,8 @@ Result<SampleDatabase> read_samples(const PaperCalibrateOptions& options) {
   const Result<CalibrationInput> input = CalibrationInput::read(options.files, options.bank);
   if (!input) return input.error();
   Progress progress(input->array.name);
-  return calibration::build_sample_database(input->array, input->frames, input->loads, input->settle,
-                                            [&](double share) { progress.show("circuit", share); });
+  return learn::calibration::build_sample_database(input->array, input->frames, input->loads, input->settle,
+                                                   [&](double share) { progress.show("circuit", share); });
 }
 
 /// The most memory that this process has had [bytes].

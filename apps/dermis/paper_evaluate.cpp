@@ -17,7 +17,7 @@ struct PaperEvaluateOptions {
 };
 
 Status evaluate(const PaperEvaluateOptions& options) {
-  if (const auto note = files::checksum_note(options.bank, paper::kPaperBankFormat)) print_notice(*note);
+  if (const auto note = bytes::files::checksum_note(options.bank, paper::kPaperBankFormat)) print_notice(*note);
   Result<paper::PaperBank> bank = paper::read_paper_bank(options.bank);
   if (!bank) return bank.error();
   return evaluate_forces(options.forces, &*bank);

@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "dermis/learn/recognition/comparison.hpp"
+#include "dermis/learn/recognition/learning.hpp"
 #include "dermis/paper/bp_classifier.hpp"
-#include "dermis/recognition/comparison.hpp"
-#include "dermis/recognition/learning.hpp"
 #include "example_options.hpp"
 #include "interruption.hpp"
 #include "paper_commands.hpp"
@@ -19,8 +19,8 @@
 namespace dermis::app {
 namespace {
 
-using recognition::EstimatorFigures;
-using recognition::LearningSet;
+using learn::recognition::EstimatorFigures;
+using learn::recognition::LearningSet;
 
 void print_table(std::span<const EstimatorFigures> estimators) {
   fmt::print("{:<16}{:>10}{:>20}\n", "estimator", "accuracy", "calibration error");
@@ -32,18 +32,18 @@ void print_table(std::span<const EstimatorFigures> estimators) {
 }
 
 Status learn(const recognising::ExampleOptions& examples) {
-  const Result<recognition::LabelledFrames> data = recognising::read_examples(examples, source_options());
+  const Result<learn::recognition::LabelledFrames> data = recognising::read_examples(examples, source_options());
   if (!data) return data.error();
   Progress progress;
   const Result<LearningSet> set = LearningSet::create(*data, [&](double share) { progress.show("features", share); });
   if (!set) return set.error();
   std::vector<std::size_t> all(data->labels.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  const Result<recognition::Learned> learned = set->learn(all);
+  const Result<learn::recognition::Learned> learned = set->learn(all);
   if (!learned) return learned.error();
-  const recognition::ComparedEstimator network{"BP network", paper::answer_by_bp_network};
-  const auto estimators = recognition::compare_estimators(*data, *set, *learned, std::span(&network, 1),
-                                                          [&](double share) { progress.show("comparison", share); });
+  const learn::recognition::ComparedEstimator network{"BP network", paper::answer_by_bp_network};
+  const auto estimators = learn::recognition::compare_estimators(
+      *data, *set, *learned, std::span(&network, 1), [&](double share) { progress.show("comparison", share); });
   if (!estimators) return estimators.error();
   print_table(*estimators);
   return Done{};

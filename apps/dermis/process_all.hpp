@@ -2,14 +2,14 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
-#include "dermis/operation/operation.hpp"
+#include "dermis/live/forces/operation.hpp"
 #include "stop_flag.hpp"
 
 namespace dermis::app {
 
 /// Forces of frame after frame, until the source ends or the command is stopped. `each(raw, force)` sees each of them.
 template <typename Each>
-Status process_all(operation::Operation& operation, Each each) {
+Status process_all(live::forces::Operation& operation, Each each) {
   RawFrame raw;
   ForceFrame force;
   while (!stop_flag().load()) {

@@ -19,7 +19,7 @@ constexpr std::size_t kMostSigns = 48;
 constexpr std::string_view kSigns = " .:-=+*#%@";
 
 /// The numbers of a row, then its readings as signs between those of the least and the greatest of the frame.
-std::string row_text(const describing::Proposal& proposal, std::size_t row, float least, float most) {
+std::string row_text(const bytes::proposals::Proposal& proposal, std::size_t row, float least, float most) {
   const std::size_t cols = proposal.shape.cols;
   const float* const readings = proposal.example.data() + row * cols;
   std::string numbers;
@@ -35,7 +35,7 @@ std::string row_text(const describing::Proposal& proposal, std::size_t row, floa
   return fmt::format("  {}   |{}|\n", numbers, signs);
 }
 
-std::string example_text(const describing::Proposal& proposal) {
+std::string example_text(const bytes::proposals::Proposal& proposal) {
   float least = INFINITY;
   float most = -INFINITY;
   for (const float reading : proposal.example) {
@@ -52,7 +52,7 @@ std::string example_text(const describing::Proposal& proposal) {
 
 }  // namespace
 
-std::string proposal_text(const describing::Proposal& proposal, std::size_t place) {
+std::string proposal_text(const bytes::proposals::Proposal& proposal, std::size_t place) {
   std::string text = fmt::format("{}. {}\n   {} frames, {:.1f} % of the bytes left over\n", place, proposal.summary,
                                  proposal.frames, 100.0 * proposal.left_share);
   for (const std::string& reason : proposal.reasons) text += "   + " + reason + "\n";

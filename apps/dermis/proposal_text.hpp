@@ -4,11 +4,11 @@
 
 #include <string>
 
-#include "dermis/describing/proposals.hpp"
+#include "dermis/bytes/proposals/proposals.hpp"
 
 namespace dermis::app {
 
 /// A proposal for a person, in lines; `place` counts from 1.
-[[nodiscard]] std::string proposal_text(const describing::Proposal& proposal, std::size_t place);
+[[nodiscard]] std::string proposal_text(const bytes::proposals::Proposal& proposal, std::size_t place);
 
 }  // namespace dermis::app

@@ -6,8 +6,9 @@
 #include <string>
 
 #include "commands.hpp"
-#include "dermis/calibration/recalibration.hpp"
-#include "dermis/pipeline/model.hpp"
+#include "dermis/bytes/models/model_file.hpp"
+#include "dermis/learn/calibration/recalibration.hpp"
+#include "dermis/touch/pipeline/model.hpp"
 #include "interruption.hpp"
 #include "kept_model.hpp"
 #include "labelled_recording.hpp"
@@ -16,7 +17,7 @@
 namespace dermis::app {
 namespace {
 
-using calibration::Recalibration;
+using learn::calibration::Recalibration;
 
 struct RecalibrateOptions {
   std::string model;
@@ -34,11 +35,11 @@ Status recalibrate(const RecalibrateOptions& options) {
   const Result<LabelledRecording> recording = LabelledRecording::read(options.model, options.frames, options.loads);
   if (!recording) return recording.error();
   const auto& [model, frames, loads] = *recording;
-  const Result<Recalibration> recalibration = calibration::recalibrate(model, frames, loads);
+  const Result<Recalibration> recalibration = learn::calibration::recalibrate(model, frames, loads);
   if (!recalibration) return bad_input(options.loads + ": " + recalibration.error().message);
   if (Status kept = keep_earlier_model(out); !kept) return kept;
-  if (Status written = pipeline::write_model(out, recalibration->model); !written) return written;
-  fmt::print("{}\n", calibration::describe(*recalibration));
+  if (Status written = bytes::models::write_model(out, recalibration->model); !written) return written;
+  fmt::print("{}\n", learn::calibration::describe(*recalibration));
   return Done{};
 }
 

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "commands.hpp"
-#include "dermis/files/atomic_file.hpp"
-#include "dermis/files/text.hpp"
+#include "dermis/bytes/files/atomic_file.hpp"
+#include "dermis/bytes/files/text.hpp"
 #include "recognising/source_recogniser.hpp"
 #include "source_options.hpp"
 #include "status_line.hpp"
@@ -17,11 +17,11 @@
 namespace dermis::app {
 namespace {
 
+using learn::recognition::Classes;
+using learn::recognition::Verdict;
 using recognising::RecognitionInput;
 using recognising::SourceRecogniser;
 using recognising::SourceRecognition;
-using recognition::Classes;
-using recognition::Verdict;
 
 constexpr const char* kHeader =
     "first,last,time_s,class,probability,likeliest,second,second_probability,unknown_score,reason\n";
@@ -37,7 +37,7 @@ std::string csv_line(const SourceRecognition& found, const Classes& classes) {
   const std::string& likeliest = classes.names[answer.likeliest];
   const bool is_known = answer.verdict == Verdict::known;
   std::string line = fmt::format("{},{},", frames.first, frames.last);
-  files::append_seconds(line, found.time);
+  bytes::files::append_seconds(line, found.time);
   line +=
       fmt::format(",{},{:.4f},{},{},{:.4f},{:.4f},{}\n", is_known ? likeliest : "unknown",
                   answer.probabilities[answer.likeliest], likeliest, classes.names[answer.second],
@@ -54,7 +54,7 @@ std::string json_line(const SourceRecognition& found, const Classes& classes) {
   const bool is_known = answer.verdict == Verdict::known;
   const nlohmann::ordered_json line = {{"first", frames.first},
                                        {"last", frames.last},
-                                       {"time_s", files::seconds_of(found.time)},
+                                       {"time_s", bytes::files::seconds_of(found.time)},
                                        {"class", is_known ? classes.names[answer.likeliest] : "unknown"},
                                        {"unknown_score", answer.unknown_score},
                                        {"reason", is_known ? "" : to_string(answer.verdict)},
@@ -62,7 +62,7 @@ std::string json_line(const SourceRecognition& found, const Classes& classes) {
   return line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
-Status recognise_all(SourceRecogniser& recogniser, bool json, files::AtomicFile& out) {
+Status recognise_all(SourceRecogniser& recogniser, bool json, bytes::files::AtomicFile& out) {
   const auto write = json ? json_line : csv_line;
   for (;;) {
     const Result<std::optional<SourceRecognition>> found = recogniser.next();
@@ -79,7 +79,7 @@ Status recognise(const RecogniseOptions& options) {
   input.loads.tare = input.loads.tare || input.loads.tare_force;
   Result<SourceRecogniser> recogniser = SourceRecogniser::open(input);
   if (!recogniser) return recogniser.error();
-  Result<files::AtomicFile> out = files::AtomicFile::create(options.out);
+  Result<bytes::files::AtomicFile> out = bytes::files::AtomicFile::create(options.out);
   if (!out) return out.error();
   if (!recogniser->knows_rate()) {
     print_notice(input.classes +

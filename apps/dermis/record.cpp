@@ -8,10 +8,11 @@
 #include <string>
 
 #include "commands.hpp"
-#include "dermis/acquisition/recorder.hpp"
-#include "dermis/files/array_toml.hpp"
-#include "dermis/operation/frame_output.hpp"
-#include "dermis/pipeline/model.hpp"
+#include "dermis/bytes/devices/recorder.hpp"
+#include "dermis/bytes/files/array_toml.hpp"
+#include "dermis/bytes/models/model_file.hpp"
+#include "dermis/live/forces/frame_output.hpp"
+#include "dermis/touch/pipeline/model.hpp"
 #include "seconds.hpp"
 #include "source_options.hpp"
 #include "status_line.hpp"
@@ -33,18 +34,18 @@ struct RecordOptions {
 /// The array of the frames and what computes their forces, as far as they were given.
 struct Known {
   std::optional<ArrayDescription> array;
-  std::optional<pipeline::Model> model;
+  std::optional<touch::pipeline::Model> model;
 };
 
 Result<Known> read_known(const RecordOptions& options) {
   Known known;
   if (!options.array.empty()) {
-    Result<ArrayDescription> array = files::read_array(options.array);
+    Result<ArrayDescription> array = bytes::files::read_array(options.array);
     if (!array) return array.error();
     known.array = std::move(*array);
   }
   if (!options.model.empty()) {
-    Result<pipeline::Model> model = pipeline::read_model(options.model);
+    Result<touch::pipeline::Model> model = bytes::models::read_model(options.model);
     if (!model) return model.error();
     if (known.array && (known.array->rows != model->array.rows || known.array->cols != model->array.cols)) {
       return bad_input(fmt::format("{}: is for {}x{} taxels, {} has {}x{}", options.model, model->array.rows,
@@ -56,7 +57,7 @@ Result<Known> read_known(const RecordOptions& options) {
   return known;
 }
 
-std::string with_queue(const acquisition::RecorderProgress& progress) {
+std::string with_queue(const bytes::devices::RecorderProgress& progress) {
   std::string text = summary(progress.frames, progress.source) + fmt::format(", queue {}", progress.queue.depth);
   if (progress.queue.waits > 0) text += fmt::format(", waited {} times", progress.queue.waits);
   return text;
@@ -74,7 +75,7 @@ Error without_frames(const std::string& from, const Status& recorded, std::span<
 
 Status record(const RecordOptions& options) {
   std::atomic<bool>& stop = stop_flag();
-  acquisition::RecorderOptions recorder;
+  bytes::devices::RecorderOptions recorder;
   recorder.frames = options.frames;
   recorder.stop = &stop;
   if (options.seconds) {
@@ -85,22 +86,22 @@ Status record(const RecordOptions& options) {
   const Result<Known> known = read_known(options);
   if (!known) return known.error();
   const ArrayDescription* array = known->array ? &*known->array : nullptr;
-  operation::FrameOutput output{options.out, array, known->model ? &*known->model : nullptr, options.model, {}};
-  if (Status possible = operation::check_output(output); !possible) return possible;
+  live::forces::FrameOutput output{options.out, array, known->model ? &*known->model : nullptr, options.model, {}};
+  if (Status possible = live::forces::check_output(output); !possible) return possible;
   LiveLine line;
-  sources::SourceOptions source_is = source_options(array);
+  live::sources::SourceOptions source_is = source_options(array);
   source_is.simulated = [&](double share) { line.show(fmt::format("simulating the scene: {:.0f} %", 100.0 * share)); };
   FirstBytes first;
   source_is.received = [&](std::span<const std::uint8_t> bytes) { first.add(bytes); };
-  Result<std::unique_ptr<FrameSource>> source = sources::open_source(options.from, source_is);
+  Result<std::unique_ptr<FrameSource>> source = live::sources::open_source(options.from, source_is);
   if (!source) return source.error();
-  output.notes = sources::notes_of_source(**source, options.from);
+  output.notes = live::sources::notes_of_source(**source, options.from);
   recorder.source_stops = (*source)->is_live();
 
-  recorder.progress = [&](const acquisition::RecorderProgress& progress) { line.show(with_queue(progress)); };
-  acquisition::RecorderProgress last;
-  Status recorded = acquisition::record(
-      **source, [&](const FrameShape& shape) { return operation::create_recording(output, shape); }, recorder, last);
+  recorder.progress = [&](const bytes::devices::RecorderProgress& progress) { line.show(with_queue(progress)); };
+  bytes::devices::RecorderProgress last;
+  Status recorded = bytes::devices::record(
+      **source, [&](const FrameShape& shape) { return live::forces::create_recording(output, shape); }, recorder, last);
   line.end();
   if (last.frames > 0) {
     std::string sum = options.out + ": " + summary(last.frames, last.source);

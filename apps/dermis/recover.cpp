@@ -6,8 +6,8 @@
 #include <string>
 
 #include "commands.hpp"
-#include "dermis/recordings/frame_files.hpp"
-#include "dermis/recordings/recording.hpp"
+#include "dermis/bytes/recordings/frame_files.hpp"
+#include "dermis/bytes/recordings/recording.hpp"
 
 namespace dermis::app {
 namespace {
@@ -17,7 +17,7 @@ struct RecoverOptions {
   std::string out;
 };
 
-std::string lost_text(const recordings::Recovery& recovery) {
+std::string lost_text(const bytes::recordings::Recovery& recovery) {
   std::string text;
   if (recovery.damaged_chunks > 0) {
     text += fmt::format("; {} damaged chunk{} with {} messages", recovery.damaged_chunks,
@@ -31,12 +31,12 @@ std::string lost_text(const recordings::Recovery& recovery) {
 
 Status recover(const RecoverOptions& options) {
   for (const std::string& path : {options.in, options.out}) {
-    const Result<recordings::FrameFormat> format = recordings::frame_format(path);
-    if (format && *format == recordings::FrameFormat::mcap) continue;
+    const Result<bytes::recordings::FrameFormat> format = bytes::recordings::frame_format(path);
+    if (format && *format == bytes::recordings::FrameFormat::mcap) continue;
     return bad_input(
         fmt::format("'{}': is no .mcap recording; files of other formats are complete or not there", path));
   }
-  const Result<recordings::Recovery> recovery = recordings::recover_recording(options.in, options.out);
+  const Result<bytes::recordings::Recovery> recovery = bytes::recordings::recover_recording(options.in, options.out);
   if (!recovery) return recovery.error();
   fmt::print("{}: {} frames, {} messages{}\n", options.out, recovery->frames, recovery->messages, lost_text(*recovery));
   return Done{};

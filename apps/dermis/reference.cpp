@@ -6,7 +6,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "dermis/files/atomic_file.hpp"
+#include "dermis/bytes/files/atomic_file.hpp"
 
 namespace dermis::app {
 namespace {
@@ -15,7 +15,7 @@ Status write_text(const std::filesystem::path& path, std::string_view text) {
   std::error_code error;
   std::filesystem::create_directories(path.parent_path(), error);
   if (error) return failed("cannot create '" + path.parent_path().string() + "': " + error.message());
-  Result<files::AtomicFile> file = files::AtomicFile::create(path.string());
+  Result<bytes::files::AtomicFile> file = bytes::files::AtomicFile::create(path.string());
   if (!file) return file.error();
   file->write(text);
   return file->commit();

@@ -5,17 +5,18 @@
 #include <string>
 
 #include "commands.hpp"
-#include "dermis/operation/frame_output.hpp"
-#include "dermis/pipeline/model.hpp"
-#include "dermis/recordings/frame_files.hpp"
-#include "dermis/sources/pacer.hpp"
+#include "dermis/bytes/models/model_file.hpp"
+#include "dermis/bytes/recordings/frame_files.hpp"
+#include "dermis/live/forces/frame_output.hpp"
+#include "dermis/live/sources/pacer.hpp"
+#include "dermis/touch/pipeline/model.hpp"
 #include "source_options.hpp"
 #include "stop_flag.hpp"
 
 namespace dermis::app {
 namespace {
 
-using operation::FrameOutput;
+using live::forces::FrameOutput;
 
 struct ReplayOptions {
   std::string recording;
@@ -25,11 +26,11 @@ struct ReplayOptions {
 };
 
 Result<std::unique_ptr<FrameSink>> create_sink(const FrameOutput& output, const FrameShape& shape) {
-  const Result<recordings::FrameFormat> format = recordings::output_format(output.path);
+  const Result<bytes::recordings::FrameFormat> format = bytes::recordings::output_format(output.path);
   if (!format) return format.error();
-  const bool is_table = *format == recordings::FrameFormat::csv;
-  return output.model != nullptr && is_table ? operation::create_forces(output)
-                                             : operation::create_recording(output, shape);
+  const bool is_table = *format == bytes::recordings::FrameFormat::csv;
+  return output.model != nullptr && is_table ? live::forces::create_forces(output)
+                                             : live::forces::create_recording(output, shape);
 }
 
 /// Frame times of the recording -> moments of the replay.
@@ -41,13 +42,13 @@ class Tempo {
   /// False where it is to stop.
   bool wait_for(Nanos time) {
     if (!(speed_ > 0.0)) return !stop_->load();
-    return pacer_.wait_until(sources::due_after(first_time_, time, speed_));
+    return pacer_.wait_until(live::sources::due_after(first_time_, time, speed_));
   }
 
  private:
   double speed_;
   Nanos first_time_;
-  sources::Pacer pacer_;
+  live::sources::Pacer pacer_;
   const std::atomic<bool>* stop_;
 };
 
@@ -56,14 +57,14 @@ Status replay(const ReplayOptions& options) {
   if (!is_pace && options.speed != 0.0) {
     return bad_input("--speed: must be 0 (as fast as it goes), or 0.001 to 1e6 times the recorded one");
   }
-  std::optional<pipeline::Model> model;
+  std::optional<touch::pipeline::Model> model;
   if (!options.model.empty()) {
-    Result<pipeline::Model> read = pipeline::read_model(options.model);
+    Result<touch::pipeline::Model> read = bytes::models::read_model(options.model);
     if (!read) return read.error();
     model = std::move(*read);
   }
   const ArrayDescription* array = model ? &model->array : nullptr;
-  Result<std::unique_ptr<FrameSource>> source = sources::open_source(options.recording, source_options(array));
+  Result<std::unique_ptr<FrameSource>> source = live::sources::open_source(options.recording, source_options(array));
   if (!source) return source.error();
   RawFrame frame;
   Result<bool> more = (*source)->next(frame);
@@ -71,7 +72,7 @@ Status replay(const ReplayOptions& options) {
   if (!*more) return bad_input("'" + options.recording + "': has no frame to replay");
 
   const FrameOutput output{options.out, array, model ? &*model : nullptr, options.model,
-                           sources::notes_of_source(**source, options.recording)};
+                           live::sources::notes_of_source(**source, options.recording)};
   Result<std::unique_ptr<FrameSink>> sink = create_sink(output, *(*source)->shape());
   if (!sink) return sink.error();
   Tempo tempo(options.speed, frame.time, &stop_flag());

@@ -9,10 +9,10 @@
 #include <chrono>
 #include <ctime>
 
-#include "dermis/core/version.hpp"
-#include "dermis/files/content_hash.hpp"
-#include "dermis/recordings/frame_files.hpp"
-#include "dermis/sources/source_name.hpp"
+#include "dermis/bytes/files/content_hash.hpp"
+#include "dermis/bytes/recordings/frame_files.hpp"
+#include "dermis/live/sources/source_name.hpp"
+#include "dermis/touch/frames/version.hpp"
 
 namespace dermis::app {
 namespace {
@@ -30,13 +30,13 @@ std::string describe(const std::string& path) {
   struct stat status {};
   if (stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return words;
   words += ", written " + utc(status.st_mtime);
-  const Result<std::string> hash = files::content_hash(path);
+  const Result<std::string> hash = bytes::files::content_hash(path);
   return hash ? words + ", " + *hash : words;
 }
 
-std::string simulated_source(const sources::SourceName& frames) {
-  if (frames.kind == sources::SourceKind::simulation) return frames.text;
-  const Result<recordings::FrameNotes> notes = recordings::read_frame_notes(frames.file);
+std::string simulated_source(const live::sources::SourceName& frames) {
+  if (frames.kind == live::sources::SourceKind::simulation) return frames.text;
+  const Result<bytes::recordings::FrameNotes> notes = bytes::recordings::read_frame_notes(frames.file);
   return notes ? notes->simulation : std::string();
 }
 
@@ -51,11 +51,11 @@ std::string time_of(const std::vector<RawFrame>& frames) {
 
 }  // namespace
 
-report::Origin report_origin(const JudgedFiles& files, const std::vector<RawFrame>& frames) {
-  const Result<sources::SourceName> from = sources::SourceName::parse(files.frames);
+out::report::Origin report_origin(const JudgedFiles& files, const std::vector<RawFrame>& frames) {
+  const Result<live::sources::SourceName> from = live::sources::SourceName::parse(files.frames);
   const std::string simulated = from ? simulated_source(*from) : std::string();
   const std::string time = time_of(frames);
-  report::Origin origin;
+  out::report::Origin origin;
   if (!simulated.empty()) {
     origin.summary = fmt::format("Simulated frames ({}).", simulated);
   } else {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "dermis/core/frames.hpp"
-#include "dermis/report/evaluation_report.hpp"
+#include "dermis/out/report/evaluation_report.hpp"
+#include "dermis/touch/frames/frames.hpp"
 
 namespace dermis::app {
 
@@ -18,6 +18,6 @@ struct JudgedFiles {
 };
 
 /// The origin of these files for a report: simulated or measured, when, with which hashes, by which dermis.
-[[nodiscard]] report::Origin report_origin(const JudgedFiles& files, const std::vector<RawFrame>& frames);
+[[nodiscard]] out::report::Origin report_origin(const JudgedFiles& files, const std::vector<RawFrame>& frames);
 
 }  // namespace dermis::app

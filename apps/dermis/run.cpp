@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "dermis/compensation/offset_drift.hpp"
-#include "dermis/operation/force_tables.hpp"
-#include "dermis/operation/operation.hpp"
-#include "dermis/pipeline/frame_troubles.hpp"
-#include "dermis/pipeline/standing_load.hpp"
-#include "dermis/pipeline/tare.hpp"
-#include "dermis/preprocessing/phase.hpp"
+#include "dermis/live/forces/force_tables.hpp"
+#include "dermis/live/forces/operation.hpp"
+#include "dermis/touch/compensation/offset_drift.hpp"
+#include "dermis/touch/pipeline/frame_troubles.hpp"
+#include "dermis/touch/pipeline/standing_load.hpp"
+#include "dermis/touch/pipeline/tare.hpp"
+#include "dermis/touch/preprocessing/phase.hpp"
 #include "seconds.hpp"
 #include "source_options.hpp"
 #include "status_line.hpp"
@@ -25,23 +25,23 @@
 namespace dermis::app {
 namespace {
 
-using operation::ForceTables;
-using operation::Operation;
-using pipeline::FrameTroubles;
+using live::forces::ForceTables;
+using live::forces::Operation;
+using touch::pipeline::FrameTroubles;
 
 constexpr std::size_t kFramesPerLook = 32;  // at the statistics
 
 struct RunOptions {
   std::string model;
   std::string in;
-  operation::ForceTablePaths tables;
+  live::forces::ForceTablePaths tables;
   double settle_s = 0.0;
   bool tare = false;
   bool tare_force = false;
   bool follow_drift = false;
 };
 
-Status check_outputs(const operation::ForceTablePaths& tables) {
+Status check_outputs(const live::forces::ForceTablePaths& tables) {
   if (tables.forces.empty() && tables.sigmas.empty() && tables.contacts.empty() && tables.totals.empty()) {
     return bad_input(
         "name a file to write: --out FILE for the forces, --totals FILE for their sum, --contacts FILE for the "
@@ -53,7 +53,7 @@ Status check_outputs(const operation::ForceTablePaths& tables) {
 /// The watches that report on the frames at the end.
 struct Watches {
   FrameTroubles troubles;
-  pipeline::StandingLoadWatch standing;
+  touch::pipeline::StandingLoadWatch standing;
   std::size_t skipped = 0;  ///< While the array settled.
 
   explicit Watches(const Operation& operation)
@@ -61,7 +61,7 @@ struct Watches {
 };
 
 /// "200 frames, 3 skipped: forces in forces.csv, contacts in contacts.csv"
-std::string where_frames_went(const Watches& watches, const operation::ForceTablePaths& tables) {
+std::string where_frames_went(const Watches& watches, const live::forces::ForceTablePaths& tables) {
   std::vector<std::string> places;
   for (const auto& [what, path] : {std::pair("forces", &tables.forces), std::pair("sigmas", &tables.sigmas),
                                    std::pair("totals", &tables.totals), std::pair("contacts", &tables.contacts)}) {
@@ -74,14 +74,14 @@ std::string where_frames_went(const Watches& watches, const operation::ForceTabl
 }
 
 Status check_tare(const Operation& operation) {
-  const pipeline::Tare& tare = operation.pipeline.last_tare();
-  if (tare.state != pipeline::Tare::State::refused) return Done{};
+  const touch::pipeline::Tare& tare = operation.pipeline.last_tare();
+  if (tare.state != touch::pipeline::Tare::State::refused) return Done{};
   return failed(fmt::format("{}: not tared: {}, or say --tare-force if that is zero; nothing is written",
-                            operation.from, pipeline::describe(tare, operation.model.array)));
+                            operation.from, touch::pipeline::describe(tare, operation.model.array)));
 }
 
 /// An error of the source comes in `source_status`, one of the tables is returned.
-Status solve(Operation& operation, preprocessing::PhaseSelector& phase, ForceTables& tables, Watches& watches,
+Status solve(Operation& operation, touch::preprocessing::PhaseSelector& phase, ForceTables& tables, Watches& watches,
              Status& source_status) {
   const bool is_live = operation.frames->is_live();
   std::optional<LiveLine> line;
@@ -92,7 +92,7 @@ Status solve(Operation& operation, preprocessing::PhaseSelector& phase, ForceTab
     const Result<bool> more = operation.frames->next(raw);
     if (!more) source_status = more.error();
     if (!more || !*more) break;
-    if (phase.select(raw.time, false) != preprocessing::Destination::pipeline) {
+    if (phase.select(raw.time, false) != touch::preprocessing::Destination::pipeline) {
       watches.troubles.skip();
       ++watches.skipped;
       continue;
@@ -113,16 +113,17 @@ Status run(const RunOptions& options) {
   const Result<Nanos> settle = nanos_from_seconds(options.settle_s, "--settle");
   if (!settle) return settle.error();
   if (Status distinct = check_outputs(options.tables); !distinct) return distinct;
-  Result<std::unique_ptr<Operation>> operation = operation::open_operation(options.model, options.in, source_options());
+  Result<std::unique_ptr<Operation>> operation =
+      live::forces::open_operation(options.model, options.in, source_options());
   if (!operation) return operation.error();
   Result<ForceTables> tables = ForceTables::create(options.tables, (*operation)->model);
   if (!tables) return tables.error();
 
-  compensation::OffsetDrift& drift = (*operation)->pipeline.drift();
+  touch::compensation::OffsetDrift& drift = (*operation)->pipeline.drift();
   drift.set_options({.track = options.follow_drift});
   if (options.tare) (*operation)->pipeline.tare();
-  if (options.tare_force) (*operation)->pipeline.tare(pipeline::TareOver::any_load);
-  preprocessing::PhaseSelector phase(*settle, preprocessing::Phase::operate);
+  if (options.tare_force) (*operation)->pipeline.tare(touch::pipeline::TareOver::any_load);
+  touch::preprocessing::PhaseSelector phase(*settle, touch::preprocessing::Phase::operate);
   Watches watches(**operation);
   const FrameTroubles& troubles = watches.troubles;
   Status status = Done{};
@@ -137,7 +138,7 @@ Status run(const RunOptions& options) {
   if (status) status = troubles.verdict();
   if (!status) return status;
   print_notice(where_frames_went(watches, options.tables));
-  const std::string tared = pipeline::describe((*operation)->pipeline.last_tare(), (*operation)->model.array);
+  const std::string tared = touch::pipeline::describe((*operation)->pipeline.last_tare(), (*operation)->model.array);
   if (!tared.empty()) print_notice(tared);
   if (const auto load = watches.standing.load())
     print_notice(describe_never_released(*load, (*operation)->model.array));

@@ -6,8 +6,8 @@
 
 #include <chrono>
 
-#include "dermis/core/frames.hpp"
-#include "dermis/core/result.hpp"
+#include "dermis/touch/frames/frames.hpp"
+#include "dermis/touch/frames/result.hpp"
 
 namespace dermis::app {
 

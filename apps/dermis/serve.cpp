@@ -11,14 +11,14 @@
 #include <utility>
 
 #include "commands.hpp"
-#include "dermis/dds/publisher.hpp"
-#include "dermis/fleet/frame_publisher.hpp"
-#include "dermis/recordings/frame_files.hpp"
-#include "dermis/recordings/recording.hpp"
-#include "dermis/recordings/suit_recording.hpp"
-#include "dermis/serve/array_setup.hpp"
-#include "dermis/serve/session.hpp"
-#include "dermis/sources/source_name.hpp"
+#include "dermis/bytes/recordings/frame_files.hpp"
+#include "dermis/bytes/recordings/recording.hpp"
+#include "dermis/bytes/recordings/suit_recording.hpp"
+#include "dermis/live/dds/publisher.hpp"
+#include "dermis/live/fleet/frame_publisher.hpp"
+#include "dermis/live/sources/source_name.hpp"
+#include "dermis/out/serve/array_setup.hpp"
+#include "dermis/out/serve/session.hpp"
 #include "server_address.hpp"
 #include "status_line.hpp"
 #include "stop_flag.hpp"
@@ -28,8 +28,8 @@ namespace dermis::app {
 namespace {
 
 struct ServeOptions {
-  serve::SuitPlace place;
-  serve::SessionOptions session;
+  out::serve::SuitPlace place;
+  out::serve::SessionOptions session;
   bool dds = false;
   std::optional<std::uint64_t> domain{};
   std::string publish{};
@@ -37,57 +37,57 @@ struct ServeOptions {
 };
 
 Status check(const ServeOptions& options) {
-  const serve::SuitPlace& place = options.place;
+  const out::serve::SuitPlace& place = options.place;
   if (place.suit.empty() && place.from.empty() && !place.model.empty()) {
     return bad_input("serve: give --from with its --model; without both the page asks for the device");
   }
   if (!place.suit.empty() && !place.model.empty()) return bad_input("--model: suit.toml names the models");
   if (!place.suit.empty() && !place.classes.empty()) return bad_input("--classes: suit.toml names the classes");
   const std::string& record = options.session.record;
-  const Result<recordings::FrameFormat> format = recordings::frame_format(record);
-  const bool is_recording = format && *format == recordings::FrameFormat::mcap;
+  const Result<bytes::recordings::FrameFormat> format = bytes::recordings::frame_format(record);
+  const bool is_recording = format && *format == bytes::recordings::FrameFormat::mcap;
   if (!record.empty() && !is_recording) return bad_input("--record: end it in .mcap");
   return options.session.server.validate();
 }
 
-Result<fleet::PublisherOptions> publisher_options(const ServeOptions& options) {
-  const Result<fleet::BrokerAddress> broker = fleet::parse_broker_address(options.publish);
+Result<live::fleet::PublisherOptions> publisher_options(const ServeOptions& options) {
+  const Result<live::fleet::BrokerAddress> broker = live::fleet::parse_broker_address(options.publish);
   if (!broker) return bad_input("--publish: " + broker.error().message);
-  if (Status good = fleet::check_name("--robot", options.robot); !good) return good.error();
-  return fleet::PublisherOptions{.broker = *broker, .robot = options.robot};
+  if (Status good = live::fleet::check_name("--robot", options.robot); !good) return good.error();
+  return live::fleet::PublisherOptions{.broker = *broker, .robot = options.robot};
 }
 
 /// A suit.toml tells of several arrays, the page of one.
 Status check_one_array(const std::string& from) {
-  const recordings::RecordingPlace place = recordings::recording_place(from);
-  const auto recording = recordings::SuitRecordingReader::open(place.path);
+  const bytes::recordings::RecordingPlace place = bytes::recordings::recording_place(from);
+  const auto recording = bytes::recordings::SuitRecordingReader::open(place.path);
   if (!place.array.empty() || !recording || (*recording)->arrays().size() == 1) return Done{};
-  const Result<std::size_t> one = recordings::find_array((*recording)->arrays(), place.path, place.array);
+  const Result<std::size_t> one = bytes::recordings::find_array((*recording)->arrays(), place.path, place.array);
   return bad_input(one.error().message + "; or play all of it with --suit suit.toml");
 }
 
 /// Whether somebody has to describe the array. Fails on a source that cannot be served.
-Result<bool> is_of_unknown_array(const serve::SuitPlace& place) {
+Result<bool> is_of_unknown_array(const out::serve::SuitPlace& place) {
   if (!place.suit.empty() || !place.model.empty()) return false;
   if (place.from.empty()) return true;
-  const Result<sources::SourceName> from = sources::SourceName::parse(place.from);
+  const Result<live::sources::SourceName> from = live::sources::SourceName::parse(place.from);
   if (!from) return from.error();
-  if (Status can = serve::check_served(*from); !can) return can.error();
-  if (from->kind == sources::SourceKind::recording) {
+  if (Status can = out::serve::check_served(*from); !can) return can.error();
+  if (from->kind == live::sources::SourceKind::recording) {
     if (Status one = check_one_array(place.from); !one) return one.error();
   }
-  return !serve::describes_its_array(*from);
+  return !out::serve::describes_its_array(*from);
 }
 
 /// A user describes the array on the page; its array.toml is served from then on, at the same address.
 Status set_up_array(ServeOptions& options) {
-  const Result<std::unique_ptr<serve::ArraySetup>> setup =
-      serve::ArraySetup::create(options.place.from, options.session, {.stop = &stop_flag(), .notice = print_notice});
+  const Result<std::unique_ptr<out::serve::ArraySetup>> setup = out::serve::ArraySetup::create(
+      options.place.from, options.session, {.stop = &stop_flag(), .notice = print_notice});
   if (!setup) return setup.error();
   options.session.server.port = (*setup)->port();
   print_notice(fmt::format("describe the array at {} (Ctrl-C ends it)",
                            server_address(options.session.server, options.session.server.port)));
-  serve::DescribedArray array = (*setup)->run(stop_flag());
+  out::serve::DescribedArray array = (*setup)->run(stop_flag());
   options.place.from = std::move(array.from);
   options.place.model = std::move(array.model);
   if (!options.place.model.empty()) print_notice("wrote " + options.place.model);
@@ -97,17 +97,17 @@ Status set_up_array(ServeOptions& options) {
 Status serve_suit(ServeOptions& options) {
   if (Status possible = check(options); !possible) return possible;
   if (options.dds) {
-    Result<dds::PublisherOptions> dds = dds::options_of_environment(options.domain);
+    Result<live::dds::PublisherOptions> dds = live::dds::options_of_environment(options.domain);
     if (!dds) return dds.error();
     options.session.dds = *dds;
   }
   if (!options.publish.empty()) {
-    Result<fleet::PublisherOptions> publish = publisher_options(options);
+    Result<live::fleet::PublisherOptions> publish = publisher_options(options);
     if (!publish) return publish.error();
     options.session.publish = *std::move(publish);
   }
   const std::atomic<bool>& stop = stop_flag();
-  const std::span<const stream::Asset> page = viewer::assets();
+  const std::span<const out::websocket::Asset> page = viewer::assets();
   options.session.page.assign(page.begin(), page.end());
   options.session.server.notice = print_notice;
   const Result<bool> is_unknown = is_of_unknown_array(options.place);
@@ -115,11 +115,12 @@ Status serve_suit(ServeOptions& options) {
   if (*is_unknown) {
     if (Status set_up = set_up_array(options); !set_up || stop) return set_up;
   }
-  Result<serve::ServedSuit> suit = serve::open_suit(options.place, {.stop = &stop, .notice = print_notice});
+  Result<out::serve::ServedSuit> suit = out::serve::open_suit(options.place, {.stop = &stop, .notice = print_notice});
   if (!suit) return suit.error();
   const std::size_t arrays = suit->arrays.size();
   const std::string what = arrays == 1 ? suit->arrays.front().name : fmt::format("{} arrays", arrays);
-  const Result<std::unique_ptr<serve::Session>> session = serve::Session::create(*std::move(suit), options.session);
+  const Result<std::unique_ptr<out::serve::Session>> session =
+      out::serve::Session::create(*std::move(suit), options.session);
   if (!session) return session.error();
   print_notice(fmt::format("serving {} at {} (Ctrl-C ends it)", what,
                            server_address(options.session.server, (*session)->port())));

@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-#include "dermis/core/array_description.hpp"
+#include "dermis/touch/frames/array_description.hpp"
 
 namespace dermis::app {
 

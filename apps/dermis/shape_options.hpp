@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "command_line.hpp"
-#include "dermis/core/frame_source.hpp"
-#include "dermis/core/result.hpp"
+#include "dermis/touch/frames/frame_source.hpp"
+#include "dermis/touch/frames/result.hpp"
 
 namespace dermis::app {
 

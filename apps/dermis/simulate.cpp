@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "dermis/files/array_toml.hpp"
-#include "dermis/files/atomic_file.hpp"
-#include "dermis/files/frames_csv.hpp"
-#include "dermis/files/loads_csv.hpp"
-#include "dermis/files/origin_toml.hpp"
-#include "dermis/simulation/simulator.hpp"
+#include "dermis/bytes/files/array_toml.hpp"
+#include "dermis/bytes/files/atomic_file.hpp"
+#include "dermis/bytes/files/frames_csv.hpp"
+#include "dermis/bytes/files/loads_csv.hpp"
+#include "dermis/bytes/files/origin_toml.hpp"
+#include "dermis/learn/simulation/simulator.hpp"
 #include "interruption.hpp"
 #include "status_line.hpp"
 
@@ -35,9 +35,9 @@ struct SimulateOptions {
   std::optional<double> touch_gain;
 };
 
-Status set_memory(const SimulateOptions& options, simulation::RubberOptions& rubber) {
+Status set_memory(const SimulateOptions& options, learn::simulation::RubberOptions& rubber) {
   if (!options.memory.empty()) {
-    Status chosen = simulation::choose_memory(options.memory, rubber);
+    Status chosen = learn::simulation::choose_memory(options.memory, rubber);
     if (!chosen) return bad_input("--" + chosen.error().message);
   }
   if (!options.creep_per_decade && !options.touch_gain) return Done{};
@@ -47,17 +47,17 @@ Status set_memory(const SimulateOptions& options, simulation::RubberOptions& rub
   return Done{};
 }
 
-Result<std::unique_ptr<simulation::Simulator>> create_simulator(const SimulateOptions& options,
-                                                                const ArrayDescription& array) {
-  simulation::SimulationOptions physics;
+Result<std::unique_ptr<learn::simulation::Simulator>> create_simulator(const SimulateOptions& options,
+                                                                       const ArrayDescription& array) {
+  learn::simulation::SimulationOptions physics;
   if (!options.physics.empty()) {
-    Result<simulation::SimulationOptions> read = simulation::read_simulation_options(options.physics);
+    Result<learn::simulation::SimulationOptions> read = learn::simulation::read_simulation_options(options.physics);
     if (!read) return read.error();
     physics = *read;
   }
   if (Status set = set_memory(options, physics.rubber); !set) return set.error();
   physics.scene = {options.rate_hz, options.taxels};
-  return simulation::Simulator::create(array, physics, options.scene, options.seed, options.frames);
+  return learn::simulation::Simulator::create(array, physics, options.scene, options.seed, options.frames);
 }
 
 /// The name of the same frames among sources, without other options.
@@ -70,20 +70,21 @@ struct Truth {
   std::vector<Load> loads;
   std::string contacts = "frame,id,shape,x_mm,y_mm,diameter_mm,force_n,taxel_force_n\n";
 
-  void add(std::size_t frame, const simulation::Simulator& simulator) {
+  void add(std::size_t frame, const learn::simulation::Simulator& simulator) {
     loads.insert(loads.end(), simulator.loads().begin(), simulator.loads().end());
-    for (const simulation::AppliedContact& contact : simulator.truth().contacts) {
+    for (const learn::simulation::AppliedContact& contact : simulator.truth().contacts) {
       contacts += fmt::format("{},{},{},{:.4f},{:.4f},{:.4f},{:.6g},{:.6g}\n", frame, contact.id,
-                              simulation::to_string(contact.shape), 1e3 * contact.x_m, 1e3 * contact.y_m,
+                              learn::simulation::to_string(contact.shape), 1e3 * contact.x_m, 1e3 * contact.y_m,
                               1e3 * contact.diameter_m, contact.force_n, contact.taxel_force_n);
     }
   }
 
   [[nodiscard]] Status write(const std::filesystem::path& folder, const ArrayDescription& array,
                              bool has_contacts) const {
-    if (Status written = files::write_loads((folder / "loads.csv").string(), array, loads); !written) return written;
+    if (Status written = bytes::files::write_loads((folder / "loads.csv").string(), array, loads); !written)
+      return written;
     if (!has_contacts) return Done{};
-    Result<files::AtomicFile> file = files::AtomicFile::create((folder / "contacts.csv").string());
+    Result<bytes::files::AtomicFile> file = bytes::files::AtomicFile::create((folder / "contacts.csv").string());
     if (!file) return file.error();
     file->write(contacts);
     return file->commit();
@@ -91,21 +92,21 @@ struct Truth {
 };
 
 Status simulate(const SimulateOptions& options) {
-  const Result<ArrayDescription> array = files::read_array(options.array);
+  const Result<ArrayDescription> array = bytes::files::read_array(options.array);
   if (!array) return array.error();
   if (array->has_unknown_circuit()) {
     return bad_input(options.array +
                      ": a circuit that is to be fitted cannot be simulated; name it and give its resistances in ohm");
   }
-  Result<std::unique_ptr<simulation::Simulator>> simulator = create_simulator(options, *array);
+  Result<std::unique_ptr<learn::simulation::Simulator>> simulator = create_simulator(options, *array);
   if (!simulator) return simulator.error();
 
   const std::filesystem::path folder(options.out);
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) return failed(fmt::format("cannot create the folder '{}': {}", options.out, error.message()));
-  const Result<std::unique_ptr<files::FramesCsvWriter>> frames =
-      files::FramesCsvWriter::create((folder / "frames.csv").string(), FrameShape{array->rows, array->cols});
+  const Result<std::unique_ptr<bytes::files::FramesCsvWriter>> frames =
+      bytes::files::FramesCsvWriter::create((folder / "frames.csv").string(), FrameShape{array->rows, array->cols});
   if (!frames) return frames.error();
 
   Progress progress(array->name);
@@ -121,8 +122,8 @@ Status simulate(const SimulateOptions& options) {
     progress.show(options.scene, static_cast<double>(k + 1) / static_cast<double>(count));
   }
   if (Status written = (*frames)->commit(); !written) return written;
-  Status written = truth.write(folder, *array, simulation::find_scene(options.scene)->has_contacts);
-  if (written) written = files::write_origin((folder / "frames.csv").string(), source_of(options));
+  Status written = truth.write(folder, *array, learn::simulation::find_scene(options.scene)->has_contacts);
+  if (written) written = bytes::files::write_origin((folder / "frames.csv").string(), source_of(options));
   if (!written) std::filesystem::remove(folder / "frames.csv", error);  // worth nothing without its truth
   return written;
 }
@@ -133,7 +134,7 @@ void add_simulate(Command& command) {
   auto options = std::make_shared<SimulateOptions>();
   command.input("--array", options->array, "array.toml: size, pitch and readout circuit").required();
   std::vector<std::string> scenes;
-  for (const simulation::SceneKind& scene : simulation::scene_kinds()) scenes.emplace_back(scene.name);
+  for (const learn::simulation::SceneKind& scene : learn::simulation::scene_kinds()) scenes.emplace_back(scene.name);
   command.option("--scene", options->scene, "What happens to the array").one_of(scenes).required();
   command
       .output_folder("--out", options->out, {"frames.csv", "loads.csv", "contacts.csv", "origin.toml"},

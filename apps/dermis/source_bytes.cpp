@@ -11,13 +11,13 @@
 #include <string_view>
 #include <system_error>
 
-#include "dermis/acquisition/byte_stream.hpp"
-#include "dermis/acquisition/protocol.hpp"
-#include "dermis/describing/proposals.hpp"
-#include "dermis/files/input.hpp"
-#include "dermis/recordings/frame_file_info.hpp"
-#include "dermis/recordings/frame_files.hpp"
-#include "dermis/sources/source_name.hpp"
+#include "dermis/bytes/devices/byte_stream.hpp"
+#include "dermis/bytes/devices/protocol.hpp"
+#include "dermis/bytes/files/input.hpp"
+#include "dermis/bytes/proposals/proposals.hpp"
+#include "dermis/bytes/recordings/frame_file_info.hpp"
+#include "dermis/bytes/recordings/frame_files.hpp"
+#include "dermis/live/sources/source_name.hpp"
 #include "stop_flag.hpp"
 
 namespace dermis::app {
@@ -30,7 +30,7 @@ constexpr std::chrono::seconds kListens{3};
 constexpr std::chrono::milliseconds kStep{100};
 constexpr std::size_t kEnough = 65536;
 
-Result<std::vector<std::uint8_t>> bytes_of_stream(acquisition::ByteStream& stream, const std::string& source) {
+Result<std::vector<std::uint8_t>> bytes_of_stream(bytes::devices::ByteStream& stream, const std::string& source) {
   for (const auto end = steady_clock::now() + kPatience;;) {
     const Result<bool> opened = stream.open(kStep);
     if (!opened) return opened.error();
@@ -42,47 +42,48 @@ Result<std::vector<std::uint8_t>> bytes_of_stream(acquisition::ByteStream& strea
   for (const auto end = steady_clock::now() + kListens; size < kEnough && steady_clock::now() < end && !stop_flag();) {
     const auto came = stream.read(std::span(bytes).subspan(size), kStep);
     size += came.bytes;
-    if (came.end != acquisition::ByteStream::End::none) break;
+    if (came.end != bytes::devices::ByteStream::End::none) break;
   }
   bytes.resize(size);
   return bytes;
 }
 
 /// A format whose content proves it: by its first bytes, or since it holds frames. Numbers alone are in any.
-std::optional<recordings::FrameFormat> proven_format(const std::string& path, std::string_view first_bytes) {
-  const Result<recordings::FrameFormat> format = recordings::recognise_frames(path);
-  if (!format || *format == recordings::FrameFormat::text_matrix) return std::nullopt;
-  if (*format == recordings::FrameFormat::matlab && first_bytes.starts_with("MATLAB")) return *format;
-  const auto info = recordings::frame_file_info(path, std::nullopt);
+std::optional<bytes::recordings::FrameFormat> proven_format(const std::string& path, std::string_view first_bytes) {
+  const Result<bytes::recordings::FrameFormat> format = bytes::recordings::recognise_frames(path);
+  if (!format || *format == bytes::recordings::FrameFormat::text_matrix) return std::nullopt;
+  if (*format == bytes::recordings::FrameFormat::matlab && first_bytes.starts_with("MATLAB")) return *format;
+  const auto info = bytes::recordings::frame_file_info(path, std::nullopt);
   return info && info->frames > 0 ? std::optional(*format) : std::nullopt;
 }
 
 Result<SourceBytes> bytes_of_file(const std::string& path) {
   std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) return files::open_input(path).error();
+  if (!std::filesystem::exists(path, ignored)) return bytes::files::open_input(path).error();
   SourceBytes found;
-  const std::string text = files::first_bytes_of(path, describing::kMostBytes);
-  if (const auto format = proven_format(path, text)) found.known = recordings::to_string(*format);
+  const std::string text = bytes::files::first_bytes_of(path, bytes::proposals::kMostBytes);
+  if (const auto format = proven_format(path, text)) found.known = bytes::recordings::to_string(*format);
   found.bytes.assign(text.begin(), text.end());
   return found;
 }
 
-Result<SourceBytes> bytes_of_device(const acquisition::SourceUri& uri) {
-  const Result<std::unique_ptr<acquisition::ByteStream>> stream = acquisition::make_source_stream(uri);
+Result<SourceBytes> bytes_of_device(const bytes::devices::SourceUri& uri) {
+  const Result<std::unique_ptr<bytes::devices::ByteStream>> stream = bytes::devices::make_source_stream(uri);
   if (!stream) return stream.error();
   Result<std::vector<std::uint8_t>> bytes = bytes_of_stream(**stream, uri.text);
   if (!bytes) return bytes.error();
   SourceBytes found{.bytes = *std::move(bytes), .is_stream = true};
-  found.known = acquisition::detect_protocol(found.bytes);
+  found.known = bytes::devices::detect_protocol(found.bytes);
   return found;
 }
 
 }  // namespace
 
 Result<SourceBytes> read_source_bytes(const std::string& source) {
-  const Result<sources::SourceName> name = sources::SourceName::parse(source);
+  const Result<live::sources::SourceName> name = live::sources::SourceName::parse(source);
   if (!name) return name.error();
-  if (name->kind == sources::SourceKind::simulation) return bad_input("'" + source + "': a simulation needs no layout");
+  if (name->kind == live::sources::SourceKind::simulation)
+    return bad_input("'" + source + "': a simulation needs no layout");
   if (name->stream || name->bus) return bad_input("'" + source + "': has frames, not bytes, and needs no layout");
   Result<SourceBytes> found = name->uri ? bytes_of_device(*name->uri) : bytes_of_file(source);
   if (found && found->bytes.empty()) return bad_input("'" + source + "': not a single byte came");

@@ -8,7 +8,7 @@
 
 namespace dermis::app {
 
-sources::SourceOptions source_options(const ArrayDescription* array) {
+live::sources::SourceOptions source_options(const ArrayDescription* array) {
   return {.array = array, .stop = &stop_flag(), .notice = print_notice, .loss = note_loss};
 }
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <string>
 
-#include "dermis/core/frame_source.hpp"
-#include "dermis/core/result.hpp"
+#include "dermis/touch/frames/frame_source.hpp"
+#include "dermis/touch/frames/result.hpp"
 
 namespace dermis::app {
 

@@ -15,7 +15,7 @@
 #include <thread>
 
 #include "commands.hpp"
-#include "dermis/report/terminal_picture.hpp"
+#include "dermis/out/report/terminal_picture.hpp"
 #include "source_options.hpp"
 #include "stop_flag.hpp"
 #include "views/array_view.hpp"
@@ -32,19 +32,19 @@ struct TopOptions {
   std::optional<double> high;
 };
 
-report::TerminalColours colours_of_terminal() {
+out::report::TerminalColours colours_of_terminal() {
   const auto value = [](const char* name) {
     const char* const text = std::getenv(name);
     return std::string_view(text == nullptr ? "" : text);
   };
   const std::string_view term = value("TERM");
-  if (!value("NO_COLOR").empty() || term.empty() || term == "dumb") return report::TerminalColours::without;
-  if (value("COLORTERM") == "truecolor" || value("COLORTERM") == "24bit") return report::TerminalColours::rgb;
-  return term.find("256color") == std::string_view::npos ? report::TerminalColours::without
-                                                         : report::TerminalColours::cube;
+  if (!value("NO_COLOR").empty() || term.empty() || term == "dumb") return out::report::TerminalColours::without;
+  if (value("COLORTERM") == "truecolor" || value("COLORTERM") == "24bit") return out::report::TerminalColours::rgb;
+  return term.find("256color") == std::string_view::npos ? out::report::TerminalColours::without
+                                                         : out::report::TerminalColours::cube;
 }
 
-report::TerminalSize size_of_terminal() {
+out::report::TerminalSize size_of_terminal() {
   winsize size{};
   if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_row == 0 || size.ws_col == 0) return {};
   return {size.ws_row, size.ws_col};
@@ -100,15 +100,15 @@ class Keys {
 };
 
 Status show(views::ArrayView& view, const TopOptions& options) {
-  const report::TerminalColours colours = colours_of_terminal();
+  const out::report::TerminalColours colours = colours_of_terminal();
   const OtherScreen screen;
   const Keys keys;
   const views::ViewPlayer player(view, stop_flag(), options.high);
   while (!stop_flag().load() && !keys.pressed('q')) {
-    const report::TerminalPicture picture = player.picture();
+    const out::report::TerminalPicture picture = player.picture();
     const std::string screen_text = picture.values.empty()
                                         ? "waiting for the first frame\x1b[K"
-                                        : report::terminal_screen(picture, size_of_terminal(), colours);
+                                        : out::report::terminal_screen(picture, size_of_terminal(), colours);
     if (!put("\x1b[H" + screen_text + "\x1b[J")) break;
     if (Status status = player.status(); !status) return status;
     std::this_thread::sleep_for(kRedrawTime);

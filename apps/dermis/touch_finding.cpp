@@ -6,13 +6,13 @@
 
 #include <string>
 
-#include "dermis/recognition/learning.hpp"
+#include "dermis/learn/recognition/learning.hpp"
 
 namespace dermis::app {
 
-void print_finding(const recognition::LabelledFrames& data, const recognition::TouchLimits& limits) {
+void print_finding(const learn::recognition::LabelledFrames& data, const learn::recognition::TouchLimits& limits) {
   constexpr double kSecondsPerMinute = 60.0;
-  const recognition::FindingReport finding = recognition::judge_touches(data, limits);
+  const learn::recognition::FindingReport finding = learn::recognition::judge_touches(data, limits);
   const double per_frame = static_cast<double>(finding.others) / static_cast<double>(data.frame_count());
   const double rate_hz = data.layout.rate_hz;
   const std::string rate =

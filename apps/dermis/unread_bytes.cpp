@@ -4,22 +4,22 @@
 
 #include <algorithm>
 
-#include "dermis/describing/look.hpp"
-#include "dermis/describing/proposals.hpp"
-#include "dermis/files/file_kind.hpp"
-#include "dermis/files/input.hpp"
+#include "dermis/bytes/files/file_kind.hpp"
+#include "dermis/bytes/files/input.hpp"
+#include "dermis/bytes/proposals/look.hpp"
+#include "dermis/bytes/proposals/proposals.hpp"
 
 namespace dermis::app {
 
 std::string look_of_unread(std::span<const std::uint8_t> bytes) {
-  const std::vector<describing::Proposal> proposals = describing::propose(bytes, {});
-  return proposals.empty() ? std::string() : describing::look_of(proposals.front());
+  const std::vector<bytes::proposals::Proposal> proposals = bytes::proposals::propose(bytes, {});
+  return proposals.empty() ? std::string() : bytes::proposals::look_of(proposals.front());
 }
 
 std::string look_of_unread_file(const std::string& path) {
-  const std::string text = files::first_bytes_of(path, describing::kMostBytes);
-  const std::string_view kind = files::kind_of(text);
-  if (!kind.empty() && kind != files::kTableKind) return {};
+  const std::string text = bytes::files::first_bytes_of(path, bytes::proposals::kMostBytes);
+  const std::string_view kind = bytes::files::kind_of(text);
+  if (!kind.empty() && kind != bytes::files::kTableKind) return {};
   const std::string look = look_of_unread({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
   return look.empty() ? look : look + more_by_describe(path);
 }

@@ -14,10 +14,10 @@
 
 #include "child_process.hpp"
 #include "commands.hpp"
-#include "dermis/operation/operation.hpp"
-#include "dermis/operation/threat_watch.hpp"
-#include "dermis/threats/threat_limits.hpp"
-#include "dermis/threats/threat_monitor.hpp"
+#include "dermis/live/forces/operation.hpp"
+#include "dermis/live/forces/threat_watch.hpp"
+#include "dermis/live/threats/threat_limits.hpp"
+#include "dermis/live/threats/threat_monitor.hpp"
 #include "source_options.hpp"
 #include "status_line.hpp"
 #include "stop_flag.hpp"
@@ -26,9 +26,9 @@ namespace dermis::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using operation::Operation;
-using operation::ThreatEvent;
-using operation::ThreatWatch;
+using live::forces::Operation;
+using live::forces::ThreatEvent;
+using live::forces::ThreatWatch;
 using Json = nlohmann::ordered_json;
 
 constexpr int kExitThreat = 3;
@@ -48,23 +48,24 @@ std::string line_of(const ThreatEvent& event) {
   if (!event.begins()) return fmt::format("{:10.3f} s  {} ends", seconds, event.limit.name);
   const double crossed = std::chrono::duration<double>(event.state.crossed - event.first_time).count();
   return fmt::format("{:10.3f} s  {} begins: {}, crossed at {:.3f} s", seconds, event.limit.name,
-                     threats::describe(event.limit, event.state.now), crossed);
+                     live::threats::describe(event.limit, event.state.now), crossed);
 }
 
 std::string json_of(const ThreatEvent& event) {
-  const threats::ThreatValue& value = event.state.now;
-  const Json json = {{"threat", event.limit.name},
-                     {"event", event.begins() ? "begins" : "ends"},
-                     {"time_ns", event.time.count()},
-                     {"crossed_ns", event.state.crossed.count()},
-                     {"quantity", threats::threat_quantity_names()[static_cast<std::size_t>(event.limit.quantity)]},
-                     {"value", value.value},
-                     {"sigma", value.sigma},
-                     {"unit", threats::unit_of(event.limit.quantity)},
-                     {"limit", event.limit.limit},
-                     {"x_m", value.position.x},
-                     {"y_m", value.position.y},
-                     {"contact", value.contact}};
+  const live::threats::ThreatValue& value = event.state.now;
+  const Json json = {
+      {"threat", event.limit.name},
+      {"event", event.begins() ? "begins" : "ends"},
+      {"time_ns", event.time.count()},
+      {"crossed_ns", event.state.crossed.count()},
+      {"quantity", live::threats::threat_quantity_names()[static_cast<std::size_t>(event.limit.quantity)]},
+      {"value", value.value},
+      {"sigma", value.sigma},
+      {"unit", live::threats::unit_of(event.limit.quantity)},
+      {"limit", event.limit.limit},
+      {"x_m", value.position.x},
+      {"y_m", value.position.y},
+      {"contact", value.contact}};
   return json.dump();
 }
 
@@ -101,8 +102,8 @@ Result<int> keep_watch(ThreatWatch& watch, bool is_live, const std::vector<std::
 }
 
 /// Limits for zones of arrays of another name, which may be misspelt.
-void tell_unwatched(const threats::ThreatLimits& limits, const std::string& array) {
-  for (const threats::ThreatLimit& limit : limits.limits) {
+void tell_unwatched(const live::threats::ThreatLimits& limits, const std::string& array) {
+  for (const live::threats::ThreatLimit& limit : limits.limits) {
     if (limit.zone.empty() || limits.zone(limit.zone)->array == array) continue;
     print_notice(
         fmt::format("'{}' is for '{}' and is not watched on '{}'", limit.name, limits.zone(limit.zone)->array, array));
@@ -110,13 +111,13 @@ void tell_unwatched(const threats::ThreatLimits& limits, const std::string& arra
 }
 
 Result<int> watch(const WatchOptions& options) {
-  const Result<threats::ThreatLimits> limits = threats::read_threat_limits(options.threats);
+  const Result<live::threats::ThreatLimits> limits = live::threats::read_threat_limits(options.threats);
   if (!limits) return limits.error();
   const Result<std::unique_ptr<Operation>> operation =
-      operation::open_operation(options.model, options.in, source_options());
+      live::forces::open_operation(options.model, options.in, source_options());
   if (!operation) return operation.error();
   const ArrayDescription& array = (*operation)->model.array;
-  Result<threats::ThreatMonitor> monitor = threats::ThreatMonitor::create(*limits, array.name, array);
+  Result<live::threats::ThreatMonitor> monitor = live::threats::ThreatMonitor::create(*limits, array.name, array);
   if (!monitor) return bad_input(fmt::format("{}: {}", options.threats, monitor.error().message));
   if (monitor->states().empty()) {
     return bad_input(

@@ -13,7 +13,7 @@
 
 #include "child_process.hpp"
 #include "commands.hpp"
-#include "dermis/fleet/job_queue.hpp"
+#include "dermis/live/fleet/job_queue.hpp"
 #include "status_line.hpp"
 #include "stop_flag.hpp"
 
@@ -23,7 +23,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kLook{2};
-constexpr std::chrono::seconds kExtendEvery = fleet::JobQueue::kLeases.front() / 4;
+constexpr std::chrono::seconds kExtendEvery = live::fleet::JobQueue::kLeases.front() / 4;
 constexpr std::chrono::seconds kRetryAfter{1};
 constexpr std::chrono::seconds kRestAfterFailure{5};  // for each in a row
 constexpr int kMostRests = 12;
@@ -54,17 +54,18 @@ std::string absolute(const std::string& path) {
 struct Worker {
   std::string name;
   std::string program;
-  fleet::BrokerAddress server;  ///< Its files have absolute paths, as the worker goes to the folder of the jobs.
+  live::fleet::BrokerAddress server;  ///< Its files have absolute paths, as the worker goes to the folder of the jobs.
 };
 
 Result<Worker> worker_of(const std::string& hub) {
-  Result<fleet::BrokerAddress> server = fleet::parse_broker_address(hub);
+  Result<live::fleet::BrokerAddress> server = live::fleet::parse_broker_address(hub);
   if (!server) return server.error();
   Result<std::string> program = own_program();
   if (!program) return program.error();
   server->ca = absolute(server->ca);
   server->key = absolute(server->key);
-  const auto range = fleet::parse_stream_address(fleet::range_at(*server, "nats://?robot=r&array=a&from=1&to=last"));
+  const auto range =
+      live::fleet::parse_stream_address(live::fleet::range_at(*server, "nats://?robot=r&array=a&from=1&to=last"));
   if (!range) return range.error();
   return Worker{name_of_worker(), *std::move(program), *std::move(server)};
 }
@@ -82,20 +83,21 @@ bool stays_in(const std::filesystem::path& folder, const std::string& word) {
 }
 
 /// The job as a process that does not outlive this one. A later try replaces an output, but no dataset.
-Result<ChildProcess> start(const fleet::TakenJob& taken, const Worker& worker) {
+Result<ChildProcess> start(const live::fleet::TakenJob& taken, const Worker& worker) {
   const std::filesystem::path folder = std::filesystem::canonical(".");
   std::vector<std::string> command = {"setpriv", "--pdeathsig", "KILL", worker.program};
   for (const std::string& word : taken.job.words) {
-    const bool is_range = fleet::is_range(word);
+    const bool is_range = live::fleet::is_range(word);
     if (!is_range && !stays_in(folder, word)) return bad_input("'" + word + "' leads out of the folder");
-    command.push_back(is_range ? fleet::range_at(worker.server, word) : word);
+    command.push_back(is_range ? live::fleet::range_at(worker.server, word) : word);
   }
   if (taken.tries > 1 && taken.job.words.front() != "dataset") command.emplace_back("--force");
   return ChildProcess::start(command);
 }
 
 /// Waits for the job and extends its lease; empty where the worker is stopped.
-std::optional<int> exit_status_of(ChildProcess& child, fleet::JobQueue& queue, const fleet::TakenJob& taken) {
+std::optional<int> exit_status_of(ChildProcess& child, live::fleet::JobQueue& queue,
+                                  const live::fleet::TakenJob& taken) {
   Clock::time_point extended = Clock::now();
   while (!stop_flag()) {
     if (const std::optional<int> status = child.exit_status()) return status;
@@ -108,8 +110,9 @@ std::optional<int> exit_status_of(ChildProcess& child, fleet::JobQueue& queue, c
 }
 
 /// The outcome but for its seconds; empty where the worker is stopped.
-std::optional<fleet::JobOutcome> do_job(fleet::JobQueue& queue, const fleet::TakenJob& taken, const Worker& worker) {
-  fleet::JobOutcome outcome;
+std::optional<live::fleet::JobOutcome> do_job(live::fleet::JobQueue& queue, const live::fleet::TakenJob& taken,
+                                              const Worker& worker) {
+  live::fleet::JobOutcome outcome;
   outcome.name = taken.job.name;
   outcome.worker = worker.name;
   Result<ChildProcess> child = start(taken, worker);
@@ -126,7 +129,7 @@ std::optional<fleet::JobOutcome> do_job(fleet::JobQueue& queue, const fleet::Tak
 }
 
 /// Tries until the server has it: a job that was done is not to be done again.
-void finish(fleet::JobQueue& queue, const fleet::TakenJob& taken, const fleet::JobOutcome& outcome) {
+void finish(live::fleet::JobQueue& queue, const live::fleet::TakenJob& taken, const live::fleet::JobOutcome& outcome) {
   for (Status told = queue.finish(taken, outcome); !told && !stop_flag(); told = queue.finish(taken, outcome)) {
     print_notice(told.error().message);
     std::this_thread::sleep_for(kRetryAfter);
@@ -143,15 +146,16 @@ void rest(std::chrono::seconds time) {
 Status work(const WorkOptions& options) {
   const Result<Worker> worker = worker_of(options.hub);
   if (!worker) return worker.error();
-  const Result<std::unique_ptr<fleet::JobQueue>> queue = fleet::JobQueue::connect(worker->server);
+  const Result<std::unique_ptr<live::fleet::JobQueue>> queue = live::fleet::JobQueue::connect(worker->server);
   if (!queue) return queue.error();
   std::error_code failure;
   std::filesystem::current_path(options.folder, failure);
   if (failure) return bad_input(options.folder + ": " + failure.message());
-  print_notice(fmt::format("{} works for {} (Ctrl-C ends it)", worker->name, fleet::without_password(options.hub)));
+  print_notice(
+      fmt::format("{} works for {} (Ctrl-C ends it)", worker->name, live::fleet::without_password(options.hub)));
   int failures = 0;  // in a row
   while (!stop_flag()) {
-    const Result<std::optional<fleet::TakenJob>> taken = (*queue)->take();
+    const Result<std::optional<live::fleet::TakenJob>> taken = (*queue)->take();
     if (!taken) {
       print_notice(taken.error().message);
       std::this_thread::sleep_for(kRetryAfter);
@@ -159,7 +163,7 @@ Status work(const WorkOptions& options) {
     }
     if (!*taken) continue;
     const Clock::time_point begun = Clock::now();
-    std::optional<fleet::JobOutcome> outcome = do_job(**queue, **taken, *worker);
+    std::optional<live::fleet::JobOutcome> outcome = do_job(**queue, **taken, *worker);
     if (!outcome) return (*queue)->give_back(**taken);
     outcome->seconds = std::chrono::duration<double>(Clock::now() - begun).count();
     if (!outcome->error.empty()) print_notice(fmt::format("{}: {}", outcome->name, outcome->error));

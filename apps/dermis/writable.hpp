@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
-#include "dermis/core/result.hpp"
-#include "dermis/files/atomic_file.hpp"
+#include "dermis/bytes/files/atomic_file.hpp"
+#include "dermis/touch/frames/result.hpp"
 
 namespace dermis::app {
 
@@ -14,7 +14,7 @@ namespace dermis::app {
 inline Status check_writable(const std::string& path) {
   const bool is_special = std::filesystem::exists(path) && !std::filesystem::is_regular_file(path);
   if (is_special) return Done{};
-  const Result<files::AtomicFile> writable = files::AtomicFile::create(path);
+  const Result<bytes::files::AtomicFile> writable = bytes::files::AtomicFile::create(path);
   if (!writable) return writable.error();
   return Done{};
 }

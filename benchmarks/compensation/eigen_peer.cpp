@@ -5,7 +5,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
-#include "compensation/peers.hpp"
+#include "touch/compensation/peers.hpp"
 
 namespace dermis::benchmarks {
 namespace {

@@ -15,14 +15,14 @@
 #include <string>
 #include <vector>
 
-#include "dermis/core/quantile.hpp"
+#include "dermis/touch/frames/quantile.hpp"
 #include "support/healthy_arrays.hpp"
 #include "support/reference_array.hpp"
 
 namespace {
 
-using dermis::compensation::LineFaultKind;
-using dermis::simulation::LineFaults;
+using dermis::learn::simulation::LineFaults;
+using dermis::touch::compensation::LineFaultKind;
 
 constexpr std::size_t kWithinFrames = 3000;
 
@@ -59,10 +59,10 @@ std::optional<std::size_t> frames_to_detection(const FaultCase& fault, std::size
   watched.options.rubber.seed = seed;
   const std::size_t frames = from_frame + kWithinFrames;
   const auto simulator =
-      dermis::simulation::Simulator::create(watched.array, watched.options, "multitouch", seed, frames).value();
-  auto compensator = dermis::compensation::Compensator::create(watched.array).value();
+      dermis::learn::simulation::Simulator::create(watched.array, watched.options, "multitouch", seed, frames).value();
+  auto compensator = dermis::touch::compensation::Compensator::create(watched.array).value();
   const std::vector<double> unloaded(watched.array.taxel_count(), 1.0 / watched.options.rubber.unloaded_ohm);
-  dermis::compensation::LineFaultMonitor monitor(watched.array, unloaded);
+  dermis::touch::compensation::LineFaultMonitor monitor(watched.array, unloaded);
   dermis::ConductanceFrame conductance;
   dermis::RawFrame raw;
   for (std::size_t frame = 0; frame < frames && *simulator->next(raw); ++frame) {

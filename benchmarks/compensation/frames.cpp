@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "compensation/frames.hpp"
+#include "touch/compensation/frames.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "dermis/core/random.hpp"
-#include "dermis/simulation/readout_circuit.hpp"
+#include "dermis/learn/simulation/readout_circuit.hpp"
+#include "dermis/touch/frames/random.hpp"
 
 namespace dermis::benchmarks {
 namespace {
@@ -50,7 +50,7 @@ Contact new_contact(double size, double frame, Random& random) {
 
 std::vector<std::vector<double>> touch_sequence(const ArrayDescription& array, std::size_t frames) {
   Random random(1);
-  const auto circuit = simulation::ReadoutCircuit::create(array);
+  const auto circuit = learn::simulation::ReadoutCircuit::create(array);
   std::vector<double> idle(array.taxel_count());
   for (double& siemens : idle) siemens = 1.0 / random.log_uniform(150e3, 300e3);
   std::vector<Contact> contacts(kContacts);

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "dermis/core/array_description.hpp"
+#include "dermis/touch/frames/array_description.hpp"
 
 namespace dermis::benchmarks {
 

@@ -17,10 +17,10 @@
 #include <utility>
 #include <vector>
 
-#include "dermis/calibration/calibrate.hpp"
-#include "dermis/calibration/parallel.hpp"
-#include "dermis/health/raw_examination.hpp"
-#include "dermis/pipeline/pipeline.hpp"
+#include "dermis/learn/calibration/calibrate.hpp"
+#include "dermis/learn/calibration/parallel.hpp"
+#include "dermis/learn/health/raw_examination.hpp"
+#include "dermis/touch/pipeline/pipeline.hpp"
 #include "support/healthy_arrays.hpp"
 
 namespace {
@@ -126,12 +126,12 @@ Recording calibration_of(const HealthyArray& healthy, Random& random) {
 std::string found_faults_after_calibration(const HealthyArray& healthy, const dermis::ArrayDescription& known,
                                            Random& random, std::size_t frames, std::string& refusal) {
   const Recording recording = calibration_of(healthy, random);
-  const auto calibration = dermis::calibration::calibrate(known, recording.frames, recording.loads);
+  const auto calibration = dermis::learn::calibration::calibrate(known, recording.frames, recording.loads);
   if (!calibration) {
     refusal = calibration.error().message;
     return {};
   }
-  auto created = dermis::pipeline::Pipeline::create(calibration->model);
+  auto created = dermis::touch::pipeline::Pipeline::create(calibration->model);
   if (!created) {
     refusal = created.error().message;
     return {};
@@ -155,7 +155,7 @@ struct Outcome {
 };
 
 std::vector<std::string> doubts_of(const HealthyArray& healthy, std::size_t frames) {
-  dermis::health::RawExamination examination({healthy.array.rows, healthy.array.cols}, healthy.array.readout);
+  dermis::learn::health::RawExamination examination({healthy.array.rows, healthy.array.cols}, healthy.array.readout);
   for (const dermis::RawFrame& raw : dermis::support::stream_of(healthy, frames)) examination.add(raw);
   return examination.diagnosis().problems();
 }
@@ -195,8 +195,8 @@ int main(int argc, char** argv) {
   std::size_t doubted = 0;
   for (std::size_t first = 0; first < arrays; first += kArraysAtOnce) {
     std::vector<Outcome> outcomes(std::min(kArraysAtOnce, arrays - first));
-    dermis::calibration::parallel_for(outcomes.size(),
-                                      [&](std::size_t k) { outcomes[k] = watch(first_seed + first + k, most_frames); });
+    dermis::learn::calibration::parallel_for(
+        outcomes.size(), [&](std::size_t k) { outcomes[k] = watch(first_seed + first + k, most_frames); });
     for (std::size_t k = 0; k < outcomes.size(); ++k) {
       const auto knowledge = static_cast<std::size_t>(outcomes[k].knowledge);
       doubted += outcomes[k].doubts.empty() ? 0 : 1;

@@ -14,13 +14,13 @@
 #include <string>
 #include <vector>
 
-#include "compensation/frames.hpp"
-#include "compensation/methods.hpp"
-#include "compensation/peers.hpp"
-#include "dermis/compensation/crosstalk.hpp"
-#include "dermis/simulation/readout_circuit.hpp"
+#include "dermis/learn/simulation/readout_circuit.hpp"
+#include "dermis/touch/compensation/crosstalk.hpp"
 #include "rows.hpp"
 #include "support/reference_array.hpp"
+#include "touch/compensation/frames.hpp"
+#include "touch/compensation/methods.hpp"
+#include "touch/compensation/peers.hpp"
 
 namespace dermis::benchmarks {
 namespace {
@@ -125,7 +125,7 @@ class Program {
       return worst;
     };
     std::vector<double> ours(array.taxel_count());
-    auto inversion = compensation::make_crosstalk_inversion(array);
+    auto inversion = touch::compensation::make_crosstalk_inversion(array);
     std::vector<Contestant> entries = {{"dermis",
                                         [&](std::size_t k) {
                                           if (!warm) (*inversion)->forget();
@@ -152,11 +152,11 @@ class Program {
   template <typename Real>
   void forward(const std::string& work, double tolerance) {
     const ArrayDescription array = support::reference_circuit();
-    const auto circuit = simulation::ReadoutCircuit::create(array);
+    const auto circuit = learn::simulation::ReadoutCircuit::create(array);
     const auto eigen = eigen_peer(array);
     const auto scalar = scalar_peer(array);
     std::vector<std::vector<Real>> siemens;
-    auto inversion = compensation::make_crosstalk_inversion(array);
+    auto inversion = touch::compensation::make_crosstalk_inversion(array);
     for (const std::vector<double>& ratio : touch_sequence(array, 100)) {
       std::vector<double> exact(ratio.size());
       (void)(*inversion)->invert(ratio, exact);

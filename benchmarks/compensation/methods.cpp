@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "compensation/methods.hpp"
+#include "touch/compensation/methods.hpp"
 
 #include <fmt/core.h>
 
@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
-#include "dermis/compensation/crosstalk.hpp"
-#include "dermis/core/quantile.hpp"
-#include "dermis/core/random.hpp"
-#include "dermis/simulation/readout_circuit.hpp"
+#include "dermis/learn/simulation/readout_circuit.hpp"
+#include "dermis/touch/compensation/crosstalk.hpp"
+#include "dermis/touch/frames/quantile.hpp"
+#include "dermis/touch/frames/random.hpp"
 #include "support/reference_array.hpp"
 
 namespace dermis::benchmarks {
@@ -41,7 +41,7 @@ std::vector<Sample> random_samples(std::size_t count, double drive_ohm) {
     sample.siemens.resize(sample.array.taxel_count());
     for (double& value : sample.siemens) value = 1.0 / random.log_uniform(1e3, 1e5);
     sample.ratio.resize(sample.siemens.size());
-    simulation::ReadoutCircuit::create(sample.array)->ratios(sample.siemens, sample.ratio);
+    learn::simulation::ReadoutCircuit::create(sample.array)->ratios(sample.siemens, sample.ratio);
   }
   return samples;
 }
@@ -80,7 +80,7 @@ void grounded_row_formula(const Sample& sample, std::span<double> siemens) {
 /// 9735741) as docs/derivations.md states it, for this circuit and with T(G) solved exactly.
 void two_recursions(const Sample& sample, std::span<double> siemens) {
   textbook(sample, siemens);
-  const auto circuit = simulation::ReadoutCircuit::create(sample.array);
+  const auto circuit = learn::simulation::ReadoutCircuit::create(sample.array);
   std::vector<double> ratio(siemens.size());
   for (int step = 0; step < 2; ++step) {
     circuit->ratios(siemens, ratio);
@@ -89,8 +89,8 @@ void two_recursions(const Sample& sample, std::span<double> siemens) {
 }
 
 Method dermis_method(const Sample& sample, std::optional<double> tolerance) {
-  auto made = compensation::make_crosstalk_inversion(sample.array, {tolerance});
-  std::shared_ptr<compensation::CrosstalkInversion> inversion = std::move(*made);
+  auto made = touch::compensation::make_crosstalk_inversion(sample.array, {tolerance});
+  std::shared_ptr<touch::compensation::CrosstalkInversion> inversion = std::move(*made);
   return [inversion](const Sample& one, std::span<double> siemens) {
     inversion->forget();
     (void)inversion->invert(one.ratio, siemens);

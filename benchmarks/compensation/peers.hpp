@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "dermis/core/array_description.hpp"
+#include "dermis/touch/frames/array_description.hpp"
 
 namespace dermis::benchmarks {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "compensation/peers.hpp"
+#include "touch/compensation/peers.hpp"
 
 namespace dermis::benchmarks {
 namespace {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "dermis/core/version.hpp"
 #include "dermis/paper/feed_forward.hpp"
 #include "dermis/paper/network_bank.hpp"
 #include "dermis/paper/training.hpp"
+#include "dermis/touch/frames/version.hpp"
 #include "engine.hpp"
 #include "reference.hpp"
 

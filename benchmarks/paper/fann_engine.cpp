@@ -11,8 +11,8 @@
 namespace dermis::benchmarks {
 namespace {
 
-using network::Activation;
 using paper::NetworkShape;
+using touch::network::Activation;
 
 struct Destroy {
   void operator()(fann* network) const { fann_destroy(network); }

@@ -8,7 +8,7 @@
 #include <map>
 
 #include "adaptive_rate.hpp"
-#include "dermis/calibration/parallel.hpp"
+#include "dermis/learn/calibration/parallel.hpp"
 #include "engine.hpp"
 #include "forms.hpp"
 
@@ -201,7 +201,7 @@ std::vector<Form> threaded(const std::string& name, std::int64_t networks, int t
   const auto shared_out = [=] {
     use_blas_threads(1);
     const std::int64_t count = (networks + threads - 1) / threads;
-    calibration::parallel_for(static_cast<std::size_t>(threads), [&](std::size_t part) {
+    learn::calibration::parallel_for(static_cast<std::size_t>(threads), [&](std::size_t part) {
       at::set_num_threads(1);  // of this thread
       const std::int64_t first = std::min(networks, size(part) * count);
       body(first, std::min(count, networks - first));

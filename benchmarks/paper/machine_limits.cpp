@@ -10,14 +10,14 @@
 #include <functional>
 #include <numeric>
 
-#include "dermis/calibration/parallel.hpp"
+#include "dermis/learn/calibration/parallel.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "benchmarks/paper/machine_limits.cpp"
 #include "hwy/foreach_target.h"
 // foreach_target.h comes first: it includes this file again for every instruction set.
 #include "hwy/highway.h"
-#include "network/activation-inl.hpp"
+#include "touch/network/activation-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace dermis::benchmarks::HWY_NAMESPACE {
@@ -55,7 +55,7 @@ template <typename Real>
 void sigmoids(Real* values, std::size_t count) {
   const hn::ScalableTag<Real> d;
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
-    hn::StoreU(network::HWY_NAMESPACE::log_sigmoid(d, hn::LoadU(d, values + k)), d, values + k);
+    hn::StoreU(touch::network::HWY_NAMESPACE::log_sigmoid(d, hn::LoadU(d, values + k)), d, values + k);
   }
 }
 
@@ -70,7 +70,7 @@ void double_sigmoids(double* values, std::size_t count) {
 void float_tanhs(float* values, std::size_t count) {
   const hn::ScalableTag<float> d;
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
-    hn::StoreU(network::HWY_NAMESPACE::tanh(d, hn::LoadU(d, values + k)), d, values + k);
+    hn::StoreU(touch::network::HWY_NAMESPACE::tanh(d, hn::LoadU(d, values + k)), d, values + k);
   }
 }
 
@@ -142,7 +142,7 @@ double operations_per_second(int threads) {
   };
   std::vector<Slot> slots(static_cast<std::size_t>(threads));
   const auto all = [&] {
-    calibration::parallel_for(slots.size(), [&](std::size_t t) {
+    learn::calibration::parallel_for(slots.size(), [&](std::size_t t) {
       slots[t].result = Real{0.5};
       slots[t].operations = multiply_add(kRounds, slots[t].result);
     });
@@ -191,7 +191,7 @@ float sum(std::span<const float> values, int threads) {
   constexpr std::size_t kPiece = std::size_t{1} << 17U;  // the threads stay close together
   std::vector<float> sums(static_cast<std::size_t>(threads));
   std::atomic<std::size_t> next = 0;
-  calibration::parallel_for(sums.size(), [&](std::size_t t) {
+  learn::calibration::parallel_for(sums.size(), [&](std::size_t t) {
     float own = 0.0F;
     for (std::size_t first = next.fetch_add(kPiece); first < values.size(); first = next.fetch_add(kPiece)) {
       own += HWY_DYNAMIC_DISPATCH(sum_of)(values.data() + first, std::min(kPiece, values.size() - first));

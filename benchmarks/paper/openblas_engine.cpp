@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string>
 
-#include "dermis/calibration/parallel.hpp"
+#include "dermis/learn/calibration/parallel.hpp"
 #include "eigen_peaks.hpp"
 #include "engine.hpp"
 #include "forms.hpp"
@@ -36,7 +36,7 @@ class Openblas final : public Engine {
     const auto transposed = std::make_shared<std::vector<float>>(transposed_weights(problem));
     const auto evaluate = [&problem, outputs, transposed](CBLAS_ORDER order) {
       const float* weights = order == CblasRowMajor ? problem.all_parameters.data() : transposed->data();
-      calibration::parallel_for(problem.networks, [&](std::size_t network) {
+      learn::calibration::parallel_for(problem.networks, [&](std::size_t network) {
         (*outputs)[network] = evaluate_frame(problem, network, order, weights);
       });
     };
@@ -50,7 +50,7 @@ class Openblas final : public Engine {
     const auto outputs = std::make_shared<std::vector<float>>(problem.batch * problem.networks);
     const auto weights = std::make_shared<std::vector<float>>(transposed_weights(problem));
     const auto evaluate = [&problem, outputs, weights] {
-      calibration::parallel_for(problem.networks, [&](std::size_t network) {
+      learn::calibration::parallel_for(problem.networks, [&](std::size_t network) {
         evaluate_batch(problem, network, weights->data(), outputs->data() + network);
       });
     };

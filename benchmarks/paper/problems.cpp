@@ -6,18 +6,18 @@
 #include <cmath>
 
 #include "adaptive_rate.hpp"
-#include "dermis/core/random.hpp"
 #include "dermis/paper/peaks.hpp"
+#include "dermis/touch/frames/random.hpp"
 #include "engine.hpp"
 #include "reference.hpp"
 
 namespace dermis::benchmarks {
 namespace {
 
-using network::Activation;
 using paper::NetworkShape;
 using reference::as_double;
 using reference::max_deviation;
+using touch::network::Activation;
 
 std::vector<float> uniform(Random& random, std::size_t count, double low, double high) {
   std::vector<float> values(count);

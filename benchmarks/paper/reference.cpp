@@ -9,8 +9,8 @@
 namespace dermis::benchmarks::reference {
 namespace {
 
-using network::Activation;
 using paper::NetworkShape;
+using touch::network::Activation;
 
 double activate(Activation activation, double sum) {
   switch (activation) {

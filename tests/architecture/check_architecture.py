@@ -15,90 +15,152 @@ OPTION_IN_A_TEXT = re.compile(r'"(?:[^"\\\n]|\\.)*--[a-z](?:[^"\\\n]|\\.)*"')
 SPDX = "// SPDX-License-Identifier: Apache-2.0\n// SPDX-FileCopyrightText: 2026 The dermis authors\n"
 
 
-def allowed_includes(architecture):
-    """The dependency table: rows `| module | may include |` below the heading "Dependencies"."""
-    section = architecture.split("\n## Dependencies\n", 1)[1].split("\n## ", 1)[0]
-    rows = re.findall(r"^\| `(\w+)` \|([^|]*)\|$", section, re.MULTILINE)
-    return {module: {module} | set(re.findall(r"`(\w+)`", cell)) for module, cell in rows}
+def table(text, columns):
+    """Rows `| `name` | ... |` of so many columns: name -> the names in its last cell."""
+    cells = r"[^|\n]*\|" * (columns - 2)
+    rows = re.findall(rf"^\| `(\w+)` \|{cells}([^|\n]*)\|$", text, re.MULTILINE)
+    return {name: set(re.findall(r"`(\w+)`", last)) for name, last in rows}
 
 
-def folder_tables(architecture):
-    """Of each module with a heading "Folders of": folder -> folders whose private headers it may include."""
-    for section in architecture.split("\n### Folders of `")[1:]:
-        module, text = section.split("`", 1)
-        rows = re.findall(r"^\| `(\w+)` \|[^|]*\|([^|]*)\|$", text.split("\n## ", 1)[0], re.MULTILINE)
-        yield module, {folder: {folder} | set(re.findall(r"`(\w+)`", cell)) for folder, cell in rows}
+def section(text, heading):
+    found = text.split(f"\n{heading}\n", 1)
+    return re.split(r"^##", found[1], maxsplit=1, flags=re.MULTILINE)[0] if len(found) == 2 else ""
 
 
-def sources(root):
-    """(path, module) of every C++ file that the table is about; apps count as the module `apps`."""
+# What judges the others shares no formula with them.
+JUDGE = ("learn", "simulation")
+KNOWN_TO_THE_JUDGE = {("touch", "frames"), ("bytes", "files"), ("bytes", "bodies")}
+KNOWN_TO_PLUGINS = ("touch/frames/", "bytes/system/")
+
+
+class Rules:
+    """The tables of ARCHITECTURE.md: which wing may include which and, in a wing, which room which."""
+
+    def __init__(self, architecture):
+        self.wings = table(section(architecture, "## Wings"), 3)
+        self.rooms_of = {wing: table(section(architecture, f"### Rooms of `{wing}`"), 4) for wing in self.wings}
+
+    def place(self, name):
+        """(wing, room) of a path below src or include/dermis; None: no such wing; a wing without rooms is its own."""
+        wing, *rest = name.split("/")
+        if wing not in self.wings:
+            return None
+        return wing, rest[0] if self.rooms_of[wing] and len(rest) > 1 else wing
+
+    def allows(self, here, there):
+        if here == there:
+            return True
+        if here == JUDGE:
+            return there in KNOWN_TO_THE_JUDGE
+        if here[0] != there[0]:
+            return there[0] in self.wings[here[0]]
+        return there[1] in self.rooms_of[here[0]].get(here[1], ())
+
+
+def included(path):
+    """(name, is public) of the files of the project that a source includes."""
+    for bracket, name in INCLUDE.findall(path.read_text()):
+        if bracket == '"':
+            yield name.removeprefix("dermis/"), name.startswith("dermis/")
+
+
+def sources(root, rules):
+    """(path, its place) of every C++ file of the wings."""
     for folder in ("include/dermis", "src"):
         for path in sorted((root / folder).rglob("*.[ch]pp")):
-            yield path, path.relative_to(root / folder).parts[0]
-    for path in sorted((root / "apps").rglob("*.[ch]pp")):
-        yield path, "apps"
+            yield path, rules.place(path.relative_to(root / folder).as_posix())
 
 
-def is_shared(name, modules):
-    """Kernels that are compiled anew for every instruction set cannot be public headers."""
-    return name.endswith("-inl.hpp") and name.split("/")[0] in modules
-
-
-def include_violations(root, allowed):
-    for path, module in sources(root):
-        place = path.relative_to(root)
-        if module not in allowed:
-            yield f"{place}: the module {module} is not in the table of ARCHITECTURE.md"
+def include_violations(root, rules):
+    for path, here in sources(root, rules):
+        shown = path.relative_to(root)
+        if here is None or (rules.rooms_of[here[0]] and here[1] not in rules.rooms_of[here[0]]):
+            yield f"{shown}: is in no wing and room of ARCHITECTURE.md"
             continue
-        for bracket, name in INCLUDE.findall(path.read_text()):
-            parts = name.split("/")
-            if parts[0] == "dermis" and len(parts) == 3:
-                if parts[1] not in allowed[module]:
-                    yield f"{place}: {module} must not include {parts[1]} ({name})"
-            elif bracket == '"' and parts[0] in allowed and parts[0] != module and not is_shared(name, allowed[module]):
-                yield f"{place}: {name} is private to the module {parts[0]}"
+        for name, is_public in included(path):
+            there = rules.place(name)
+            if there is None:
+                continue
+            if not rules.allows(here, there):
+                yield f"{shown}: {here[1]} must not include {there[1]} ({name})"
+            elif not is_public and there != here and not name.endswith("-inl.hpp"):
+                yield f"{shown}: {name} is private to {there[1]}"
 
 
-def plugin_violations(root):
-    """A plugin knows its own headers, those of the module that loads it, and public ones of core."""
+def app_violations(root, rules):
+    """The command knows what is public, and kernels that are compiled anew for every instruction set."""
+    for path in sorted((root / "apps").rglob("*.[ch]pp")):
+        for name, is_public in included(path):
+            if rules.place(name) and not is_public and not name.endswith("-inl.hpp"):
+                yield f"{path.relative_to(root)}: {name} is private to {rules.place(name)[1]}"
+
+
+def plugin_violations(root, rules):
+    """A plugin knows its own headers, those of the room that loads it, and what all may know."""
     for plugin, home in PLUGINS.items():
-        for path in sorted((root / plugin).rglob("*.[ch]pp")):
-            for _, name in INCLUDE.findall(path.read_text()):
-                parts = name.split("/")
-                is_public_of_others = parts[0] == "dermis" and parts[1] not in ("core", home)
-                is_private_of_others = (root / "src" / parts[0]).is_dir() and parts[0] != home
-                if is_public_of_others or is_private_of_others:
+        for path in sorted((root / "plugins" / plugin).rglob("*.[ch]pp")):
+            for name, is_public in included(path):
+                is_its_own = name.startswith(f"{home}/") or (is_public and name.startswith(KNOWN_TO_PLUGINS))
+                if rules.place(name) and not is_its_own:
                     yield f"{path.relative_to(root)}: a plugin of {home} must not include {name}"
 
 
+def permission_violations(root, rules):
+    """Each permission of the tables is used."""
+    used = set()
+    for path, here in sources(root, rules):
+        for name, _ in included(path):
+            there = rules.place(name)
+            if here and there:
+                used |= {(here[0], there[0]), (*here, there[1])}
+    for wing, names in rules.wings.items():
+        for name in sorted(names):
+            if (wing, name) not in used:
+                yield f"ARCHITECTURE.md: {wing} makes no use of {name}"
+        for room, others in rules.rooms_of[wing].items():
+            for name in sorted(others):
+                if (wing, room, name) not in used:
+                    yield f"ARCHITECTURE.md: {room} makes no use of {name}"
+
+
+def order_violations(architecture, rules):
+    """A wing may include those above it, a room and a folder likewise: so there is no circle."""
+    folders = [table for _, table in folder_tables(architecture)]
+    for rows in (rules.wings, *rules.rooms_of.values(), *folders):
+        above = set()
+        for name, others in rows.items():
+            for other in sorted(others - above - {name}):
+                yield f"ARCHITECTURE.md: {name} may include {other}, which is not above it"
+            above.add(name)
+
+
+def folder_tables(architecture):
+    """Of each room with a heading "Folders of": folder -> folders whose private headers it may include."""
+    for text in architecture.split("\n### Folders of `")[1:]:
+        room = text.split("`", 1)[0]
+        yield room, table(section(architecture, f"### Folders of `{room}`"), 3)
+
+
 def folder_violations(root, architecture):
-    for module, allowed in folder_tables(architecture):
-        home = root / "src" / module
-        used = {folder: {folder} for folder in allowed}
+    for room, allowed in folder_tables(architecture):
+        home = next((root / "src").glob(f"*/{room}"))
+        prefix = home.relative_to(root / "src").as_posix() + "/"
+        used = {folder: set() for folder in allowed}
         for path in sorted(home.glob("*/**/*.[ch]pp")):
             place, folder = path.relative_to(root), path.relative_to(home).parts[0]
             if folder not in allowed:
                 yield f"{place}: the folder {folder} is not in the table of ARCHITECTURE.md"
                 continue
-            for _, name in INCLUDE.findall(path.read_text()):
-                parts = name.split("/")
-                if parts[0] != module or len(parts) < 3:
+            for name, is_public in included(path):
+                other = name.removeprefix(prefix).split("/")
+                if is_public or not name.startswith(prefix) or len(other) < 2 or other[0] == folder:
                     continue
-                used[folder].add(parts[1])
-                if parts[1] not in allowed[folder]:
-                    yield f"{place}: the folder {folder} must not include {parts[1]} ({name})"
+                used[folder].add(other[0])
+                if other[0] not in allowed[folder]:
+                    yield f"{place}: the folder {folder} must not include {other[0]} ({name})"
         for folder, names in allowed.items():
             for name in sorted(names - used[folder]):
-                yield f"ARCHITECTURE.md: {module}/{folder} makes no use of {name}"
-
-
-def folder_order_violations(architecture):
-    """A folder may include those above it, so there is no circle."""
-    for module, allowed in folder_tables(architecture):
-        folders = list(allowed)
-        for place, folder in enumerate(folders):
-            for name in sorted(allowed[folder] - set(folders[: place + 1])):
-                yield f"ARCHITECTURE.md: {module}/{folder} may include {name}, which is not above it"
+                yield f"ARCHITECTURE.md: {room}/{folder} makes no use of {name}"
 
 
 def header_violations(root):
@@ -127,25 +189,11 @@ def licence_violations(root):
 
 
 def message_violations(root):
-    """An error of the library names a field (bad_field() of core/result.hpp); the command knows its option."""
+    """An error of the library names a field (bad_field() of frames/result.hpp); the command knows its option."""
     for path in sorted((root / "src").rglob("*.[ch]pp")):
         for number, line in enumerate(path.read_text().splitlines(), 1):
             if OPTION_IN_A_TEXT.search(line.split(" // ")[0]):
                 yield f"{path.relative_to(root)}:{number}: a text of the library names an option of the command line"
-
-
-def permission_violations(root, allowed):
-    """Each permission of the table is used; a module may be linked for others to have it."""
-    used = {module: {module} for module in allowed}
-    for path, module in sources(root):
-        used.get(module, set()).update(
-            name.split("/")[1] if name.startswith("dermis/") else name.split("/")[0]
-            for _, name in INCLUDE.findall(path.read_text())
-            if "/" in name
-        )
-    for module, names in sorted(allowed.items()):
-        for name in sorted(names - used[module]):
-            yield f"ARCHITECTURE.md: {module} makes no use of {name}"
 
 
 def version_violations(root):
@@ -159,15 +207,16 @@ def version_violations(root):
 
 def violations(root):
     architecture = (root / "ARCHITECTURE.md").read_text()
-    allowed = allowed_includes(architecture)
-    yield from include_violations(root, allowed)
-    yield from plugin_violations(root)
+    rules = Rules(architecture)
+    yield from include_violations(root, rules)
+    yield from app_violations(root, rules)
+    yield from plugin_violations(root, rules)
+    yield from permission_violations(root, rules)
+    yield from order_violations(architecture, rules)
     yield from folder_violations(root, architecture)
-    yield from folder_order_violations(architecture)
     yield from header_violations(root)
     yield from licence_violations(root)
     yield from message_violations(root)
-    yield from permission_violations(root, allowed)
     yield from version_violations(root)
 
 

@@ -12,6 +12,7 @@ import concurrent.futures
 import os
 import subprocess
 import sys
+import sysconfig
 from pathlib import Path
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "scripts"))
@@ -19,8 +20,8 @@ from source_folders import PRODUCTION
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = (ROOT / "include", ROOT / "src", ROOT / "apps/dermis")
-LIBRARIES = ("/usr/include/eigen3", "/usr/include/hdf5/serial")
-FLAGS = ["-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror", "-fsyntax-only", "-x", "c++", "-"]
+LIBRARIES = ("/usr/include/eigen3", "/usr/include/hdf5/serial", "/usr/include/cairo", sysconfig.get_path("include"))
+FLAGS = ["-fvisibility=hidden", "-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror", "-fsyntax-only", "-x", "c++", "-"]
 
 
 def git(*arguments):

@@ -130,7 +130,7 @@ LEFT_OUT = (
     "tests/install",
     "tests/npm",
     "tests/ros/reader",
-    "ros",
+    "bindings/ros",
     "build",
     "viewer/node_modules",
     "tests/architecture/check_packages",

@@ -81,7 +81,7 @@ class Programs(unittest.TestCase):
 
     def test_the_symbols_are_the_functions_of_the_header(self):
         names = {line.split()[-1] for line in run("nm", "-D", "--defined-only", LIBRARY).splitlines()}
-        header = (Path(__file__).parents[2] / "c/dermis.h").read_text()
+        header = (Path(__file__).parents[2] / "bindings/c/dermis.h").read_text()
         declared = set(re.findall(r"^[a-z][\w *]*?[ *](dermis_\w+)\(", header, flags=re.MULTILINE))
         self.assertEqual(names - {"DERMIS_0.1"}, {f"{name}@@DERMIS_0.1" for name in declared})
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """dermis serve from outside: what it refuses, its page and documents, its recording. The stream itself:
-tests/stream."""
+tests/out/websocket."""
 
 import gzip
 import json

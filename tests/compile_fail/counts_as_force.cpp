@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 // expected error: ForceFrame.*RawFrame|RawFrame.*ForceFrame
-#include "dermis/core/frames.hpp"
+#include "dermis/touch/frames/frames.hpp"
 
 namespace {
 

@@ -3,15 +3,16 @@
 // expected error: nodiscard
 #include <string>
 
-#include "dermis/pipeline/model.hpp"
+#include "dermis/bytes/models/model_file.hpp"
+#include "dermis/touch/pipeline/model.hpp"
 
 bool is_model(const std::string& path);
 
 bool is_model(const std::string& path) {
 #ifdef MISTAKE
-  dermis::pipeline::read_model(path);
+  dermis::bytes::models::read_model(path);
   return true;
 #else
-  return dermis::pipeline::read_model(path).has_value();
+  return dermis::bytes::models::read_model(path).has_value();
 #endif
 }

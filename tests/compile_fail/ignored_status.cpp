@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 // expected error: nodiscard
-#include "dermis/core/result.hpp"
+#include "dermis/touch/frames/result.hpp"
 
 dermis::Status save();
 

@@ -42,7 +42,7 @@ class Snippets(unittest.TestCase):
                 )
 
     def test_the_program_of_the_page_on_c_is_whole(self):
-        self.compile(CC, "-std=c99", "-x", "c", f"-I{ROOT}/c", text=snippet("docs/c.md", "c"))
+        self.compile(CC, "-std=c99", "-x", "c", f"-I{ROOT}/bindings/c", text=snippet("docs/c.md", "c"))
 
 
 if __name__ == "__main__":

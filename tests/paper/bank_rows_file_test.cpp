@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "dermis/core/random.hpp"
+#include "dermis/touch/frames/random.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thread_ranks.hpp"
 
@@ -22,10 +22,10 @@ constexpr std::size_t kNetworks = 5;
 constexpr std::size_t kParameters = 3;
 constexpr const char* kOther = "is another";
 
-files::SafetensorsFile first_of(double value) {
-  files::SafetensorsFile first;
+bytes::files::SafetensorsFile first_of(double value) {
+  bytes::files::SafetensorsFile first;
   first.metadata["format"] = "test";
-  files::put_tensor(first, "value", {1}, std::vector<double>{value});
+  bytes::files::put_tensor(first, "value", {1}, std::vector<double>{value});
   return first;
 }
 
@@ -52,7 +52,7 @@ Result<std::string> read(const std::string& path, Ranks& ranks) {
 TEST(BankRowsFile, is_the_file_of_one_process_and_a_safetensors_file) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write(folder.file("alone"), one_process()));
-  const files::SafetensorsFile whole = files::read_safetensors(folder.file("alone")).value();
+  const bytes::files::SafetensorsFile whole = bytes::files::read_safetensors(folder.file("alone")).value();
   EXPECT_TRUE(whole.has_checksum);
   EXPECT_EQ((*whole.view<float>("b", {kNetworks, kParameters}))[7], 121.0F);
   for (std::size_t count = 2; count <= 4; ++count) {

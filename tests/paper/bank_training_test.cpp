@@ -8,27 +8,27 @@
 #include <cmath>
 #include <limits>
 
-#include "calibration/simulated.hpp"
-#include "dermis/calibration/calibrate.hpp"
-#include "dermis/calibration/evaluation.hpp"
+#include "dermis/learn/calibration/calibrate.hpp"
+#include "dermis/learn/calibration/evaluation.hpp"
 #include "dermis/paper/paper_bank_file.hpp"
+#include "learn/calibration/simulated.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thread_ranks.hpp"
 
 namespace dermis::paper {
 namespace {
 
-using calibration::record;
-using calibration::Recording;
-using calibration::reference_array;
-using calibration::Sample;
-using calibration::SampleDatabase;
+using learn::calibration::record;
+using learn::calibration::Recording;
+using learn::calibration::reference_array;
+using learn::calibration::Sample;
+using learn::calibration::SampleDatabase;
 using support::on_ranks;
 using support::TemporaryFolder;
 
 SampleDatabase database_of(const ArrayDescription& array, const char* scene) {
   const Recording recording = record(array, scene, 1);
-  return calibration::build_sample_database(array, recording.frames, recording.loads).value();
+  return learn::calibration::build_sample_database(array, recording.frames, recording.loads).value();
 }
 
 std::vector<float> parameters_of(const PaperBank& bank, std::size_t network) {
@@ -94,10 +94,11 @@ TEST(BankTraining, reaches_the_papers_five_percent_on_its_points) {
   TrainedBank trained = train_paper_bank(database, {.steps = 5000}).value();
   EXPECT_EQ(trained.report.unknowns, paper_bank_unknowns(20));
   const Recording presses = record(array, "paper_calibration", 1);
-  const calibration::Calibration calibrated = calibration::calibrate(array, presses.frames, presses.loads).value();
+  const learn::calibration::Calibration calibrated =
+      learn::calibration::calibrate(array, presses.frames, presses.loads).value();
   const Recording points = record(array, "paper", 3);
-  const calibration::Evaluation evaluation =
-      calibration::evaluate(calibrated.model, points.frames, points.loads, &trained.bank).value();
+  const learn::calibration::Evaluation evaluation =
+      learn::calibration::evaluate(calibrated.model, points.frames, points.loads, &trained.bank).value();
   EXPECT_EQ(evaluation.estimators.back().name, kPaperBankName);
   EXPECT_EQ(evaluation.estimators.back().relative_error.count, 48U);
   EXPECT_LE(evaluation.estimators.back().relative_error.max, 0.05);

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "dermis/core/random.hpp"
+#include "dermis/touch/frames/random.hpp"
 
 namespace dermis::paper {
 namespace {
@@ -16,10 +16,10 @@ constexpr std::uint64_t kSeed = 11;
 constexpr std::size_t kClasses = 3;
 
 /// Points around one centre a class in the plane, in `folds` folds; the centres are asked.
-recognition::Lesson lesson_of(std::size_t folds) {
+learn::recognition::Lesson lesson_of(std::size_t folds) {
   constexpr float kCentres[kClasses][2] = {{-1.0F, -1.0F}, {1.0F, -1.0F}, {0.0F, 1.5F}};
   Random random(kSeed);
-  recognition::Lesson lesson;
+  learn::recognition::Lesson lesson;
   lesson.features = 2;
   lesson.classes = kClasses;
   for (std::size_t i = 0; i < 90; ++i) {
@@ -33,7 +33,7 @@ recognition::Lesson lesson_of(std::size_t folds) {
   return lesson;
 }
 
-void expect_right_answers(const recognition::Lesson& lesson) {
+void expect_right_answers(const learn::recognition::Lesson& lesson) {
   const auto answers = answer_by_bp_network(lesson);
   ASSERT_TRUE(answers) << answers.error().message;
   ASSERT_EQ(answers->size(), kClasses * kClasses);
@@ -53,7 +53,7 @@ TEST(AnswerByBpNetwork, holds_out_some_examples_where_all_are_of_one_fold) {
 }
 
 TEST(AnswerByBpNetwork, answers_the_same_each_time) {
-  const recognition::Lesson lesson = lesson_of(4);
+  const learn::recognition::Lesson lesson = lesson_of(4);
   EXPECT_EQ(*answer_by_bp_network(lesson), *answer_by_bp_network(lesson));
 }
 

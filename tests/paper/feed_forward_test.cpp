@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "dermis/core/random.hpp"
+#include "dermis/touch/frames/random.hpp"
 #include "paper/reference_network.hpp"
 #include "support/allocation_guard.hpp"
 #include "support/gradient_check.hpp"

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "dermis/core/random.hpp"
+#include "dermis/touch/frames/random.hpp"
 
 namespace dermis::paper {
 namespace {
@@ -31,8 +31,8 @@ TEST(NetworkLevenbergMarquardt, follows_the_path_of_the_residual_function) {
     network.evaluate(p, inputs, r);
     for (std::size_t k = 0; k < r.size(); ++k) r[k] = std::sqrt(weights[k / 2]) * (r[k] - targets[k]);
   };
-  const network::ResidualFunction function = [&](std::span<const double> p, std::span<double> r,
-                                                 std::span<double> jacobian) {
+  const touch::network::ResidualFunction function = [&](std::span<const double> p, std::span<double> r,
+                                                        std::span<double> jacobian) {
     residuals(p, r);
     if (jacobian.empty()) return;
     std::vector<double> moved(p.begin(), p.end());
@@ -50,9 +50,9 @@ TEST(NetworkLevenbergMarquardt, follows_the_path_of_the_residual_function) {
     }
   };
 
-  const network::LevenbergMarquardtOptions options{.max_iterations = 8};
+  const touch::network::LevenbergMarquardtOptions options{.max_iterations = 8};
   std::vector<double> by_residuals = start;
-  const auto expected = network::minimise(function, 60, by_residuals, options);
+  const auto expected = touch::network::minimise(function, 60, by_residuals, options);
   std::vector<double> by_network = start;
   const PackedSamples<double> samples(shape, {30, inputs, targets, weights});
   const auto report = minimise(network, samples, by_network, options);

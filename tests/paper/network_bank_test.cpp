@@ -12,8 +12,8 @@
 #include <numeric>
 #include <vector>
 
-#include "dermis/core/random.hpp"
 #include "dermis/paper/feed_forward.hpp"
+#include "dermis/touch/frames/random.hpp"
 #include "support/allocation_guard.hpp"
 #include "support/simd_targets.hpp"
 

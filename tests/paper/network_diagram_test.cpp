@@ -4,15 +4,15 @@
 
 #include <gtest/gtest.h>
 
-#include "report/well_formed.hpp"
+#include "out/report/well_formed.hpp"
 
 namespace dermis::paper {
 namespace {
 
-using report::Drawing;
-using report::occurrences;
-using report::svg_document;
-using report::xml_error;
+using out::report::Drawing;
+using out::report::occurrences;
+using out::report::svg_document;
+using out::report::xml_error;
 
 /// Segments of all paths of a class.
 std::size_t segments(const std::string& elements, const std::string& style) {

@@ -6,8 +6,8 @@
 
 #include <limits>
 
-#include "dermis/core/random.hpp"
-#include "dermis/files/safetensors.hpp"
+#include "dermis/bytes/files/safetensors.hpp"
+#include "dermis/touch/frames/random.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace dermis::paper {
@@ -64,9 +64,9 @@ template <typename Change>
 void expect_refused(const char* place, Change change) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_paper_bank(folder.file("bank"), random_bank(4, PaperBank::Range{0.0, 50.0})));
-  files::SafetensorsFile file = files::read_safetensors(folder.file("bank")).value();
+  bytes::files::SafetensorsFile file = bytes::files::read_safetensors(folder.file("bank")).value();
   change(file);
-  ASSERT_TRUE(files::write_safetensors(folder.file("bank"), file));
+  ASSERT_TRUE(bytes::files::write_safetensors(folder.file("bank"), file));
   const Result<PaperBank> read = read_paper_bank(folder.file("bank"));
   ASSERT_FALSE(read) << place;
   EXPECT_EQ(read.error().kind, ErrorKind::bad_input);
@@ -75,7 +75,7 @@ void expect_refused(const char* place, Change change) {
 }
 
 TEST(PaperBankFile, refuses_what_is_missing_or_out_of_range) {
-  using files::SafetensorsFile;
+  using bytes::files::SafetensorsFile;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const auto doubles = [](SafetensorsFile& file, const char* name) -> std::vector<double>& {
     return std::get<std::vector<double>>(file.tensors.at(name).values);

@@ -10,16 +10,16 @@
 #include <limits>
 #include <set>
 
+#include "out/report/well_formed.hpp"
 #include "paper/sample_reproduction.hpp"
-#include "report/well_formed.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace dermis::paper {
 namespace {
 
-using report::has_bad_number;
-using report::occurrences;
-using report::xml_error;
+using out::report::has_bad_number;
+using out::report::occurrences;
+using out::report::xml_error;
 
 namespace fs = std::filesystem;
 

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "dermis/core/random.hpp"
 #include "dermis/paper/paper_bank.hpp"
 #include "dermis/paper/paper_report.hpp"
-#include "report/sample_evaluation.hpp"
+#include "dermis/touch/frames/random.hpp"
+#include "out/report/sample_evaluation.hpp"
 
 namespace dermis::paper {
 
@@ -70,8 +70,8 @@ inline std::vector<StartSystem> sample_start() {
 
 /// The estimates of paper_sample() and of a bank that misses the truth by `bank_spread` and more.
 inline void add_sample_points(PaperReproduction& reproduction, double bank_spread) {
-  calibration::Evaluation evaluation = report::paper_sample();
-  calibration::EstimatorResult& bank_result = evaluation.estimators.emplace_back();
+  learn::calibration::Evaluation evaluation = out::report::paper_sample();
+  learn::calibration::EstimatorResult& bank_result = evaluation.estimators.emplace_back();
   bank_result.name = kPaperBankName;
   bank_result.description = "one N-N-N-1 network a taxel";
   Random random(11);
@@ -83,8 +83,8 @@ inline void add_sample_points(PaperReproduction& reproduction, double bank_sprea
                                    judged.true_newtons, volts, volts * random.uniform(0.995, 1.005), bank,
                                    static_cast<double>(judged.newtons[0])});
   }
-  report::summarise_sample(evaluation);
-  reproduction.model = report::sample_model(evaluation);
+  out::report::summarise_sample(evaluation);
+  reproduction.model = out::report::sample_model(evaluation);
   reproduction.evaluation = std::move(evaluation);
 }
 

@@ -6,20 +6,20 @@
 
 #include <limits>
 
-#include "dermis/report/heat_map.hpp"
-#include "report/well_formed.hpp"
+#include "dermis/out/report/heat_map.hpp"
+#include "out/report/well_formed.hpp"
 
 namespace dermis::paper {
 namespace {
 
-using report::Axis;
-using report::diverging_colour;
-using report::has_bad_number;
-using report::occurrences;
-using report::Scale;
-using report::svg_document;
-using report::to_hex;
-using report::xml_error;
+using out::report::Axis;
+using out::report::diverging_colour;
+using out::report::has_bad_number;
+using out::report::occurrences;
+using out::report::Scale;
+using out::report::svg_document;
+using out::report::to_hex;
+using out::report::xml_error;
 
 Surface slope(std::size_t rows, std::size_t cols) {
   const Axis floor{"x <cm>", Scale::linear, -3.0, 3.0, {-3.0, 0.0, 3.0}};

@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
-#include "dermis/calibration/parallel.hpp"
-#include "dermis/core/random.hpp"
+#include "dermis/learn/calibration/parallel.hpp"
 #include "dermis/paper/initialisation.hpp"
+#include "dermis/touch/frames/random.hpp"
 #include "paper/reference_network.hpp"
 #include "paper/training/levenberg_marquardt.hpp"
 #include "support/allocation_guard.hpp"
@@ -413,7 +413,7 @@ TEST(Training, levenberg_marquardt_is_the_loop_of_its_own_header) {
   const auto state = trained(kSmall, data, options);
   FeedForward<double> network(kSmall);
   Numbers parameters = xavier_start<double>(kSmall, 3);
-  network::LevenbergMarquardtOptions loop;
+  touch::network::LevenbergMarquardtOptions loop;
   loop.max_iterations = 30;
   loop.relative_reduction = 0.0;
   const auto report = minimise(network, PackedSamples<double>(kSmall, data.view()), parameters, loop);
@@ -607,7 +607,7 @@ TEST(Training, trainings_side_by_side_give_the_bits_of_one_after_the_other) {
       return trained(kDeep, data, options);
     };
     std::vector<TrainingState<float>> side_by_side(8);
-    calibration::parallel_for(8, [&](std::size_t k) { side_by_side[k] = train_one(k); });
+    learn::calibration::parallel_for(8, [&](std::size_t k) { side_by_side[k] = train_one(k); });
     for (std::size_t k = 0; k < 8; ++k) EXPECT_EQ(side_by_side[k], train_one(k));
   }
 }

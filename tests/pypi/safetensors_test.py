@@ -10,7 +10,7 @@ from pathlib import Path
 
 from safetensors import safe_open
 
-READER = Path(__file__).resolve().parent.parent / "files/read_safetensors.py"
+READER = Path(__file__).resolve().parent.parent / "bytes/files/read_safetensors.py"
 MODEL = sys.argv.pop()
 NAMES = {"float32": "F32", "float64": "F64", "uint8": "U8", "int64": "I64"}
 

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "command_line"))
-sys.path.append(str(Path(__file__).resolve().parents[2] / "python"))
+sys.path.append(str(Path(__file__).resolve().parents[2] / "bindings/python"))
 sys.path.append(str(Path(__file__).resolve().parents[2] / "scripts"))
 import bare
 import support

@@ -13,8 +13,8 @@ import dermis
 
 ROOT = Path(__file__).parents[2]
 INCLUDE = ROOT / "include/dermis"
-C_HEADER = (ROOT / "c/dermis.h").read_text()
-STUB = ast.parse((ROOT / "python/dermis/__init__.pyi").read_text())
+C_HEADER = (ROOT / "bindings/c/dermis.h").read_text()
+STUB = ast.parse((ROOT / "bindings/python/dermis/__init__.pyi").read_text())
 
 
 def block(text, opening):
@@ -58,7 +58,7 @@ def c_struct(name):
 
 
 def message(name):
-    text = (ROOT / f"src/messages/msg/dermis_msgs/{name}.msg").read_text()
+    text = (ROOT / f"src/bytes/ros_messages/msg/dermis_msgs/{name}.msg").read_text()
     constants = {
         constant: int(value) for constant, value in re.findall(r"^uint\d+ ([A-Z_]+)=(\d+)", text, re.MULTILINE)
     }
@@ -87,14 +87,14 @@ def python_defaults(name, owner=None):
 
 class Enumerations(unittest.TestCase):
     def test_the_status_of_a_taxel(self):
-        expected = cpp_enumerators("core/frames.hpp", "TaxelStatus")
+        expected = cpp_enumerators("touch/frames/frames.hpp", "TaxelStatus")
         self.assertEqual(len(expected), 6)
         self.assertEqual({member.name: member.value for member in dermis.TaxelStatus}, expected)
         self.assertEqual(c_enumerators("TAXEL_"), expected)
         self.assertEqual(message("TaxelStatus")[0], expected)
 
     def test_the_status_of_a_frame(self):
-        expected = cpp_enumerators("core/frames.hpp", "FrameStatus")
+        expected = cpp_enumerators("touch/frames/frames.hpp", "FrameStatus")
         self.assertEqual(expected.pop("OK"), 0)
         self.assertEqual(len(expected), 11)
         self.assertEqual({member.name: member.value for member in dermis.FrameStatus if member}, expected)
@@ -103,7 +103,7 @@ class Enumerations(unittest.TestCase):
         self.assertEqual(message("FrameStatus")[0], expected)
 
     def test_the_phase_of_a_contact(self):
-        expected = cpp_enumerators("core/contacts.hpp", "ContactPhase")
+        expected = cpp_enumerators("touch/frames/contacts.hpp", "ContactPhase")
         self.assertEqual(expected, {"ONSET": 0, "HELD": 1, "RELEASE": 2})
         self.assertEqual({name: c_enumerators("")[name] for name in expected}, expected)
         self.assertEqual(message("Contact")[0], expected)
@@ -123,7 +123,7 @@ class Fields(unittest.TestCase):
         return names
 
     def test_a_contact(self):
-        fields = cpp_struct("core/contacts.hpp", "Contact")
+        fields = cpp_struct("touch/frames/contacts.hpp", "Contact")
         names = self.named(fields)
         self.assertEqual(len(names), 15)
         self.assertEqual(python_properties("Contact"), names)
@@ -149,7 +149,7 @@ class Fields(unittest.TestCase):
         names = self.named(
             {
                 name: field
-                for name, field in cpp_struct("core/frames.hpp", "RawFrame").items()
+                for name, field in cpp_struct("touch/frames/frames.hpp", "RawFrame").items()
                 if name not in ("acquisition", "sensor_celsius")  # C has one temperature
             }
         )
@@ -159,19 +159,19 @@ class Fields(unittest.TestCase):
 
     def test_a_frame_of_forces(self):
         names = self.named(
-            {name: field for name, field in cpp_struct("core/frames.hpp", "ForceFrame").items() if name != "sums"}
+            {name: field for name, field in cpp_struct("touch/frames/frames.hpp", "ForceFrame").items() if name != "sums"}
         )
         self.assertEqual(len(names), 6)
         self.assertEqual(sorted(python_properties("ForceFrame")), sorted([*names, "total", "total_sigma"]))
         self.assertEqual(sorted(c_struct("dermis_force_frame")), sorted([*names, "count"]))
 
     def test_a_sum_of_forces(self):
-        self.assertEqual(c_struct("dermis_total"), list(cpp_struct("core/force_sums.hpp", "TotalForce")))
+        self.assertEqual(c_struct("dermis_total"), list(cpp_struct("touch/frames/force_sums.hpp", "TotalForce")))
 
     def test_how_a_frame_was_acquired(self):
-        fields = cpp_struct("core/frames.hpp", "Acquisition") | {
+        fields = cpp_struct("touch/frames/frames.hpp", "Acquisition") | {
             name: field
-            for name, field in cpp_struct("core/frames.hpp", "RawFrame").items()
+            for name, field in cpp_struct("touch/frames/frames.hpp", "RawFrame").items()
             if name in ("time", "supply_v")
         }
         expected = set()
@@ -193,12 +193,12 @@ class Defaults(unittest.TestCase):
         self.assertEqual(found, defaults)
 
     def test_of_contacts(self):
-        self.expect(python_defaults("__init__", "ContactTracker"), "contacts/contact_tracker.hpp", "ContactOptions")
+        self.expect(python_defaults("__init__", "ContactTracker"), "touch/contacts/contact_tracker.hpp", "ContactOptions")
 
     def test_of_a_server(self):
         found = {name: value for name, value in python_defaults("serve").items() if value is not None}
         self.expect(
-            {name: found[name] for name in ("host", "port")}, "stream/server.hpp", "ServerOptions", ("host", "port")
+            {name: found[name] for name in ("host", "port")}, "out/websocket/server.hpp", "ServerOptions", ("host", "port")
         )
         self.assertEqual(found["token"], "")
 

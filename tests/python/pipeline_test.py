@@ -194,7 +194,7 @@ class Pipeline(workspace.CalibratedArray):
                 np.testing.assert_array_equal(getattr(back, member), getattr(result, member), member)
 
     def test_enumerations_are_those_of_the_library(self):
-        header = (workspace.Path(__file__).parents[2] / "include/dermis/core/frames.hpp").read_text()
+        header = (workspace.Path(__file__).parents[2] / "include/dermis/touch/frames/frames.hpp").read_text()
         for kind in (dermis.FrameStatus, dermis.TaxelStatus):
             body = header.split(f"enum class {kind.__name__} ")[1].split("{", 1)[1].split("};")[0]
             code = [line.split("//")[0].strip() for line in body.splitlines()]

@@ -29,7 +29,7 @@ class Stubs(unittest.TestCase):
 
     def test_defaults_of_the_stubs_are_those_of_the_library(self):
         compared = 0
-        for function, owner in functions(ast.parse((ROOT / "python/dermis/__init__.pyi").read_text())):
+        for function, owner in functions(ast.parse((ROOT / "bindings/python/dermis/__init__.pyi").read_text())):
             bound = getattr(getattr(dermis, owner) if owner else dermis, function.name)
             defaults = [
                 *zip(function.args.args[::-1], function.args.defaults[::-1]),

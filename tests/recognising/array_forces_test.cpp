@@ -43,7 +43,7 @@ TEST(ArrayForces, gives_newtons_by_a_model_and_tells_its_array) {
   ASSERT_TRUE(source && source->next().value());
   EXPECT_NEAR(source->loads()[kPressed], 3.0F, 1e-4F);
   EXPECT_EQ(source->time(), std::chrono::seconds(1));
-  EXPECT_EQ(source->array(), (recognition::SensedArray{"mat", 3, 4, 0, 4.0, 10.0}));
+  EXPECT_EQ(source->array(), (learn::recognition::SensedArray{"mat", 3, 4, 0, 4.0, 10.0}));
   EXPECT_FALSE(source->is_live());
 }
 

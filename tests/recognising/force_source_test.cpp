@@ -32,8 +32,8 @@ std::vector<std::pair<float, float>> pairs_of(ForceSource& source) {
   return pairs;
 }
 
-recognition::Layout layout(Quantity quantity) {
-  recognition::Layout layout;
+learn::recognition::Layout layout(Quantity quantity) {
+  learn::recognition::Layout layout;
   layout.quantity = quantity;
   return layout;
 }
@@ -58,7 +58,7 @@ TEST(ForceSource, gives_the_frames_of_one_array) {
   EXPECT_EQ(source->time(), std::chrono::seconds(1));
   const auto layout = source->layout();
   ASSERT_TRUE(layout);
-  EXPECT_EQ(layout->arrays, (std::vector<recognition::SensedArray>{{"mat", 3, 4, 0, 4.0, 10.0}}));
+  EXPECT_EQ(layout->arrays, (std::vector<learn::recognition::SensedArray>{{"mat", 3, 4, 0, 4.0, 10.0}}));
   EXPECT_EQ(layout->readings, kTaxels);
   EXPECT_TRUE(layout->has_forces());
   EXPECT_FALSE(*source->next());
@@ -74,7 +74,8 @@ TEST(ForceSource, takes_all_arrays_of_a_recording_side_by_side_at_the_times_of_t
   EXPECT_EQ(pairs_of(*source), (std::vector<std::pair<float, float>>{{1.0F, 0.0F}, {2.0F, 5.0F}, {3.0F, 6.0F}}));
   const auto layout = source->layout();
   ASSERT_TRUE(layout);
-  EXPECT_EQ(layout->arrays, (std::vector<recognition::SensedArray>{{"left", 3, 4, 0}, {"right", 3, 4, kTaxels}}));
+  EXPECT_EQ(layout->arrays,
+            (std::vector<learn::recognition::SensedArray>{{"left", 3, 4, 0}, {"right", 3, 4, kTaxels}}));
   EXPECT_EQ(layout->readings, 2 * kTaxels);
   EXPECT_FALSE(layout->has_forces());
 }
@@ -101,8 +102,8 @@ TEST(ForceSource, gives_newtons_of_several_arrays_by_the_models_of_a_suit) {
   ASSERT_TRUE(source) << error_of(source);
   const auto layout = source->layout();
   ASSERT_TRUE(layout);
-  EXPECT_EQ(layout->arrays,
-            (std::vector<recognition::SensedArray>{{"right", 3, 4, 0, 4.0, 10.0}, {"left", 3, 4, kTaxels, 4.0, 10.0}}));
+  EXPECT_EQ(layout->arrays, (std::vector<learn::recognition::SensedArray>{{"right", 3, 4, 0, 4.0, 10.0},
+                                                                          {"left", 3, 4, kTaxels, 4.0, 10.0}}));
   EXPECT_TRUE(layout->has_forces());
   const auto pairs = pairs_of(*source);
   ASSERT_EQ(pairs.size(), 2U);

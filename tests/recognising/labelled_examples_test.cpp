@@ -71,7 +71,7 @@ TEST(ReadExamples, of_several_arrays_stand_side_by_side_as_in_the_first_recordin
   options.model = mat.suit();
   const auto data = read_examples(options, {.notice = [&](const std::string& line) { notices.push_back(line); }});
   ASSERT_TRUE(data) << error_of(data);
-  EXPECT_EQ(recognition::names_of(data->layout.arrays), (std::vector<std::string>{"right", "left"}));
+  EXPECT_EQ(learn::recognition::names_of(data->layout.arrays), (std::vector<std::string>{"right", "left"}));
   EXPECT_TRUE(data->layout.has_forces());
   EXPECT_EQ(data->frame_count(), 16U);
   EXPECT_NEAR(data->frames[kShape.taxel_count() + kPressed], 1.0F, 1e-4F);

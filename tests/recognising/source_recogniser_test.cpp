@@ -6,8 +6,8 @@
 
 #include <atomic>
 
-#include "dermis/recognition/classes_file.hpp"
-#include "recognition/small_classes.hpp"
+#include "dermis/learn/recognition/classes_file.hpp"
+#include "learn/recognition/small_classes.hpp"
 #include "support/force_mat.hpp"
 
 namespace dermis::recognising {
@@ -22,7 +22,7 @@ using support::pressed;
 class Poses {
  public:
   Poses() {
-    const recognition::LabelledFrames data = recognition::support::poses(2, 7);
+    const learn::recognition::LabelledFrames data = learn::recognition::support::poses(2, 7);
     const std::size_t taxels = data.layout.readings;
     for (std::size_t i = 0; i < 2; ++i) {
       RawFrame frame;
@@ -31,7 +31,8 @@ class Poses {
                           data.frames.begin() + static_cast<std::ptrdiff_t>((i + 1) * taxels));
       frames.push_back(std::move(frame));
     }
-    EXPECT_TRUE(recognition::write_classes(mat.file("classes.safetensors"), recognition::support::small_classes()));
+    EXPECT_TRUE(learn::recognition::write_classes(mat.file("classes.safetensors"),
+                                                  learn::recognition::support::small_classes()));
   }
 
   [[nodiscard]] RecognitionInput input(const std::string& from) const {
@@ -54,7 +55,8 @@ TEST(SourceRecogniser, names_each_pose_of_a_source_with_its_frame_and_time) {
     ASSERT_TRUE(found && *found);
     EXPECT_EQ((*found)->recognition.frames.last, i);
     EXPECT_EQ((*found)->time, static_cast<std::int64_t>(i) * kPeriod);
-    EXPECT_EQ(recogniser->classes().names[(*found)->recognition.answer.likeliest], recognition::support::pose_name(i));
+    EXPECT_EQ(recogniser->classes().names[(*found)->recognition.answer.likeliest],
+              learn::recognition::support::pose_name(i));
   }
   EXPECT_FALSE(*recogniser->next());
   EXPECT_FALSE(*recogniser->next());
@@ -75,7 +77,8 @@ TEST(SourceRecogniser, passes_over_the_frames_of_a_tare_and_counts_them) {
   const auto found = recogniser->next();
   ASSERT_TRUE(found && *found);
   EXPECT_EQ((*found)->recognition.frames.first, 100U);
-  EXPECT_EQ(recogniser->classes().names[(*found)->recognition.answer.likeliest], recognition::support::pose_name(0));
+  EXPECT_EQ(recogniser->classes().names[(*found)->recognition.answer.likeliest],
+            learn::recognition::support::pose_name(0));
   EXPECT_FALSE(*recogniser->next());
 }
 
@@ -91,16 +94,16 @@ TEST(SourceRecogniser, ends_where_it_is_stopped) {
 
 TEST(SourceRecogniser, needs_the_further_readings_that_the_classes_have) {
   const Poses poses;
-  recognition::LabelledFrames data = recognition::support::poses(8, 3);
+  learn::recognition::LabelledFrames data = learn::recognition::support::poses(8, 3);
   data.layout.extras = 1;
   for (std::size_t i = 0; i < data.labels.size(); ++i) {
-    data.extras.push_back(static_cast<float>(i % recognition::support::kPoses) + 0.01F * static_cast<float>(i));
+    data.extras.push_back(static_cast<float>(i % learn::recognition::support::kPoses) + 0.01F * static_cast<float>(i));
   }
-  const auto set = recognition::LearningSet::create(data);
+  const auto set = learn::recognition::LearningSet::create(data);
   ASSERT_TRUE(set);
-  const auto learned = set->learn(recognition::support::all_labels(data));
+  const auto learned = set->learn(learn::recognition::support::all_labels(data));
   ASSERT_TRUE(learned);
-  ASSERT_TRUE(recognition::write_classes(poses.mat.file("classes.safetensors"), learned->classes));
+  ASSERT_TRUE(learn::recognition::write_classes(poses.mat.file("classes.safetensors"), learned->classes));
   std::vector<std::string> notices;
   RecognitionInput input = poses.input(poses.mat.write("poses.csv", poses.frames, kPoseShape));
   EXPECT_NE(error_of(SourceRecogniser::open(input)).find("need 1 further readings"), std::string::npos);
@@ -112,7 +115,8 @@ TEST(SourceRecogniser, needs_the_further_readings_that_the_classes_have) {
   ASSERT_TRUE(recogniser->next().value());
   const auto found = recogniser->next();
   ASSERT_TRUE(found && *found);
-  EXPECT_EQ(recogniser->classes().names[(*found)->recognition.answer.likeliest], recognition::support::pose_name(1));
+  EXPECT_EQ(recogniser->classes().names[(*found)->recognition.answer.likeliest],
+            learn::recognition::support::pose_name(1));
   EXPECT_FALSE(*recogniser->next());
   ASSERT_EQ(notices.size(), 1U);
   EXPECT_NE(notices[0].find("1 of 2 frames of poses.csv"), std::string::npos) << notices[0];

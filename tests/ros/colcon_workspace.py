@@ -13,7 +13,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-MESSAGES = ROOT / "src/messages/msg"
+MESSAGES = ROOT / "src/bytes/ros_messages/msg"
 READER = Path(__file__).resolve().parent / "reader"
 STAND_INS = {
     "rosidl_default_generators": "rosidl_cmake rosidl_generator_cpp rosidl_typesupport_introspection_cpp",

@@ -12,12 +12,12 @@
 #include <string>
 #include <vector>
 
-#include "dermis/messages/live_messages.hpp"
-#include "dermis/messages/ros_messages.hpp"
-#include "messages/read_by_definition.hpp"
+#include "bytes/ros_messages/read_by_definition.hpp"
+#include "dermis/bytes/ros_messages/live_messages.hpp"
+#include "dermis/bytes/ros_messages/ros_messages.hpp"
 #include "support/calibration_state.hpp"
 
-namespace dermis::messages {
+namespace dermis::bytes::ros_messages {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -149,12 +149,12 @@ void print_states(Bytes& message) {
 }
 
 }  // namespace
-}  // namespace dermis::messages
+}  // namespace dermis::bytes::ros_messages
 
 int main() {
-  dermis::messages::Bytes message;
-  dermis::messages::print_frames(message);
-  dermis::messages::print_contacts(message);
-  dermis::messages::print_states(message);
+  dermis::bytes::ros_messages::Bytes message;
+  dermis::bytes::ros_messages::print_frames(message);
+  dermis::bytes::ros_messages::print_contacts(message);
+  dermis::bytes::ros_messages::print_states(message);
   return 0;
 }

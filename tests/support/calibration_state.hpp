@@ -2,16 +2,16 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
-#include "dermis/messages/live_messages.hpp"
+#include "dermis/bytes/ros_messages/live_messages.hpp"
 
 namespace dermis::support {
 
 /// A calibration in which no two numbers are alike.
-inline messages::CalibrationState calibration_state(Nanos time) {
-  messages::CalibrationState state;
+inline bytes::ros_messages::CalibrationState calibration_state(Nanos time) {
+  bytes::ros_messages::CalibrationState state;
   state.time = time;
   state.array = "hand";
-  state.stage = messages::CalibrationState::Stage::pressing;
+  state.stage = bytes::ros_messages::CalibrationState::Stage::pressing;
   state.message = "Press r1c0";
   state.taxel = 8;
   state.weight_n = 5.0;
@@ -21,7 +21,7 @@ inline messages::CalibrationState calibration_state(Nanos time) {
   state.presses_total = 12;
   state.median_relative_error = 0.04;
   state.taxel_presses = {1, 0, 2};
-  state.hint = messages::CalibrationState::Hint::other_taxel;
+  state.hint = bytes::ros_messages::CalibrationState::Hint::other_taxel;
   state.pressed_taxel = 7;
   state.unpressed_relative_error = 0.09;
   state.together_with = 5;

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "dermis/core/array_description.hpp"
-#include "dermis/core/random.hpp"
+#include "dermis/touch/frames/array_description.hpp"
+#include "dermis/touch/frames/random.hpp"
 
 namespace dermis::support {
 

@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "dermis/core/array_description.hpp"
-#include "dermis/files/array_toml.hpp"
-#include "dermis/recordings/frame_files.hpp"
-#include "dermis/recordings/suit_recording.hpp"
+#include "dermis/bytes/files/array_toml.hpp"
+#include "dermis/bytes/recordings/frame_files.hpp"
+#include "dermis/bytes/recordings/suit_recording.hpp"
+#include "dermis/touch/frames/array_description.hpp"
 #include "support/random_frames.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -60,7 +60,7 @@ inline std::vector<RawFrame> later(std::vector<RawFrame> frames, Nanos delay) {
 /// array.toml of the mat, which is its model, and files of frames.
 class MatFiles {
  public:
-  MatFiles() { EXPECT_TRUE(files::write_array(model(), force_mat())); }
+  MatFiles() { EXPECT_TRUE(bytes::files::write_array(model(), force_mat())); }
 
   [[nodiscard]] std::string model() const { return file("array.toml"); }
   [[nodiscard]] std::string file(const std::string& name) const { return folder_.file(name); }
@@ -68,8 +68,8 @@ class MatFiles {
 
   /// Returns the path.
   std::string write(const std::string& name, const std::vector<RawFrame>& frames, const FrameShape& shape = kShape,
-                    const recordings::FrameNotes& notes = {}) const {
-    const auto sink = recordings::create_frames(file(name), shape, notes);
+                    const bytes::recordings::FrameNotes& notes = {}) const {
+    const auto sink = bytes::recordings::create_frames(file(name), shape, notes);
     EXPECT_TRUE(sink && write_all(**sink, frames)) << name;
     return file(name);
   }
@@ -83,11 +83,11 @@ class MatFiles {
       for (std::size_t i = 0; i < frames[array]->size(); ++i) order.push_back({(*frames[array])[i].time, {array, i}});
     }
     std::sort(order.begin(), order.end());
-    std::vector<recordings::RecordedArray> arrays(2);
+    std::vector<bytes::recordings::RecordedArray> arrays(2);
     arrays[0].name = "left";
     arrays[1].name = "right";
-    for (recordings::RecordedArray& array : arrays) array.shape = kShape;
-    const auto writer = recordings::SuitRecordingWriter::create(file(name), arrays, {.live = false});
+    for (bytes::recordings::RecordedArray& array : arrays) array.shape = kShape;
+    const auto writer = bytes::recordings::SuitRecordingWriter::create(file(name), arrays, {.live = false});
     EXPECT_TRUE(writer) << name;
     for (const auto& [time, place] : order) {
       EXPECT_TRUE((*writer)->write(place.first, (*frames[place.first])[place.second])) << name;

@@ -8,14 +8,14 @@
 #include <span>
 #include <vector>
 
-#include "dermis/network/levenberg_marquardt.hpp"
+#include "dermis/touch/network/levenberg_marquardt.hpp"
 
 namespace dermis::support {
 
 /// The largest deviation of a Jacobian from central finite differences, whose relative step is cbrt(epsilon). It is the
 /// maximum over all entries of |J - J_fd| / max(1, |J|, |J_fd|). A correct Jacobian of a smooth function stays below
 /// 1e-7. Infinite if an entry is not finite.
-inline double jacobian_deviation(const network::ResidualFunction& residual_function, std::size_t residual_count,
+inline double jacobian_deviation(const touch::network::ResidualFunction& residual_function, std::size_t residual_count,
                                  std::span<const double> parameters) {
   const std::size_t n = parameters.size();
   std::vector<double> point(parameters.begin(), parameters.end());

@@ -15,11 +15,11 @@
 #include <utility>
 #include <vector>
 
-#include "calibration/robust_line.hpp"
-#include "dermis/compensation/crosstalk.hpp"
-#include "dermis/compensation/line_faults.hpp"
-#include "dermis/core/random.hpp"
-#include "dermis/simulation/simulator.hpp"
+#include "dermis/learn/simulation/simulator.hpp"
+#include "dermis/touch/compensation/crosstalk.hpp"
+#include "dermis/touch/compensation/line_faults.hpp"
+#include "dermis/touch/frames/random.hpp"
+#include "learn/calibration/robust_line.hpp"
 #include "support/circuits.hpp"
 
 /// Random arrays without a fault, watched for faults.
@@ -28,7 +28,7 @@ namespace dermis::support {
 /// An array, what it is made of and what happens to it.
 struct HealthyArray {
   ArrayDescription array;
-  simulation::SimulationOptions options;
+  learn::simulation::SimulationOptions options;
   std::string scene;
   std::uint64_t seed = 0;
   double threshold_counts = 0.0;  ///< Readings below are sent as 0, as some vendors do.
@@ -40,13 +40,13 @@ struct HealthyArray {
 /// Half of the arrays have the memory of real rubber; a third are touched as hands do.
 inline void give_memory_and_touches(std::uint64_t seed, HealthyArray& healthy) {
   Random random = Random::stream(seed, 1);
-  simulation::RubberOptions& rubber = healthy.options.rubber;
+  learn::simulation::RubberOptions& rubber = healthy.options.rubber;
   if (random.below(2) == 0) {
     rubber.creep = rubber.hysteresis = 0.0;
-    rubber.memory = simulation::RubberMemoryOptions{.creep_per_decade = random.uniform(0.02, 0.3),
-                                                    .loop_gap = random.uniform(0.0, 0.2),
-                                                    .touch_gain = random.uniform(0.0, 0.3),
-                                                    .release_dip = random.uniform(0.0, 0.6)};
+    rubber.memory = learn::simulation::RubberMemoryOptions{.creep_per_decade = random.uniform(0.02, 0.3),
+                                                           .loop_gap = random.uniform(0.0, 0.2),
+                                                           .touch_gain = random.uniform(0.0, 0.3),
+                                                           .release_dip = random.uniform(0.0, 0.6)};
   }
   if (random.below(3) == 0) healthy.scene = "touches";
 }
@@ -66,7 +66,7 @@ inline HealthyArray random_healthy_array(std::uint64_t seed) {
   array.readout.adc_bits = static_cast<int>(one_of({8, 10, 12, 16}));
   healthy.options.environment.adc_noise_lsb = random.log_uniform(0.05, 2.0);
   array.readout.adc_noise_counts = std::hypot(healthy.options.environment.adc_noise_lsb, std::sqrt(1.0 / 12));
-  simulation::RubberOptions& rubber = healthy.options.rubber;
+  learn::simulation::RubberOptions& rubber = healthy.options.rubber;
   rubber.seed = seed;
   rubber.resistance_at_10n_ohm = random.log_uniform(200.0, 2e4);
   rubber.unloaded_ohm = rubber.resistance_at_10n_ohm * random.log_uniform(20.0, 2e3);
@@ -111,14 +111,15 @@ inline ConditionedFrame conditioned_frame(const HealthyArray& healthy, const Raw
 }
 
 /// The scene on this array; `frames` where it has any length.
-inline std::unique_ptr<simulation::Simulator> play(const HealthyArray& healthy, const std::string& scene,
-                                                   std::uint64_t seed, std::size_t frames) {
+inline std::unique_ptr<learn::simulation::Simulator> play(const HealthyArray& healthy, const std::string& scene,
+                                                          std::uint64_t seed, std::size_t frames) {
   constexpr double kTouchRateHz = 10.0;
   const bool has_any_length = scene == "multitouch" || scene == "contacts" || scene == "idle" || scene == "touches";
-  simulation::SimulationOptions options = healthy.options;
-  if (simulation::find_scene(scene)->pace == simulation::ScenePace::any_rate) options.scene.rate_hz = kTouchRateHz;
-  return simulation::Simulator::create(healthy.array, options, scene, seed,
-                                       has_any_length ? std::optional(frames) : std::nullopt)
+  learn::simulation::SimulationOptions options = healthy.options;
+  if (learn::simulation::find_scene(scene)->pace == learn::simulation::ScenePace::any_rate)
+    options.scene.rate_hz = kTouchRateHz;
+  return learn::simulation::Simulator::create(healthy.array, options, scene, seed,
+                                              has_any_length ? std::optional(frames) : std::nullopt)
       .value();
 }
 
@@ -155,7 +156,8 @@ inline std::vector<RawFrame> stream_of(const HealthyArray& healthy, std::size_t 
 }
 
 /// Conductance in frames that were said to be unloaded, as a calibration takes it.
-inline std::vector<double> calibrated_unloaded(const HealthyArray& healthy, compensation::Compensator& compensator) {
+inline std::vector<double> calibrated_unloaded(const HealthyArray& healthy,
+                                               touch::compensation::Compensator& compensator) {
   constexpr std::size_t kFrames = 40;
   auto frames = sent_frames(healthy, "idle", healthy.seed + 1, kFrames);
   const auto loaded = sent_frames(healthy, "contacts", healthy.seed + 2, 400);
@@ -163,7 +165,7 @@ inline std::vector<double> calibrated_unloaded(const HealthyArray& healthy, comp
   for (std::size_t k = 0; k < replaced; ++k) frames[k] = loaded[k * loaded.size() / replaced];
   const double counts =
       1.0 / (3.0 * healthy.array.readout.adc_noise_counts);  // a third of a count [standard deviations]
-  std::vector<std::vector<calibration::Point>> points(healthy.array.taxel_count());
+  std::vector<std::vector<learn::calibration::Point>> points(healthy.array.taxel_count());
   std::vector<double> sigma(points.size(), std::numeric_limits<double>::infinity());
   ConductanceFrame conductance;
   for (const RawFrame& frame : frames) {
@@ -175,15 +177,15 @@ inline std::vector<double> calibrated_unloaded(const HealthyArray& healthy, comp
   }
   std::vector<double> unloaded;
   for (const auto& of_taxel : points) {
-    unloaded.push_back(calibration::fit_robust_line(of_taxel, false, counts * sigma[unloaded.size()]).level);
+    unloaded.push_back(learn::calibration::fit_robust_line(of_taxel, false, counts * sigma[unloaded.size()]).level);
   }
   return unloaded;
 }
 
 /// Names the faults that mask taxels, each once: "silent_row row 3; ".
-inline void name_faults(std::span<const compensation::LineFault> faults, const ArrayDescription& array,
+inline void name_faults(std::span<const touch::compensation::LineFault> faults, const ArrayDescription& array,
                         std::string& text) {
-  for (const compensation::LineFault& fault : faults) {
+  for (const touch::compensation::LineFault& fault : faults) {
     if (masked_taxel_count(fault, array) == 0) continue;
     const std::string name = std::string(to_string(fault.kind)) + ' ' + place_name(fault, array) + "; ";
     if (text.find(name) == std::string::npos) text += name;
@@ -192,8 +194,8 @@ inline void name_faults(std::span<const compensation::LineFault> faults, const A
 
 /// The faults that are found within so many frames.
 inline std::string found_faults(const HealthyArray& healthy, std::size_t frames) {
-  compensation::Compensator compensator = compensation::Compensator::create(healthy.array).value();
-  compensation::LineFaultMonitor monitor(healthy.array, calibrated_unloaded(healthy, compensator));
+  touch::compensation::Compensator compensator = touch::compensation::Compensator::create(healthy.array).value();
+  touch::compensation::LineFaultMonitor monitor(healthy.array, calibrated_unloaded(healthy, compensator));
   ConductanceFrame conductance;
   std::string text;
   for (const RawFrame& raw : stream_of(healthy, frames)) {

@@ -10,16 +10,16 @@
 #include <utility>
 #include <vector>
 
-#include "dermis/compensation/circuit_model.hpp"
-#include "dermis/compensation/crosstalk.hpp"
-#include "dermis/core/random.hpp"
+#include "dermis/touch/compensation/circuit_model.hpp"
+#include "dermis/touch/compensation/crosstalk.hpp"
+#include "dermis/touch/frames/random.hpp"
 #include "support/circuits.hpp"
 
 /// Random arrays whose readings are inverted: does every taxel come back?
 namespace dermis::support {
 
 inline std::vector<double> model_ratios(const ArrayDescription& array, const std::vector<double>& siemens) {
-  auto model = compensation::CircuitModel::create(array);
+  auto model = touch::compensation::CircuitModel::create(array);
   model->solve(siemens);
   return {model->ratio().begin(), model->ratio().end()};
 }
@@ -37,7 +37,7 @@ inline double distance(const std::vector<double>& values, const std::vector<doub
 inline int orientation(const ArrayDescription& array, const std::vector<double>& siemens) {
   const std::size_t size = siemens.size();
   std::vector<double> matrix(size * size);
-  auto model = compensation::CircuitModel::create(array);
+  auto model = touch::compensation::CircuitModel::create(array);
   model->solve(siemens);
   model->taxel_jacobian(matrix);
   int sign = 1;
@@ -70,7 +70,8 @@ inline void try_array(const ArrayDescription& array, Random& random, Campaign& c
   const auto siemens = random_siemens(array, random);
   const auto ratio = model_ratios(array, siemens);
   std::vector<double> inverted(siemens.size());
-  const bool solved = compensation::make_crosstalk_inversion(array, {0.0}).value()->invert(ratio, inverted).solved;
+  const bool solved =
+      touch::compensation::make_crosstalk_inversion(array, {0.0}).value()->invert(ratio, inverted).solved;
   const double error = distance(inverted, siemens);
   if (solved && error <= 1e-8) {
     ++campaign.returned;

@@ -6,8 +6,8 @@
 
 #include <string>
 
-#include "dermis/core/random.hpp"
-#include "dermis/core/result.hpp"
+#include "dermis/touch/frames/random.hpp"
+#include "dermis/touch/frames/result.hpp"
 
 namespace dermis::support {
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "dermis/core/array_description.hpp"
+#include "dermis/touch/frames/array_description.hpp"
 #include "support/dense_solve.hpp"
 
 namespace dermis::support {

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "dermis/core/array_description.hpp"
-#include "dermis/core/frames.hpp"
-#include "dermis/core/random.hpp"
+#include "dermis/touch/frames/array_description.hpp"
+#include "dermis/touch/frames/frames.hpp"
+#include "dermis/touch/frames/random.hpp"
 
 // Pressure on round taxels by sums over many small pieces of each: slow, and shares nothing with the code that it
 // judges.

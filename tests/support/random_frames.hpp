@@ -9,9 +9,9 @@
 #include <optional>
 #include <vector>
 
-#include "dermis/core/frame_sink.hpp"
-#include "dermis/core/frame_source.hpp"
-#include "dermis/core/random.hpp"
+#include "dermis/touch/frames/frame_sink.hpp"
+#include "dermis/touch/frames/frame_source.hpp"
+#include "dermis/touch/frames/random.hpp"
 
 namespace dermis::support {
 

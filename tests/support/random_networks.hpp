@@ -5,18 +5,18 @@
 #include <cmath>
 #include <cstddef>
 
-#include "dermis/core/random.hpp"
-#include "dermis/fusion/force_fusion.hpp"
-#include "dermis/network/perceptron.hpp"
+#include "dermis/touch/frames/random.hpp"
+#include "dermis/touch/fusion/force_fusion.hpp"
+#include "dermis/touch/network/perceptron.hpp"
 
 namespace dermis::support {
 
 /// Consistent networks with random numbers in the range of a real calibration: about 1 mS at 10 N, some hidden units,
 /// an unloaded conductance that drifts with temperature. Inputs: 2, or 3 with temperature.
-inline fusion::ForceNetworks random_networks(std::size_t taxels, std::size_t inputs, std::size_t hidden,
-                                             std::uint64_t seed) {
+inline touch::fusion::ForceNetworks random_networks(std::size_t taxels, std::size_t inputs, std::size_t hidden,
+                                                    std::uint64_t seed) {
   Random random(seed);
-  fusion::ForceNetworks networks;
+  touch::fusion::ForceNetworks networks;
   networks.shape = {inputs, hidden, 2};
   networks.unloaded.temperature = {25.0, 20.0};
   networks.temperature_sigma_celsius = 0.3;
@@ -32,7 +32,7 @@ inline fusion::ForceNetworks random_networks(std::size_t taxels, std::size_t inp
     networks.gain.push_back(static_cast<float>(random.uniform(0.5, 2.0)));
     networks.dead.push_back(0);
     for (std::size_t k = 0; k < networks.shape.parameter_count(); ++k) {
-      const bool positive = network::monotone::is_positive(networks.shape, k);
+      const bool positive = touch::network::monotone::is_positive(networks.shape, k);
       const double value = positive ? random.log_uniform(0.05, 0.8) : 0.5 * random.normal();
       networks.parameters[k * taxels + taxel] = static_cast<float>(value);
     }
@@ -40,14 +40,14 @@ inline fusion::ForceNetworks random_networks(std::size_t taxels, std::size_t inp
   for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
     networks.offset_sigma_siemens.push_back(static_cast<float>(random.log_uniform(1e-8, 1e-6)));
   }
-  networks.relative_sigma.resize(fusion::kSigmaKnots * taxels);
+  networks.relative_sigma.resize(touch::fusion::kSigmaKnots * taxels);
   for (float& sigma : networks.relative_sigma) sigma = static_cast<float>(random.log_uniform(1e-3, 1e-1));
   return networks;
 }
 
 /// The force of one taxel by the formula of the header, in double precision; `siemens` within the calibrated range,
 /// `temperature_offset` in degrees from the centre and within the half span.
-inline double reference_newtons(const fusion::ForceNetworks& networks, std::size_t taxel, double siemens,
+inline double reference_newtons(const touch::fusion::ForceNetworks& networks, std::size_t taxel, double siemens,
                                 double temperature_offset) {
   const std::size_t taxels = networks.taxel_count();
   const auto heaviest = static_cast<double>(networks.heaviest_siemens[taxel]);
@@ -57,7 +57,7 @@ inline double reference_newtons(const fusion::ForceNetworks& networks, std::size
   const double share = std::fmin(excess, heaviest) / static_cast<double>(networks.reference_siemens[taxel]);
   const double x[] = {std::log(share), share - 1.0,
                       temperature_offset / networks.unloaded.temperature.half_span_celsius};
-  const network::PerceptronShape& shape = networks.shape;
+  const touch::network::PerceptronShape& shape = networks.shape;
   const auto parameter = [&](std::size_t k) { return static_cast<double>(networks.parameters[k * taxels + taxel]); };
   double y = parameter(shape.output_bias());
   for (std::size_t i = 0; i < shape.inputs; ++i) y += parameter(shape.direct_weight(i)) * x[i];

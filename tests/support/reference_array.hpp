@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "dermis/core/array_description.hpp"
+#include "dermis/touch/frames/array_description.hpp"
 
 namespace dermis::support {
 

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "dermis/core/random.hpp"
-#include "dermis/pipeline/pipeline.hpp"
-#include "dermis/simulation/adc.hpp"
-#include "dermis/simulation/readout_circuit.hpp"
+#include "dermis/learn/simulation/adc.hpp"
+#include "dermis/learn/simulation/readout_circuit.hpp"
+#include "dermis/touch/frames/random.hpp"
+#include "dermis/touch/pipeline/pipeline.hpp"
 #include "support/hand_made_model.hpp"
 
 namespace dermis::support {
@@ -22,11 +22,11 @@ class StreamOfLoads {
   StreamOfLoads(std::size_t rows, std::size_t cols)
       : model_(digital(hand_made_model(rows, cols))),
         material_(model_),
-        circuit_(*simulation::ReadoutCircuit::create(model_.array)),
-        pipeline_(pipeline::Pipeline::create(model_).value()) {}
+        circuit_(*learn::simulation::ReadoutCircuit::create(model_.array)),
+        pipeline_(touch::pipeline::Pipeline::create(model_).value()) {}
 
-  [[nodiscard]] const pipeline::Model& model() const { return model_; }
-  [[nodiscard]] pipeline::Pipeline& pipeline() { return pipeline_; }
+  [[nodiscard]] const touch::pipeline::Model& model() const { return model_; }
+  [[nodiscard]] touch::pipeline::Pipeline& pipeline() { return pipeline_; }
 
   /// Since its calibration the array conducts so many times as much where nothing presses.
   void age_unloaded(double factor) {
@@ -43,7 +43,7 @@ class StreamOfLoads {
     RawFrame raw{.temperature_celsius = kCelsius, .supply_v = 5.0, .counts = std::vector<float>(newtons.size())};
     for (const Nanos end = time_ + Nanos(static_cast<std::int64_t>(1e9 * seconds)); time_ < end; time_ += kInterval) {
       raw.time = time_;
-      simulation::Adc(model_.array.readout, 1.0).convert(ratio, 5.0, random_, raw.counts);
+      learn::simulation::Adc(model_.array.readout, 1.0).convert(ratio, 5.0, random_, raw.counts);
       pipeline_.process(raw, force_);
       if (see) see(force_);
     }
@@ -54,15 +54,15 @@ class StreamOfLoads {
   static constexpr Nanos kInterval = std::chrono::milliseconds(50);
   static constexpr double kCelsius = 25.0;
 
-  static pipeline::Model digital(pipeline::Model model) {
+  static touch::pipeline::Model digital(touch::pipeline::Model model) {
     model.array.readout.adc_bits = 16;
     return model;
   }
 
-  pipeline::Model model_;
-  pipeline::Model material_;
-  simulation::ReadoutCircuit circuit_;
-  pipeline::Pipeline pipeline_;
+  touch::pipeline::Model model_;
+  touch::pipeline::Model material_;
+  learn::simulation::ReadoutCircuit circuit_;
+  touch::pipeline::Pipeline pipeline_;
   Random random_{1};
   Nanos time_{};
   ForceFrame force_;

@@ -42,7 +42,8 @@ TEST(ArrayView, shows_newtons_and_contacts_by_a_model) {
 
 TEST(ArrayView, takes_a_recording_at_its_word_that_its_readings_are_forces) {
   const MatFiles mat;
-  const std::string path = mat.write("rec.mcap", pressed({6.0F}), kShape, {"", files::array_to_toml(force_mat()), ""});
+  const std::string path =
+      mat.write("rec.mcap", pressed({6.0F}), kShape, {"", bytes::files::array_to_toml(force_mat()), ""});
   const auto view = opened(path);
   ASSERT_TRUE(view && view->next().value());
   EXPECT_TRUE(view->has_model());

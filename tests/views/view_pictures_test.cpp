@@ -32,7 +32,7 @@ class Counting {
     EXPECT_TRUE(view) << error_of(view);
     return *std::move(view);
   }
-  [[nodiscard]] Result<std::vector<report::FramePicture>> drawn(const PictureRange& range) const {
+  [[nodiscard]] Result<std::vector<out::report::FramePicture>> drawn(const PictureRange& range) const {
     return draw_pictures(*view(), range);
   }
   [[nodiscard]] const std::string& path() const { return path_; }
@@ -42,10 +42,10 @@ class Counting {
   std::string path_;
 };
 
-std::vector<double> numbers_of(const Result<std::vector<report::FramePicture>>& pictures) {
+std::vector<double> numbers_of(const Result<std::vector<out::report::FramePicture>>& pictures) {
   std::vector<double> numbers;
   EXPECT_TRUE(pictures) << error_of(pictures);
-  for (const report::FramePicture& picture : *pictures) numbers.push_back(picture.values[kPressed]);
+  for (const out::report::FramePicture& picture : *pictures) numbers.push_back(picture.values[kPressed]);
   return numbers;
 }
 
@@ -80,7 +80,7 @@ TEST(DrawPictures, have_one_scale) {
   const auto view = counting.view(true);
   const auto pictures = draw_pictures(*view, range);
   ASSERT_TRUE(pictures);
-  for (const report::FramePicture& picture : *pictures) EXPECT_EQ(picture.high, 20.0);
+  for (const out::report::FramePicture& picture : *pictures) EXPECT_EQ(picture.high, 20.0);
   const auto again = counting.view(true);
   EXPECT_EQ(draw_pictures(*again, range, 3.0)->back().high, 3.0);
 }

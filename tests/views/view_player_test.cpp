@@ -24,8 +24,8 @@ std::unique_ptr<ArrayView> opened(const MatFiles& mat, const std::string& from, 
   return view ? *std::move(view) : nullptr;
 }
 
-report::TerminalPicture picture_at_end(const ViewPlayer& player) {
-  report::TerminalPicture picture;
+out::report::TerminalPicture picture_at_end(const ViewPlayer& player) {
+  out::report::TerminalPicture picture;
   while (!picture.has_ended) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
     picture = player.picture();
@@ -39,7 +39,7 @@ TEST(ViewPlayer, shows_the_last_frame_in_a_scale_that_has_covered_all) {
   const auto view = opened(mat, mat.write("frames.csv", pressed({0.0F, 30.0F, 6.0F})), stop);
   ASSERT_TRUE(view);
   const ViewPlayer player(*view, stop);
-  const report::TerminalPicture picture = picture_at_end(player);
+  const out::report::TerminalPicture picture = picture_at_end(player);
   EXPECT_TRUE(player.status());
   EXPECT_EQ(picture.name, "mat");
   EXPECT_EQ(picture.unit, "N");

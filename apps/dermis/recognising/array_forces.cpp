@@ -45,23 +45,24 @@ void UnloadedReadings::subtract_from(std::vector<float>& readings) const {
 Result<ArrayForces> ArrayForces::open(const ArrayForceInput& input) {
   ArrayForces source;
   source.from_ = input.from;
-  sources::SourceOptions options = input.source;
+  live::sources::SourceOptions options = input.source;
   if (!input.model.empty()) {
-    Result<operation::ModelAtWork> work = operation::ModelAtWork::read(input.model);
+    Result<live::forces::ModelAtWork> work = live::forces::ModelAtWork::read(input.model);
     if (!work) return work.error();
     source.work_.emplace(*std::move(work));
     options.array = &source.work_->model.array;
     source.troubles_.emplace(*options.array, input.from);
     source.loss_ = options.loss;
     if (input.tare) {
-      source.work_->pipeline.tare(input.tare_force ? pipeline::TareOver::any_load : pipeline::TareOver::drift);
+      source.work_->pipeline.tare(input.tare_force ? touch::pipeline::TareOver::any_load
+                                                   : touch::pipeline::TareOver::drift);
     }
   } else if (input.tare) {
     source.unloaded_.emplace();
   }
   const std::string known_name = source.work_ ? source.work_->model.array.name : "array";
   source.name_ = input.name.empty() ? known_name : input.name;
-  Result<std::unique_ptr<FrameSource>> frames = sources::open_source(input.from, options);
+  Result<std::unique_ptr<FrameSource>> frames = live::sources::open_source(input.from, options);
   if (!frames) return frames.error();
   source.frames_ = *std::move(frames);
   return source;
@@ -85,9 +86,9 @@ void ArrayForces::process_forces() {
 }
 
 Status ArrayForces::check_tare() const {
-  if (!work_ || work_->pipeline.last_tare().state != pipeline::Tare::State::refused) return Done{};
+  if (!work_ || work_->pipeline.last_tare().state != touch::pipeline::Tare::State::refused) return Done{};
   return failed(fmt::format("{}: not tared: {}, or force the tare", from_,
-                            pipeline::describe(work_->pipeline.last_tare(), work_->model.array)));
+                            touch::pipeline::describe(work_->pipeline.last_tare(), work_->model.array)));
 }
 
 void ArrayForces::process_readings() {
@@ -101,11 +102,11 @@ void ArrayForces::tell_loss() {
   if (const Status verdict = troubles_->verdict(); !verdict) loss_(verdict.error().message);
 }
 
-std::optional<recognition::SensedArray> ArrayForces::array() const {
-  if (work_) return recognition::sensed_array(work_->model.array, name_);
+std::optional<learn::recognition::SensedArray> ArrayForces::array() const {
+  if (work_) return learn::recognition::sensed_array(work_->model.array, name_);
   const std::optional<FrameShape> shape = frames_->shape();
   if (!shape) return std::nullopt;
-  return recognition::SensedArray{.name = name_, .rows = shape->rows, .cols = shape->cols};
+  return learn::recognition::SensedArray{.name = name_, .rows = shape->rows, .cols = shape->cols};
 }
 
 Result<HeldForces> HeldForces::open(const ArrayForceInput& input) {
@@ -128,7 +129,7 @@ Status HeldForces::move_to(Nanos time) {
     if (!more) return more.error();
     has_next_ = *more;
   }
-  if (time - *last_ > recognition::kLongestSilence) {
+  if (time - *last_ > learn::recognition::kLongestSilence) {
     std::fill(loads_.begin(), loads_.end(), 0.0F);
     ++silent_;
   }

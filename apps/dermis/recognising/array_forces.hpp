@@ -9,24 +9,24 @@
 #include <string>
 #include <vector>
 
-#include "dermis/core/array_description.hpp"
-#include "dermis/core/frame_source.hpp"
-#include "dermis/core/result.hpp"
-#include "dermis/operation/operation.hpp"
-#include "dermis/pipeline/frame_troubles.hpp"
-#include "dermis/recognition/segment.hpp"
-#include "dermis/sources/open_source.hpp"
+#include "dermis/learn/recognition/segment.hpp"
+#include "dermis/live/forces/operation.hpp"
+#include "dermis/live/sources/open_source.hpp"
+#include "dermis/touch/frames/array_description.hpp"
+#include "dermis/touch/frames/frame_source.hpp"
+#include "dermis/touch/frames/result.hpp"
+#include "dermis/touch/pipeline/frame_troubles.hpp"
 
 namespace dermis::recognising {
 
 /// Frames of one array, and how they become loads.
 struct ArrayForceInput {
-  std::string from;                 ///< As for sources::open_source().
-  std::string model{};              ///< As for pipeline::read_model(); empty: the readings are the loads.
-  bool tare = false;                ///< The first second is unloaded.
-  bool tare_force = false;          ///< With `tare` and a model: whatever load stands there.
-  sources::SourceOptions source{};  ///< With a model, the array is that of the model.
-  std::string name{};               ///< Name of the array; empty: as its model says, or "array".
+  std::string from;                       ///< As for live::sources::open_source().
+  std::string model{};                    ///< As for bytes::models::read_model(); empty: the readings are the loads.
+  bool tare = false;                      ///< The first second is unloaded.
+  bool tare_force = false;                ///< With `tare` and a model: whatever load stands there.
+  live::sources::SourceOptions source{};  ///< With a model, the array is that of the model.
+  std::string name{};                     ///< Name of the array; empty: as its model says, or "array".
 };
 
 /// Mean of each reading over the first second, and at least 10 frames, but at most 10 s.
@@ -62,7 +62,7 @@ class ArrayForces {
   [[nodiscard]] Nanos time() const noexcept { return raw_.time; }
 
   /// The array as far as it is known: with the pitch by a model; empty where only the first frame will show it.
-  [[nodiscard]] std::optional<recognition::SensedArray> array() const;
+  [[nodiscard]] std::optional<learn::recognition::SensedArray> array() const;
   [[nodiscard]] bool is_live() const { return frames_->is_live(); }
 
  private:
@@ -73,8 +73,8 @@ class ArrayForces {
   [[nodiscard]] Status check_tare() const;
 
   std::unique_ptr<FrameSource> frames_;
-  std::optional<operation::ModelAtWork> work_;
-  std::optional<pipeline::FrameTroubles> troubles_;  ///< Of the forces.
+  std::optional<live::forces::ModelAtWork> work_;
+  std::optional<touch::pipeline::FrameTroubles> troubles_;  ///< Of the forces.
   std::function<void(const std::string&)> loss_;
   std::optional<UnloadedReadings> unloaded_;
   std::string from_;
@@ -94,13 +94,15 @@ class HeldForces {
   /// Goes on to a time, which may not fall.
   [[nodiscard]] Status move_to(Nanos time);
 
-  /// 0 where there was no frame for recognition::kLongestSilence.
+  /// 0 where there was no frame for learn::recognition::kLongestSilence.
   [[nodiscard]] const std::vector<float>& loads() const noexcept { return loads_; }
   /// Whether the array is still being tared.
   [[nodiscard]] bool is_tare() const noexcept { return is_tare_; }
-  /// At how many times there was no frame for recognition::kLongestSilence, beginning with the first time.
+  /// At how many times there was no frame for learn::recognition::kLongestSilence, beginning with the first time.
   [[nodiscard]] std::size_t silent() const noexcept { return silent_; }
-  [[nodiscard]] recognition::SensedArray array() const { return array_.array().value_or(recognition::SensedArray{}); }
+  [[nodiscard]] learn::recognition::SensedArray array() const {
+    return array_.array().value_or(learn::recognition::SensedArray{});
+  }
 
  private:
   HeldForces(ArrayForces array, bool is_tare);

@@ -7,17 +7,17 @@
 #include <algorithm>
 #include <utility>
 
-#include "dermis/core/suit.hpp"
-#include "dermis/files/suit_toml.hpp"
+#include "dermis/bytes/bodies/suit.hpp"
+#include "dermis/bytes/files/suit_toml.hpp"
 
 namespace dermis::recognising {
 namespace {
 
-using recognition::Layout;
+using learn::recognition::Layout;
 
 /// The arrays of a recording that holds several, by the models of a suit.
 Result<std::vector<ArrayForceInput>> arrays_of_suit(const ForceInput& input, const std::string& example) {
-  const Result<SuitDescription> suit = files::read_suit(input.model);
+  const Result<SuitDescription> suit = bytes::files::read_suit(input.model);
   if (!suit) {
     return bad_field("model", fmt::format("{} holds several arrays; name one, as '{}#{}', or give the suit.toml: {}",
                                           input.from, input.from, example, suit.error().message));
@@ -37,12 +37,12 @@ Result<std::vector<ArrayForceInput>> arrays_of_suit(const ForceInput& input, con
 }
 
 /// The sources to be opened: the one that `from` names, or each array of a recording with several.
-Result<std::vector<ArrayForceInput>> arrays_of(const ForceInput& input, const sources::SourceName& from) {
+Result<std::vector<ArrayForceInput>> arrays_of(const ForceInput& input, const live::sources::SourceName& from) {
   std::vector<ArrayForceInput> arrays = {{.from = input.from, .model = input.model, .source = input.source}};
   arrays.front().tare = input.tare;
   arrays.front().tare_force = input.tare_force;
   if (input.arrays.size() == 1) return arrays;
-  const Result<std::vector<std::string>> held = sources::several_arrays(from);
+  const Result<std::vector<std::string>> held = live::sources::several_arrays(from);
   if (!held) return held.error();
   if (held->empty()) return arrays;
   arrays.clear();
@@ -80,7 +80,7 @@ Status check_loads(const Layout& examples, const std::string& classes, const std
 ForceSource::ForceSource(ArrayForces first) : first_(std::move(first)) {}
 
 Result<ForceSource> ForceSource::open(const ForceInput& input) {
-  const Result<sources::SourceName> from = sources::SourceName::parse(input.from);
+  const Result<live::sources::SourceName> from = live::sources::SourceName::parse(input.from);
   if (!from) return from.error();
   const Result<std::vector<ArrayForceInput>> arrays = arrays_of(input, *from);
   if (!arrays) return arrays.error();
@@ -128,11 +128,11 @@ std::vector<std::string> ForceSource::extra_names() const {
 }
 
 std::optional<Layout> ForceSource::layout() const {
-  const std::optional<recognition::SensedArray> first = first_.array();
+  const std::optional<learn::recognition::SensedArray> first = first_.array();
   if (!first) return std::nullopt;
   Layout layout{.arrays = {*first}, .readings = first->taxel_count()};
   for (const HeldForces& other : others_) {
-    recognition::SensedArray array = other.array();
+    learn::recognition::SensedArray array = other.array();
     array.first_column = layout.readings;
     layout.readings += array.taxel_count();
     layout.arrays.push_back(std::move(array));

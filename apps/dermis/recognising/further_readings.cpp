@@ -7,28 +7,28 @@
 #include <cmath>
 #include <limits>
 
-#include "dermis/files/csv_table.hpp"
-#include "dermis/files/text.hpp"
-#include "dermis/recognition/segment.hpp"
+#include "dermis/bytes/files/csv_table.hpp"
+#include "dermis/bytes/files/text.hpp"
+#include "dermis/learn/recognition/segment.hpp"
 
 namespace dermis::recognising {
 namespace {
 
-using files::CsvTable;
+using bytes::files::CsvTable;
 
 constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
 
 Result<Nanos> time_at(const CsvTable& table, std::size_t row, std::size_t column) {
   Nanos time{};
-  if (files::parse_seconds(table.at(row, column), time)) return time;
-  return table.error(row, "time_s " + files::in_quotes(table.at(row, column)) + " is not a time in seconds");
+  if (bytes::files::parse_seconds(table.at(row, column), time)) return time;
+  return table.error(row, "time_s " + bytes::files::in_quotes(table.at(row, column)) + " is not a time in seconds");
 }
 
 Result<float> reading_at(const CsvTable& table, std::size_t row, std::size_t column) {
   const std::string& cell = table.at(row, column);
   float value = kMissing;
-  if (!cell.empty() && !files::parse_number(cell, value)) {
-    return table.error(row, table.columns()[column] + " " + files::in_quotes(cell) + " is not a number");
+  if (!cell.empty() && !bytes::files::parse_number(cell, value)) {
+    return table.error(row, table.columns()[column] + " " + bytes::files::in_quotes(cell) + " is not a number");
   }
   return std::isfinite(value) ? value : kMissing;
 }
@@ -70,7 +70,7 @@ Result<FurtherReadings> FurtherReadings::read(const std::string& path, const std
       readings.lines_.push_back(*value);
     }
   }
-  if (readings.times_.empty()) return table->error("has no line for " + files::in_quotes(recording));
+  if (readings.times_.empty()) return table->error("has no line for " + bytes::files::in_quotes(recording));
   readings.last_.assign(columns.size(), kMissing);
   readings.last_times_.assign(columns.size(), Nanos{});
   readings.values_.assign(columns.size(), kMissing);
@@ -88,7 +88,7 @@ void FurtherReadings::move_to(Nanos time) {
   }
   bool is_complete = true;
   for (std::size_t i = 0; i < names_.size(); ++i) {
-    values_[i] = last_times_[i] >= time - recognition::kLongestSilence ? last_[i] : kMissing;
+    values_[i] = last_times_[i] >= time - learn::recognition::kLongestSilence ? last_[i] : kMissing;
     is_complete = is_complete && !std::isnan(values_[i]);
   }
   ++frames_;

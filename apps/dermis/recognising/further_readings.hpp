@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "dermis/core/frames.hpp"
-#include "dermis/core/result.hpp"
+#include "dermis/touch/frames/frames.hpp"
+#include "dermis/touch/frames/result.hpp"
 
 namespace dermis::recognising {
 
@@ -25,7 +25,7 @@ class FurtherReadings {
   /// Goes on to the time of a frame, which may not fall.
   void move_to(Nanos time);
 
-  /// The last values that are not later; NaN where there is none, or none for recognition::kLongestSilence.
+  /// The last values that are not later; NaN where there is none, or none for learn::recognition::kLongestSilence.
   [[nodiscard]] const std::vector<float>& values() const noexcept { return values_; }
 
   /// A line where some were missing.

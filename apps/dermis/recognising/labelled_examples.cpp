@@ -9,15 +9,15 @@
 #include <cmath>
 #include <utility>
 
-#include "dermis/core/quantile.hpp"
+#include "dermis/touch/frames/quantile.hpp"
 #include "recognising/force_source.hpp"
 
 namespace dermis::recognising {
 namespace {
 
-using recognition::ForceRecording;
-using recognition::LabelledFrames;
-using recognition::Layout;
+using learn::recognition::ForceRecording;
+using learn::recognition::LabelledFrames;
+using learn::recognition::Layout;
 
 constexpr double kMostRateDifference = 0.1;  // of the first recording
 
@@ -32,7 +32,7 @@ struct ReadRecording {
 /// "2x3 taxels", or "chest 16x16, hand 4x5 taxels".
 std::string text_of(const Layout& layout) {
   std::string text;
-  for (const recognition::SensedArray& array : layout.arrays) {
+  for (const learn::recognition::SensedArray& array : layout.arrays) {
     if (layout.arrays.size() > 1) text += (text.empty() ? "" : ", ") + array.name + " ";
     text += fmt::format("{}x{}", array.rows, array.cols);
   }
@@ -46,12 +46,12 @@ double rate_of(const std::vector<Nanos>& times) {
   for (std::size_t i = 1; i < times.size(); ++i) intervals.push_back(times[i] - times[i - 1]);
   const Nanos usual = upper_median(std::move(intervals));
   const double rate = 1.0 / std::max(std::chrono::duration<double>(usual).count(), 1e-9);
-  return recognition::is_rate(rate) ? rate : 0.0;
+  return learn::recognition::is_rate(rate) ? rate : 0.0;
 }
 
 /// `arrays`: which of several; empty: all.
 Result<ReadRecording> read_recording(const ExampleOptions& options, const std::string& from,
-                                     const std::vector<std::string>& arrays, const sources::SourceOptions& how) {
+                                     const std::vector<std::string>& arrays, const live::sources::SourceOptions& how) {
   Result<ForceSource> source = ForceSource::open({.from = from,
                                                   .model = options.model,
                                                   .tare = options.tare || options.tare_force,
@@ -60,7 +60,7 @@ Result<ReadRecording> read_recording(const ExampleOptions& options, const std::s
                                                   .arrays = arrays,
                                                   .extra = options.data.extras});
   if (!source) return source.error();
-  if (source->is_live()) return sources::has_no_end(from);
+  if (source->is_live()) return live::sources::has_no_end(from);
   ReadRecording read{.recording = {.name = source->from().short_name(), .frames = {}}, .layout = {}};
   std::vector<Nanos> times;
   for (;;) {
@@ -131,7 +131,7 @@ Status fill_missing(const std::string& path, std::vector<ReadRecording>& read) {
   return Done{};
 }
 
-Result<LabelledFrames> read_recordings(const ExampleOptions& options, const sources::SourceOptions& how) {
+Result<LabelledFrames> read_recordings(const ExampleOptions& options, const live::sources::SourceOptions& how) {
   std::vector<ReadRecording> read;
   std::vector<std::string> arrays = options.arrays;
   for (const std::string& from : options.in) {
@@ -141,7 +141,7 @@ Result<LabelledFrames> read_recordings(const ExampleOptions& options, const sour
       if (Status alike = check_alike(before, *next); !alike) return alike.error();
     }
     read.push_back(*std::move(next));
-    arrays = recognition::names_of(read.front().layout.arrays);
+    arrays = learn::recognition::names_of(read.front().layout.arrays);
   }
   if (Status filled = fill_missing(options.data.extras, read); !filled) return filled.error();
   for (const ReadRecording& one : read) {
@@ -152,19 +152,20 @@ Result<LabelledFrames> read_recordings(const ExampleOptions& options, const sour
   const Layout layout = read.front().layout;
   std::vector<ForceRecording> recordings;
   for (ReadRecording& one : read) recordings.push_back(std::move(one.recording));
-  return recognition::label_recordings(layout, std::move(recordings), options.data.labels, options.data.label);
+  return learn::recognition::label_recordings(layout, std::move(recordings), options.data.labels, options.data.label);
 }
 
 }  // namespace
 
-Result<LabelledFrames> read_examples(const ExampleOptions& options, const sources::SourceOptions& source) {
-  if (!recognition::is_rate(options.data.rate_hz)) return bad_field("rate", "must be 0.001 to 1e6");
+Result<LabelledFrames> read_examples(const ExampleOptions& options, const live::sources::SourceOptions& source) {
+  if (!learn::recognition::is_rate(options.data.rate_hz)) return bad_field("rate", "must be 0.001 to 1e6");
   const bool has_plain = !options.data.frames.empty() || !options.data.arrays.empty();
   if (options.in.empty()) {
     if (!options.model.empty() || options.tare || options.tare_force) {
       return bad_field("frames", "are loads already; a model and tare are for recordings");
     }
-    if (!options.data.frames.empty() && !options.data.arrays.empty()) return recognition::read_dataset(options.data);
+    if (!options.data.frames.empty() && !options.data.arrays.empty())
+      return learn::recognition::read_dataset(options.data);
     return bad_input("name the examples: recordings (in), or frames with their arrays (frames, arrays)");
   }
   if (has_plain) return bad_field("in", "excludes frames and arrays; name one kind of examples");

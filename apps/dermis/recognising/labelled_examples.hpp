@@ -5,16 +5,16 @@
 #include <string>
 #include <vector>
 
-#include "dermis/core/result.hpp"
-#include "dermis/recognition/dataset.hpp"
-#include "dermis/recognition/examples.hpp"
-#include "dermis/sources/open_source.hpp"
+#include "dermis/learn/recognition/dataset.hpp"
+#include "dermis/learn/recognition/examples.hpp"
+#include "dermis/live/sources/open_source.hpp"
+#include "dermis/touch/frames/result.hpp"
 
 namespace dermis::recognising {
 
 /// Where labelled examples are: in recordings, or in plain files.
 struct ExampleOptions {
-  recognition::DatasetFiles data;
+  learn::recognition::DatasetFiles data;
   std::vector<std::string> in;  ///< Recordings; then `data` has no frames and arrays, and its extras are
                                 ///< as for FurtherReadings::read().
   std::string model;            ///< Model of the recordings: as for LoadInput, like the next two.
@@ -26,7 +26,7 @@ struct ExampleOptions {
 /// Recordings must be of the same arrays at one rate and have names of their own; `source`: how they are opened.
 /// Validates.
 /// Errors name the file or, as the commands call it, the option.
-[[nodiscard]] Result<recognition::LabelledFrames> read_examples(const ExampleOptions& options,
-                                                                const sources::SourceOptions& source = {});
+[[nodiscard]] Result<learn::recognition::LabelledFrames> read_examples(const ExampleOptions& options,
+                                                                       const live::sources::SourceOptions& source = {});
 
 }  // namespace dermis::recognising

@@ -4,15 +4,15 @@
 
 #include <utility>
 
-#include "dermis/recognition/classes_file.hpp"
+#include "dermis/learn/recognition/classes_file.hpp"
 
 namespace dermis::recognising {
 namespace {
 
-using recognition::Classes;
-using recognition::Layout;
-using recognition::Recognition;
-using recognition::StreamRecogniser;
+using learn::recognition::Classes;
+using learn::recognition::Layout;
+using learn::recognition::Recognition;
+using learn::recognition::StreamRecogniser;
 
 /// The array of the source's frames: those of the examples, side by side.
 ArrayDescription array_of(const Layout& layout) {
@@ -53,14 +53,14 @@ Layout layout_of(const ForceSource& source, const Classes& classes, double rate_
 }  // namespace
 
 Result<SourceRecogniser> SourceRecogniser::open(const RecognitionInput& input) {
-  if (!recognition::is_rate(input.rate_hz)) return bad_field("rate", "must be 0.001 to 1e6");
-  Result<Classes> classes = recognition::read_classes(input.classes);
+  if (!learn::recognition::is_rate(input.rate_hz)) return bad_field("rate", "must be 0.001 to 1e6");
+  Result<Classes> classes = learn::recognition::read_classes(input.classes);
   if (!classes) return classes.error();
   if (Status checked = check_classes(*classes, input); !checked) return checked.error();
   const ArrayDescription array = array_of(classes->layout);
   ForceInput loads = input.loads;
   loads.source.array = &array;
-  loads.arrays = recognition::names_of(classes->layout.arrays);
+  loads.arrays = learn::recognition::names_of(classes->layout.arrays);
   Result<ForceSource> source = ForceSource::open(loads);
   if (!source) return source.error();
   const Layout layout = layout_of(*source, *classes, input.rate_hz);
@@ -70,7 +70,7 @@ Result<SourceRecogniser> SourceRecogniser::open(const RecognitionInput& input) {
 }
 
 SourceRecogniser::SourceRecogniser(ForceSource source, StreamRecogniser recogniser, bool knows_rate,
-                                   const sources::SourceOptions& options)
+                                   const live::sources::SourceOptions& options)
     : source_(std::move(source)),
       recogniser_(std::move(recogniser)),
       knows_rate_(knows_rate),

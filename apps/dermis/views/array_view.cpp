@@ -7,34 +7,34 @@
 #include <filesystem>
 #include <utility>
 
-#include "dermis/files/array_toml.hpp"
-#include "dermis/operation/frame_output.hpp"
-#include "dermis/pipeline/direct_model.hpp"
-#include "dermis/recordings/frame_files.hpp"
-#include "dermis/report/frame_picture.hpp"
+#include "dermis/bytes/files/array_toml.hpp"
+#include "dermis/bytes/recordings/frame_files.hpp"
+#include "dermis/live/forces/frame_output.hpp"
+#include "dermis/out/report/frame_picture.hpp"
+#include "dermis/touch/pipeline/direct_model.hpp"
 
 namespace dermis::views {
 
 Result<std::unique_ptr<ArrayView>> ArrayView::open(const std::string& from, const std::string& model,
-                                                   sources::SourceOptions options) {
+                                                   live::sources::SourceOptions options) {
   std::unique_ptr<ArrayView> view(new ArrayView());
   view->from_ = from;
   if (!model.empty()) {
-    Result<operation::ModelAtWork> work = operation::ModelAtWork::read(model);
+    Result<live::forces::ModelAtWork> work = live::forces::ModelAtWork::read(model);
     if (!work) return work.error();
     view->use(*std::move(work));
     options.array = &view->work_->model.array;
   }
-  Result<std::unique_ptr<FrameSource>> source = sources::open_source(from, options);
+  Result<std::unique_ptr<FrameSource>> source = live::sources::open_source(from, options);
   if (!source) return source.error();
   view->source_ = *std::move(source);
   if (const Status described = view->describe(); !described) return described.error();
   return view;
 }
 
-void ArrayView::use(operation::ModelAtWork work) {
+void ArrayView::use(live::forces::ModelAtWork work) {
   work_.emplace(std::move(work));
-  tracker_.emplace(work_->model.array, contacts::ContactOptions{}, work_->model.strip);
+  tracker_.emplace(work_->model.array, touch::contacts::ContactOptions{}, work_->model.strip);
   troubles_.emplace(work_->model.array, from_);
 }
 
@@ -44,7 +44,7 @@ Status ArrayView::set_array(const ArrayDescription& array) {
   col_pitch_m_ = array.col_pitch_m;
   full_scale_counts_ = array.readout.full_scale_counts();
   if (work_ || array.readout.quantity == Quantity::counts) return Done{};
-  Result<operation::ModelAtWork> work = operation::ModelAtWork::create(pipeline::direct_model(array));
+  Result<live::forces::ModelAtWork> work = live::forces::ModelAtWork::create(touch::pipeline::direct_model(array));
   if (!work) return work.error();
   use(*std::move(work));
   return Done{};
@@ -53,11 +53,11 @@ Status ArrayView::set_array(const ArrayDescription& array) {
 /// By the model, else by what the file says of itself.
 Status ArrayView::describe() {
   if (work_) return set_array(work_->model.array);
-  const recordings::FrameNotes notes = sources::notes_of_source(*source_, from_);
+  const bytes::recordings::FrameNotes notes = live::sources::notes_of_source(*source_, from_);
   name_ = notes.name;
   if (name_.empty()) name_ = is_live() ? from_ : std::filesystem::path(from_).filename().string();
   if (notes.array_toml.empty()) return Done{};
-  const Result<ArrayDescription> array = files::array_from_toml(notes.array_toml, from_);
+  const Result<ArrayDescription> array = bytes::files::array_from_toml(notes.array_toml, from_);
   if (!array) return Done{};
   return set_array(*array);
 }
@@ -81,7 +81,7 @@ FrameShape ArrayView::shape() const {
 }
 
 double ArrayView::scale(double largest) const {
-  if (work_) return report::force_scale(largest);
+  if (work_) return out::report::force_scale(largest);
   if (full_scale_counts_) return *full_scale_counts_;
   double high = 255.0;
   while (high < largest) high = 2.0 * high + 1.0;

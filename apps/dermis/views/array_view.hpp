@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "dermis/contacts/contact_tracker.hpp"
-#include "dermis/core/contacts.hpp"
-#include "dermis/core/frame_source.hpp"
-#include "dermis/core/result.hpp"
-#include "dermis/operation/operation.hpp"
-#include "dermis/pipeline/frame_troubles.hpp"
-#include "dermis/sources/open_source.hpp"
+#include "dermis/live/forces/operation.hpp"
+#include "dermis/live/sources/open_source.hpp"
+#include "dermis/touch/contacts/contact_tracker.hpp"
+#include "dermis/touch/frames/contacts.hpp"
+#include "dermis/touch/frames/frame_source.hpp"
+#include "dermis/touch/frames/result.hpp"
+#include "dermis/touch/pipeline/frame_troubles.hpp"
 
 namespace dermis::views {
 
@@ -21,15 +21,15 @@ namespace dermis::views {
 /// newtons and contacts. Otherwise it shows counts. Not thread-safe.
 class ArrayView {
  public:
-  /// `model`: as for pipeline::read_model(), or empty. `from` and `options`: as for sources::open_source(), but the
-  /// array is that of the model where there is one.
+  /// `model`: as for bytes::models::read_model(), or empty. `from` and `options`: as for live::sources::open_source(),
+  /// but the array is that of the model where there is one.
   [[nodiscard]] static Result<std::unique_ptr<ArrayView>> open(const std::string& from, const std::string& model,
-                                                               sources::SourceOptions options = {});
+                                                               live::sources::SourceOptions options = {});
 
   /// Takes the next frame. Returns false at the end.
   [[nodiscard]] Result<bool> next();
 
-  /// The verdict on the frames so far: failed where most have no force (pipeline::FrameTroubles::verdict()).
+  /// The verdict on the frames so far: failed where most have no force (touch::pipeline::FrameTroubles::verdict()).
   [[nodiscard]] Status verdict() const { return troubles_ ? troubles_->verdict() : Status(Done{}); }
 
   // Data of the last frame.
@@ -44,8 +44,8 @@ class ArrayView {
   [[nodiscard]] const char* unit() const noexcept { return work_ ? "N" : "counts"; }
   [[nodiscard]] double row_pitch_m() const noexcept { return row_pitch_m_; }
   [[nodiscard]] double col_pitch_m() const noexcept { return col_pitch_m_; }
-  /// End of a colour scale that covers the largest of the values. For forces it is report::force_scale(). For counts it
-  /// is that of the ADC, as described or as large as needed.
+  /// End of a colour scale that covers the largest of the values. For forces it is out::report::force_scale(). For
+  /// counts it is that of the ADC, as described or as large as needed.
   [[nodiscard]] double scale(double largest) const;
   [[nodiscard]] bool is_live() const { return source_->is_live(); }
   [[nodiscard]] bool has_model() const noexcept { return work_.has_value(); }
@@ -53,14 +53,14 @@ class ArrayView {
 
  private:
   ArrayView() = default;
-  void use(operation::ModelAtWork work);
+  void use(live::forces::ModelAtWork work);
   [[nodiscard]] Status describe();
   [[nodiscard]] Status set_array(const ArrayDescription& array);
 
   std::unique_ptr<FrameSource> source_;
-  std::optional<operation::ModelAtWork> work_;
-  std::optional<contacts::ContactTracker> tracker_;
-  std::optional<pipeline::FrameTroubles> troubles_;  ///< Of the forces.
+  std::optional<live::forces::ModelAtWork> work_;
+  std::optional<touch::contacts::ContactTracker> tracker_;
+  std::optional<touch::pipeline::FrameTroubles> troubles_;  ///< Of the forces.
   std::string from_;
   std::string name_;
   double row_pitch_m_ = ArrayDescription{}.row_pitch_m;

@@ -10,7 +10,7 @@
 namespace dermis::views {
 namespace {
 
-using report::FramePicture;
+using out::report::FramePicture;
 
 double seconds_of(Nanos time) {
   return std::chrono::duration<double>(time).count();
@@ -91,7 +91,7 @@ Result<std::vector<FramePicture>> draw_pictures(ArrayView& view, const PictureRa
     pictures.push_back(picture_of(view, view.raw().time - *first));
   }
   double largest = 0.0;
-  for (const FramePicture& picture : pictures) largest = std::max(largest, report::largest_of(picture.values));
+  for (const FramePicture& picture : pictures) largest = std::max(largest, out::report::largest_of(picture.values));
   for (FramePicture& picture : pictures) picture.high = high.value_or(view.scale(largest));
   return pictures;
 }

@@ -8,9 +8,9 @@
 #include <optional>
 #include <vector>
 
-#include "dermis/core/frames.hpp"
-#include "dermis/core/result.hpp"
-#include "dermis/report/frame_picture.hpp"
+#include "dermis/out/report/frame_picture.hpp"
+#include "dermis/touch/frames/frames.hpp"
+#include "dermis/touch/frames/result.hpp"
 #include "views/array_view.hpp"
 
 namespace dermis::views {
@@ -31,8 +31,8 @@ struct PictureRange {
 /// its first frame. `high`: end of the colour scale of all pictures; empty: ArrayView::scale() of the largest value
 /// that is drawn. A film ends early with its source and where `stop` (null: nothing) is set. Fails where the
 /// source does, where it ends or is stopped before the first picture, and on more than kMostPictures.
-[[nodiscard]] Result<std::vector<report::FramePicture>> draw_pictures(ArrayView& view, const PictureRange& range,
-                                                                      std::optional<double> high = {},
-                                                                      const std::atomic<bool>* stop = nullptr);
+[[nodiscard]] Result<std::vector<out::report::FramePicture>> draw_pictures(ArrayView& view, const PictureRange& range,
+                                                                           std::optional<double> high = {},
+                                                                           const std::atomic<bool>* stop = nullptr);
 
 }  // namespace dermis::views

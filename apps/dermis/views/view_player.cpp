@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "dermis/sources/pacer.hpp"
+#include "dermis/live/sources/pacer.hpp"
 
 namespace dermis::views {
 
@@ -16,7 +16,7 @@ ViewPlayer::~ViewPlayer() {
   thread_.join();
 }
 
-report::TerminalPicture ViewPlayer::picture() const {
+out::report::TerminalPicture ViewPlayer::picture() const {
   const std::scoped_lock lock(mutex_);
   return picture_;
 }
@@ -27,7 +27,7 @@ Status ViewPlayer::status() const {
 }
 
 void ViewPlayer::run() {
-  sources::Pacer pacer(&stop_);
+  live::sources::Pacer pacer(&stop_);
   std::optional<Nanos> first;
   while (!stop_.load()) {
     const Result<bool> more = view_.next();
@@ -38,14 +38,14 @@ void ViewPlayer::run() {
       return;
     }
     if (!first) first = view_.raw().time;
-    if (!view_.is_live() && !pacer.wait_until(sources::due_after(*first, view_.raw().time))) return;
+    if (!view_.is_live() && !pacer.wait_until(live::sources::due_after(*first, view_.raw().time))) return;
     update();
   }
 }
 
 /// The scale grows where it must, and never shrinks.
 void ViewPlayer::update() {
-  largest_ = std::max(largest_, report::largest_of(view_.values()));
+  largest_ = std::max(largest_, out::report::largest_of(view_.values()));
   const std::scoped_lock lock(mutex_);
   picture_.name = view_.name();
   picture_.unit = view_.unit();

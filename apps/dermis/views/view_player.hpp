@@ -7,8 +7,8 @@
 #include <optional>
 #include <thread>
 
-#include "dermis/core/result.hpp"
-#include "dermis/report/terminal_picture.hpp"
+#include "dermis/out/report/terminal_picture.hpp"
+#include "dermis/touch/frames/result.hpp"
 #include "views/array_view.hpp"
 
 namespace dermis::views {
@@ -26,7 +26,7 @@ class ViewPlayer {
   ~ViewPlayer();
 
   /// The picture of the last frame; without values before the first. Thread-safe.
-  [[nodiscard]] report::TerminalPicture picture() const;
+  [[nodiscard]] out::report::TerminalPicture picture() const;
   /// Whether the source has failed. Thread-safe.
   [[nodiscard]] Status status() const;
 
@@ -39,7 +39,7 @@ class ViewPlayer {
   std::optional<double> high_;
   double largest_ = 0.0;
   mutable std::mutex mutex_;  ///< Of the next two.
-  report::TerminalPicture picture_;
+  out::report::TerminalPicture picture_;
   Status status_ = Done{};
   std::thread thread_;  ///< The last: it uses all others.
 };

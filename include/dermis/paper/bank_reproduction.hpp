@@ -6,10 +6,10 @@
 #include <functional>
 #include <string>
 
-#include "dermis/core/array_description.hpp"
-#include "dermis/core/result.hpp"
 #include "dermis/paper/bank_training.hpp"
 #include "dermis/paper/paper_report.hpp"
+#include "dermis/touch/frames/array_description.hpp"
+#include "dermis/touch/frames/result.hpp"
 
 namespace dermis::paper {
 

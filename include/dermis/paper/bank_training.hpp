@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "dermis/calibration/sample_database.hpp"
-#include "dermis/core/random.hpp"
-#include "dermis/core/result.hpp"
+#include "dermis/learn/calibration/sample_database.hpp"
 #include "dermis/paper/paper_bank.hpp"
 #include "dermis/paper/ranks.hpp"
+#include "dermis/touch/frames/random.hpp"
+#include "dermis/touch/frames/result.hpp"
 
 namespace dermis::paper {
 
@@ -36,8 +36,9 @@ class BankTraining {
  public:
   /// `ranks` must outlive it. Errors: no sample has a known force on a single taxel; more unknowns than kMostUnknowns;
   /// more ranks than networks.
-  [[nodiscard]] static Result<BankTraining> create(const calibration::SampleDatabase& database, std::uint64_t seed,
-                                                   Ranks& ranks = one_process(), std::size_t batch = kBankBatch);
+  [[nodiscard]] static Result<BankTraining> create(const learn::calibration::SampleDatabase& database,
+                                                   std::uint64_t seed, Ranks& ranks = one_process(),
+                                                   std::size_t batch = kBankBatch);
 
   /// Sets all parameters anew; before the first step.
   void start(BankStart start);
@@ -51,9 +52,9 @@ class BankTraining {
   [[nodiscard]] PaperBank& bank() noexcept { return bank_; }
 
  private:
-  BankTraining(const calibration::SampleDatabase& database, PaperBank bank, std::uint64_t seed, Ranks& ranks,
+  BankTraining(const learn::calibration::SampleDatabase& database, PaperBank bank, std::uint64_t seed, Ranks& ranks,
                std::size_t batch);
-  void fill_patterns(const calibration::SampleDatabase& database);
+  void fill_patterns(const learn::calibration::SampleDatabase& database);
   [[nodiscard]] std::vector<float> start_parameters(BankStart start, std::uint64_t seed) const;
   void draw_batch();
 
@@ -113,14 +114,14 @@ struct TrainedBank {
 /// From the paper's start, Adam with a rate that falls along a cosine. Whether it is interrupted and goes on from its
 /// checkpoint, and on how many ranks, does not change a bit. Errors: options, those of BankTraining::create, a
 /// checkpoint that cannot be written or is of another training; the training diverges.
-[[nodiscard]] Result<TrainedBank> train_paper_bank(const calibration::SampleDatabase& database,
+[[nodiscard]] Result<TrainedBank> train_paper_bank(const learn::calibration::SampleDatabase& database,
                                                    const BankTrainingOptions& options, Ranks& ranks = one_process());
 
 /// From rank 0 to all: of the samples what the training needs, and the size of the array.
-void broadcast_samples(calibration::SampleDatabase& database, Ranks& ranks);
+void broadcast_samples(learn::calibration::SampleDatabase& database, Ranks& ranks);
 
 /// The memory that train_paper_bank() takes on this rank besides the database.
-[[nodiscard]] std::size_t bank_training_bytes(const calibration::SampleDatabase& database, std::size_t batch,
+[[nodiscard]] std::size_t bank_training_bytes(const learn::calibration::SampleDatabase& database, std::size_t batch,
                                               const Ranks& ranks);
 
 }  // namespace dermis::paper

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "dermis/core/result.hpp"
-#include "dermis/recognition/comparison.hpp"
+#include "dermis/learn/recognition/comparison.hpp"
+#include "dermis/touch/frames/result.hpp"
 
 namespace dermis::paper {
 
@@ -13,6 +13,6 @@ namespace dermis::paper {
 /// log-sigmoid output for each class, and is trained by Adam on mini-batches. One fold of the examples is left out to
 /// choose the size and the number of epochs with the most right answers. Then all examples are learned for that many
 /// epochs. Probabilities are shares of the odds of the outputs.
-[[nodiscard]] Result<std::vector<float>> answer_by_bp_network(const recognition::Lesson& lesson);
+[[nodiscard]] Result<std::vector<float>> answer_by_bp_network(const learn::recognition::Lesson& lesson);
 
 }  // namespace dermis::paper

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "dermis/core/result.hpp"
-#include "dermis/network/activation.hpp"
+#include "dermis/touch/frames/result.hpp"
+#include "dermis/touch/network/activation.hpp"
 
 namespace dermis::paper {
 
-using network::Activation;
+using touch::network::Activation;
 
 inline constexpr std::size_t kMaxLayers = 64;
 

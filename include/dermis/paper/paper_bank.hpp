@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "dermis/calibration/evaluation.hpp"
+#include "dermis/learn/calibration/evaluation.hpp"
 #include "dermis/paper/network_bank.hpp"
 #include "dermis/paper/ranks.hpp"
 
@@ -36,7 +36,7 @@ inline constexpr std::size_t kMostUnknowns = std::size_t{1} << 29U;
 /// All values are normalised to the range of the calibration. Inputs become [0, 1]. A force of 0 ... heaviest_newtons
 /// becomes an output of 0.25 ... 0.75, where the paper starts its output neurons (eq. (13), (14)). Supply fluctuation
 /// is divided out of the readings before (unit 2), so that the voltage is the ratio of the reading to the supply.
-class PaperBank : public calibration::FurtherEstimator {
+class PaperBank : public learn::calibration::FurtherEstimator {
  public:
   struct Range {
     double low = 0.0;

@@ -4,15 +4,15 @@
 
 #include <string>
 
-#include "dermis/core/result.hpp"
-#include "dermis/files/safetensors.hpp"
+#include "dermis/bytes/files/safetensors.hpp"
 #include "dermis/paper/paper_bank.hpp"
+#include "dermis/touch/frames/result.hpp"
 
 namespace dermis::paper {
 
 /// The format of a bank file.
-inline constexpr files::FileFormat kPaperBankFormat{"dermis paper bank 2", "dermis paper bank 1",
-                                                    "is not a bank of the paper; the paper's calibration writes one"};
+inline constexpr bytes::files::FileFormat kPaperBankFormat{
+    "dermis paper bank 2", "dermis paper bank 1", "is not a bank of the paper; the paper's calibration writes one"};
 
 /// Writes a safetensors file (docs/file-formats.md) beside `path` and renames it; 135 MB for 16 x 16 taxels. Each rank
 /// writes the networks of its bank.

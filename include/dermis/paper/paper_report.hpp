@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "dermis/calibration/evaluation.hpp"
-#include "dermis/core/result.hpp"
-#include "dermis/pipeline/model.hpp"
+#include "dermis/learn/calibration/evaluation.hpp"
+#include "dermis/touch/frames/result.hpp"
+#include "dermis/touch/pipeline/model.hpp"
 
 namespace dermis::paper {
 
@@ -84,12 +84,12 @@ struct PaperReproduction {
   /// Gradient descent of the bank from each start, the paper's structured start first. The error is eq. (6): half the
   /// weighted mean square of a batch, averaged over the networks.
   std::vector<TrainingCurve> convergence;
-  TrainingCurve bank_training;         ///< The training that the points are judged with; the same error.
-  std::size_t bank_samples = 0;        ///< Labelled frames of the training.
-  std::size_t own_samples = 0;         ///< Those that load a network's own taxel.
-  std::vector<PaperPoint> points;      ///< 16 at each of 10, 20 and 50 N.
-  calibration::Evaluation evaluation;  ///< Of all estimators on these points.
-  pipeline::Model model;               ///< Model of dermis, with the baselines; as `evaluation` had it.
+  TrainingCurve bank_training;                ///< The training that the points are judged with; the same error.
+  std::size_t bank_samples = 0;               ///< Labelled frames of the training.
+  std::size_t own_samples = 0;                ///< Those that load a network's own taxel.
+  std::vector<PaperPoint> points;             ///< 16 at each of 10, 20 and 50 N.
+  learn::calibration::Evaluation evaluation;  ///< Of all estimators on these points.
+  touch::pipeline::Model model;               ///< Model of dermis, with the baselines; as `evaluation` had it.
   std::vector<std::pair<std::string, double>> seconds;  ///< Of each part.
 };
 

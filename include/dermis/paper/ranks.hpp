@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "dermis/core/result.hpp"
+#include "dermis/touch/frames/result.hpp"
 
 namespace dermis::paper {
 

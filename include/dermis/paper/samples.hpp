@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <span>
 
-#include "dermis/core/result.hpp"
+#include "dermis/touch/frames/result.hpp"
 
 namespace dermis::paper {
 

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "dermis/core/result.hpp"
 #include "dermis/paper/network_shape.hpp"
+#include "dermis/touch/frames/result.hpp"
 
 namespace dermis::paper {
 

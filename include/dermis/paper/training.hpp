@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
-#include "dermis/core/result.hpp"
 #include "dermis/paper/network_shape.hpp"
 #include "dermis/paper/samples.hpp"
+#include "dermis/touch/frames/result.hpp"
 
 namespace dermis::paper {
 

@@ -13,7 +13,7 @@
 #include <system_error>
 #include <utility>
 
-#include "dermis/files/content_hash.hpp"
+#include "dermis/bytes/files/content_hash.hpp"
 
 namespace dermis::paper {
 namespace {
@@ -33,9 +33,9 @@ std::string_view bytes_of(std::span<const T> values) {
   return {reinterpret_cast<const char*>(values.data()), values.size_bytes()};
 }
 
-std::string hash_of(const calibration::SampleDatabase& database) {
-  files::ContentHash hash;
-  for (const calibration::Sample& sample : database.samples) {
+std::string hash_of(const learn::calibration::SampleDatabase& database) {
+  bytes::files::ContentHash hash;
+  for (const learn::calibration::Sample& sample : database.samples) {
     const double celsius = sample.temperature_celsius.value_or(kNotYet);
     hash.add(bytes_of(std::span(&celsius, 1)));
     hash.add(bytes_of(std::span(sample.ratio)));
@@ -46,13 +46,13 @@ std::string hash_of(const calibration::SampleDatabase& database) {
 
 }  // namespace
 
-BankCheckpoint::BankCheckpoint(const calibration::SampleDatabase& database, const BankTrainingOptions& options,
+BankCheckpoint::BankCheckpoint(const learn::calibration::SampleDatabase& database, const BankTrainingOptions& options,
                                Ranks& ranks)
     : options_(options), ranks_(ranks), taxels_(database.array.taxel_count()), samples_(hash_of(database)) {}
 
 BankRowsFile BankCheckpoint::file_of(const NetworkBank& networks, std::vector<double> curve) const {
   curve.resize(options_.steps, kNotYet);
-  files::SafetensorsFile first;
+  bytes::files::SafetensorsFile first;
   first.metadata = {{"format", "dermis paper bank checkpoint 1"},
                     {"samples", samples_},
                     {"batch", std::to_string(options_.batch)},

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "dermis/calibration/sample_database.hpp"
-#include "dermis/core/result.hpp"
+#include "dermis/learn/calibration/sample_database.hpp"
 #include "dermis/paper/bank_training.hpp"
+#include "dermis/touch/frames/result.hpp"
 #include "paper/bank/bank_rows_file.hpp"
 
 namespace dermis::paper {
@@ -17,7 +17,7 @@ namespace dermis::paper {
 class BankCheckpoint {
  public:
   /// All arguments must outlive it.
-  BankCheckpoint(const calibration::SampleDatabase& database, const BankTrainingOptions& options, Ranks& ranks);
+  BankCheckpoint(const learn::calibration::SampleDatabase& database, const BankTrainingOptions& options, Ranks& ranks);
 
   /// `curve`: the error of each step so far.
   [[nodiscard]] Status write(const NetworkBank& networks, const std::vector<double>& curve) const;

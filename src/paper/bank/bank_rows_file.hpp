@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "dermis/core/result.hpp"
-#include "dermis/files/safetensors.hpp"
+#include "dermis/bytes/files/safetensors.hpp"
 #include "dermis/paper/ranks.hpp"
+#include "dermis/touch/frames/result.hpp"
 
 namespace dermis::paper {
 
@@ -28,7 +28,7 @@ class BankRowsFile {
   using Row = std::function<void(std::size_t tensor, std::size_t network, std::span<float> values)>;
 
   /// `first`: metadata and the tensors before the large ones. `ranks` must outlive it.
-  BankRowsFile(const files::SafetensorsFile& first, Rows rows, Ranks& ranks);
+  BankRowsFile(const bytes::files::SafetensorsFile& first, Rows rows, Ranks& ranks);
 
   /// Each rank writes its rows; the file takes its place when all are done.
   [[nodiscard]] Status write(const std::string& path, const Row& give) const;
@@ -42,7 +42,7 @@ class BankRowsFile {
   [[nodiscard]] std::string checksum(const std::string& first, const Row& row) const;
   [[nodiscard]] int write_own(int descriptor, bool is_regular, const std::string& beginning, const Row& give) const;
 
-  files::SafetensorsBeginning beginning_;
+  bytes::files::SafetensorsBeginning beginning_;
   Rows rows_;
   Ranks& ranks_;
   Part own_;

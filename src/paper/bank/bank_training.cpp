@@ -13,16 +13,16 @@
 #include <span>
 #include <utility>
 
-#include "dermis/calibration/parallel.hpp"
-#include "dermis/calibration/sample_temperatures.hpp"
+#include "dermis/learn/calibration/parallel.hpp"
+#include "dermis/learn/calibration/sample_temperatures.hpp"
 #include "dermis/paper/initialisation.hpp"
 #include "dermis/paper/structured_start.hpp"
 #include "paper/bank/bank_checkpoint.hpp"
 
 namespace dermis::paper {
 
-using calibration::Sample;
-using calibration::SampleDatabase;
+using learn::calibration::Sample;
+using learn::calibration::SampleDatabase;
 
 namespace {
 
@@ -73,7 +73,7 @@ double heaviest_force(const SampleDatabase& database) {
 }
 
 std::optional<PaperBank::Range> temperature_range(const SampleDatabase& database) {
-  const calibration::SampleTemperatures temperatures = calibration::sample_temperatures(database);
+  const learn::calibration::SampleTemperatures temperatures = learn::calibration::sample_temperatures(database);
   if (!temperatures.is_input) return std::nullopt;
   const TemperatureSpan& span = temperatures.span;
   return PaperBank::Range{span.centre_celsius - span.half_span_celsius, span.centre_celsius + span.half_span_celsius};
@@ -187,7 +187,7 @@ void BankTraining::fill_patterns(const SampleDatabase& database) {
 }
 
 void BankTraining::start(BankStart start) {
-  calibration::parallel_for(choices_.size(), [&](std::size_t network) {
+  learn::calibration::parallel_for(choices_.size(), [&](std::size_t network) {
     Random random = Random::stream(seed_, bank_.part().first + network);
     bank_.networks().set_parameters(network, start_parameters(start, random.bits()));
     choices_[network].random = random;

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <thread>
 
-#include "dermis/calibration/parallel.hpp"
+#include "dermis/learn/calibration/parallel.hpp"
 
 namespace dermis::paper {
 
@@ -33,7 +33,7 @@ void share_among_workers(std::size_t items, std::size_t workers, const Body& bod
       for (std::size_t item = first; item < std::min(first + stride, items); ++item) body(item, worker);
     }
   };
-  calibration::parallel_for(workers, std::ref(work));
+  learn::calibration::parallel_for(workers, std::ref(work));
 }
 
 }  // namespace dermis::paper

@@ -12,7 +12,7 @@
 namespace dermis::paper {
 namespace {
 
-using calibration::Sample;
+using learn::calibration::Sample;
 
 constexpr double kNoTemperature = std::numeric_limits<double>::quiet_NaN();
 
@@ -46,7 +46,7 @@ std::vector<Sample> samples_of(const FlatSamples& all, std::size_t taxels) {
 
 }  // namespace
 
-void broadcast_samples(calibration::SampleDatabase& database, Ranks& ranks) {
+void broadcast_samples(learn::calibration::SampleDatabase& database, Ranks& ranks) {
   if (ranks.count() == 1) return;
   FlatSamples all = flat(database.samples);
   broadcast_value(ranks, database.array.rows);

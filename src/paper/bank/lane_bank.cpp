@@ -12,15 +12,15 @@
 #include "hwy/foreach_target.h"
 // foreach_target.h comes first: it includes this file again for every instruction set.
 #include "hwy/highway.h"
-#include "network/activation-inl.hpp"
 #include "paper/bank/adam-inl.hpp"
+#include "touch/network/activation-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace dermis::paper::HWY_NAMESPACE {
 namespace {
 namespace hn = hwy::HWY_NAMESPACE;
-using network::HWY_NAMESPACE::activate;
-using network::HWY_NAMESPACE::slope_from_output;
+using touch::network::HWY_NAMESPACE::activate;
+using touch::network::HWY_NAMESPACE::slope_from_output;
 
 using GroupTag = hn::CappedTag<float, kGroup>;
 using GroupVector = hn::Vec<GroupTag>;

@@ -14,14 +14,14 @@
 #include <type_traits>
 
 #include "hwy/highway.h"
-#include "network/activation-inl.hpp"
 #include "paper/bank/panel_tiles-inl.hpp"
 #include "paper/bank/pattern_space.hpp"
+#include "touch/network/activation-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace dermis::paper::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-using network::HWY_NAMESPACE::slope_from_output;
+using touch::network::HWY_NAMESPACE::slope_from_output;
 
 /// Calls write(tag, values, column, row) for four values of a column at a time, those of rows row ... row + 3. Stored
 /// as a row they make the transpose. `rows` and `columns` are rounded up to blocks of four.
@@ -173,7 +173,7 @@ inline float take_error(const PanelLayer& layer, Level outputs, PatternSpace& sp
       const float difference = row[k] - space.targets[p * units + k];
       const float scaled = space.weights[p] * difference;
       error += 0.5 * double{scaled} * double{difference};
-      row[k] = scaled * network::slope_from_output(layer.activation, row[k]);
+      row[k] = scaled * touch::network::slope_from_output(layer.activation, row[k]);
     }
     std::fill(row + units, row + outputs.stride, 0.0F);
   }

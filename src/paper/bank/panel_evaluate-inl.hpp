@@ -12,13 +12,13 @@
 #include <utility>
 
 #include "hwy/highway.h"
-#include "network/activation-inl.hpp"
 #include "paper/bank/panel_layout.hpp"
+#include "touch/network/activation-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace dermis::paper::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-using network::HWY_NAMESPACE::activate;
+using touch::network::HWY_NAMESPACE::activate;
 
 using FullTag = hn::CappedTag<float, kLanes>;
 inline constexpr std::size_t kVectorLanes = hn::MaxLanes(FullTag());

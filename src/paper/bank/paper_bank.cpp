@@ -8,7 +8,7 @@
 #include <cassert>
 #include <utility>
 
-#include "dermis/report/wording.hpp"
+#include "dermis/out/report/wording.hpp"
 
 namespace dermis::paper {
 namespace {
@@ -44,7 +44,7 @@ std::string PaperBank::description() const {
   return fmt::format(
       "the paper's bank: one N-N-N-1 network a taxel, N = {}, from the readings of the whole array, and the "
       "temperature where the calibration varies it, to newtons; it is told nothing of the circuit",
-      report::grouped(taxel_count()));
+      out::report::grouped(taxel_count()));
 }
 
 void PaperBank::normalise(std::span<const double> ratio, std::optional<double> temperature_celsius,

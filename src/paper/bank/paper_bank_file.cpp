@@ -9,13 +9,13 @@
 #include <utility>
 #include <vector>
 
-#include "dermis/files/safetensors.hpp"
+#include "dermis/bytes/files/safetensors.hpp"
 #include "paper/bank/bank_rows_file.hpp"
 
 namespace dermis::paper {
 namespace {
 
-using files::SafetensorsFile;
+using bytes::files::SafetensorsFile;
 
 /// The weights and, by far, all else.
 constexpr std::size_t kMostBytes = kMostUnknowns * sizeof(float) + (std::size_t{1} << 24U);
@@ -91,9 +91,9 @@ Status write_paper_bank(const std::string& path, const PaperBank& bank, Ranks& r
 }
 
 Result<PaperBank> read_paper_bank(const std::string& path) {
-  const Result<SafetensorsFile> file = files::read_safetensors(path, kMostBytes);
+  const Result<SafetensorsFile> file = bytes::files::read_safetensors(path, kMostBytes);
   if (!file) return file.error();
-  if (const Status right = files::check_format(*file, kPaperBankFormat); !right) {
+  if (const Status right = bytes::files::check_format(*file, kPaperBankFormat); !right) {
     return bad_input(path + ": " + right.error().message);
   }
   Result<PaperBank> bank = bank_from(*file);

@@ -13,17 +13,17 @@
 #include <cstddef>
 
 #include "hwy/highway.h"
-#include "network/activation-inl.hpp"
 #include "paper/engine/lanes-inl.hpp"
 #include "paper/engine/placed_shape.hpp"
+#include "touch/network/activation-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace dermis::paper::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-using network::HWY_NAMESPACE::kLogSigmoidPower;
-using network::HWY_NAMESPACE::kTanhPower;
-using network::HWY_NAMESPACE::log_sigmoid_of_power;
-using network::HWY_NAMESPACE::tanh_of_power;
+using touch::network::HWY_NAMESPACE::kLogSigmoidPower;
+using touch::network::HWY_NAMESPACE::kTanhPower;
+using touch::network::HWY_NAMESPACE::log_sigmoid_of_power;
+using touch::network::HWY_NAMESPACE::tanh_of_power;
 
 double power_scale(Activation activation) {
   switch (activation) {

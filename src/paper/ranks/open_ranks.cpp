@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <cstdlib>
 
-#include "dermis/core/plugin.hpp"
+#include "dermis/bytes/system/plugin.hpp"
 #include "paper/ranks/mpi_plugin.hpp"
 #include "paper/ranks/one_process.hpp"
 

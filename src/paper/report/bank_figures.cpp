@@ -6,24 +6,24 @@
 #include <cmath>
 #include <utility>
 
-#include "dermis/network/activation.hpp"
+#include "dermis/out/report/plot.hpp"
+#include "dermis/out/report/wording.hpp"
 #include "dermis/paper/paper_bank.hpp"
-#include "dermis/report/plot.hpp"
-#include "dermis/report/wording.hpp"
+#include "dermis/touch/network/activation.hpp"
 #include "paper/report/network_diagram.hpp"
 #include "paper/report/paper_figures.hpp"
 #include "paper/report/training_plot.hpp"
 
 namespace dermis::paper {
 
-using report::Axis;
-using report::counted;
-using report::Figure;
-using report::grouped;
-using report::Plot;
-using report::Point;
-using report::Scale;
-using report::steps;
+using out::report::Axis;
+using out::report::counted;
+using out::report::Figure;
+using out::report::grouped;
+using out::report::Plot;
+using out::report::Point;
+using out::report::Scale;
+using out::report::steps;
 
 namespace {
 
@@ -60,7 +60,7 @@ Figure log_sigmoid_figure() {
   std::vector<Point> curve;
   for (int i = -60; i <= 60; ++i) {
     const double input = 0.1 * i;
-    curve.push_back({input, network::activate(network::Activation::log_sigmoid, input)});
+    curve.push_back({input, touch::network::activate(touch::network::Activation::log_sigmoid, input)});
   }
   Plot plot("log-sigmoid, eq. (3)", x, y, 480.0, 350.0);
   plot.region("working range", {{-reach, 0.25}, {reach, 0.25}, {reach, 0.75}, {-reach, 0.75}});
@@ -112,9 +112,9 @@ Figure bank_training_figure(const PaperReproduction& reproduction) {
 
 std::size_t bank_style(const PaperReproduction& reproduction) {
   const auto& estimators = reproduction.evaluation.estimators;
-  const auto bank = std::find_if(estimators.begin(), estimators.end(), [](const calibration::EstimatorResult& result) {
-    return result.name == kPaperBankName;
-  });
+  const auto bank =
+      std::find_if(estimators.begin(), estimators.end(),
+                   [](const learn::calibration::EstimatorResult& result) { return result.name == kPaperBankName; });
   return bank == estimators.end() ? 1 : static_cast<std::size_t>(bank - estimators.begin());
 }
 

@@ -7,17 +7,17 @@
 #include <cmath>
 #include <utility>
 
-#include "dermis/report/canvas.hpp"
+#include "dermis/out/report/canvas.hpp"
 
 namespace dermis::paper {
 
-using report::Anchor;
-using report::Canvas;
-using report::Drawing;
-using report::line_to;
-using report::move_to;
-using report::Point;
-using report::series_class;
+using out::report::Anchor;
+using out::report::Canvas;
+using out::report::Drawing;
+using out::report::line_to;
+using out::report::move_to;
+using out::report::Point;
+using out::report::series_class;
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "dermis/report/svg.hpp"
+#include "dermis/out/report/svg.hpp"
 
 namespace dermis::paper {
 
@@ -22,6 +22,6 @@ struct NetworkDiagram {
   bool shows_own = false;     ///< Connections between units at one place of their layers, of the same size, stand out.
 };
 
-[[nodiscard]] report::Drawing network_diagram(const NetworkDiagram& diagram);
+[[nodiscard]] out::report::Drawing network_diagram(const NetworkDiagram& diagram);
 
 }  // namespace dermis::paper

@@ -8,19 +8,19 @@
 #include <cmath>
 #include <utility>
 
-#include "dermis/report/estimator_table.hpp"
-#include "dermis/report/wording.hpp"
+#include "dermis/out/report/estimator_table.hpp"
+#include "dermis/out/report/wording.hpp"
 #include "paper/report/paper_points.hpp"
 #include "paper/report/training_plot.hpp"
 
 namespace dermis::paper {
 
-using report::counted;
-using report::fine_percent;
-using report::grouped;
-using report::kPaperTolerance;
-using report::steps;
-using report::three_digits;
+using out::report::counted;
+using out::report::fine_percent;
+using out::report::grouped;
+using out::report::kPaperTolerance;
+using out::report::steps;
+using out::report::three_digits;
 
 namespace {
 

@@ -8,13 +8,13 @@
 #include <cmath>
 #include <limits>
 
-#include "dermis/report/estimator_table.hpp"
-#include "dermis/report/wording.hpp"
+#include "dermis/out/report/estimator_table.hpp"
+#include "dermis/out/report/wording.hpp"
 
 namespace dermis::paper {
 
-using report::fine_percent;
-using report::kPaperTolerance;
+using out::report::fine_percent;
+using out::report::kPaperTolerance;
 
 std::array<PaperLevel, 3> paper_levels(const PaperReproduction& reproduction) {
   constexpr double kSameForce = 0.01;  // Relative: the loads of a level may differ by rounding.

@@ -8,29 +8,29 @@
 #include <cmath>
 #include <utility>
 
-#include "dermis/report/estimator_table.hpp"
-#include "dermis/report/files.hpp"
-#include "dermis/report/page.hpp"
-#include "dermis/report/wording.hpp"
+#include "dermis/out/report/estimator_table.hpp"
+#include "dermis/out/report/files.hpp"
+#include "dermis/out/report/page.hpp"
+#include "dermis/out/report/wording.hpp"
 #include "paper/report/paper_claims.hpp"
 #include "paper/report/paper_figures.hpp"
 #include "paper/report/paper_points.hpp"
 
 namespace dermis::paper {
 
-using report::Cell;
-using report::counted;
-using report::Fact;
-using report::Figure;
-using report::fine_percent;
-using report::grouped;
-using report::kPaperTolerance;
-using report::Page;
-using report::percent;
-using report::Row;
-using report::Table;
-using report::three_digits;
-using report::Tile;
+using out::report::Cell;
+using out::report::counted;
+using out::report::Fact;
+using out::report::Figure;
+using out::report::fine_percent;
+using out::report::grouped;
+using out::report::kPaperTolerance;
+using out::report::Page;
+using out::report::percent;
+using out::report::Row;
+using out::report::Table;
+using out::report::three_digits;
+using out::report::Tile;
 
 namespace {
 
@@ -312,11 +312,11 @@ void add_points(Page& page, const PaperReproduction& reproduction, const Figures
   if (reproduction.points.empty()) return;
   page.table(level_table(reproduction));
   page.paragraph("Underlined: beyond the 5\u00a0% that the paper claims.", "note");
-  if (const Table table = report::estimator_table(reproduction.evaluation); !table.rows.empty()) {
+  if (const Table table = out::report::estimator_table(reproduction.evaluation); !table.rows.empty()) {
     page.heading("All estimators on the same points");
     page.table(table);
     if (reproduction.model.array.taxel_count() > 0) {
-      report::add_estimator_legend(page, reproduction.evaluation, reproduction.model);
+      out::report::add_estimator_legend(page, reproduction.evaluation, reproduction.model);
     }
   }
   page.heading(fmt::format("The {}", counted(reproduction.points.size(), "point")));
@@ -388,7 +388,7 @@ Status write_paper_report(const std::string& directory, const PaperReproduction&
                                figures.peaks_training, figures.hidden_units,  figures.bank_network,
                                figures.log_sigmoid,    figures.convergence,   figures.bank_training};
   files.insert(files.end(), figures.points.begin(), figures.points.end());
-  return report::write_files(directory, files, page_of(reproduction, figures));
+  return out::report::write_files(directory, files, page_of(reproduction, figures));
 }
 
 }  // namespace dermis::paper

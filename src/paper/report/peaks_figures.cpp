@@ -7,9 +7,9 @@
 #include <functional>
 #include <utility>
 
-#include "dermis/report/heat_map.hpp"
-#include "dermis/report/plot.hpp"
-#include "dermis/report/wording.hpp"
+#include "dermis/out/report/heat_map.hpp"
+#include "dermis/out/report/plot.hpp"
+#include "dermis/out/report/wording.hpp"
 #include "paper/report/network_diagram.hpp"
 #include "paper/report/paper_figures.hpp"
 #include "paper/report/surface.hpp"
@@ -17,19 +17,19 @@
 
 namespace dermis::paper {
 
-using report::Axis;
-using report::Colours;
-using report::counted;
-using report::Drawing;
-using report::Figure;
-using report::heat_map;
-using report::heat_map_high;
-using report::MapAxes;
-using report::nice_axis;
-using report::Plot;
-using report::Point;
-using report::Scale;
-using report::three_digits;
+using out::report::Axis;
+using out::report::Colours;
+using out::report::counted;
+using out::report::Drawing;
+using out::report::Figure;
+using out::report::heat_map;
+using out::report::heat_map_high;
+using out::report::MapAxes;
+using out::report::nice_axis;
+using out::report::Plot;
+using out::report::Point;
+using out::report::Scale;
+using out::report::three_digits;
 
 namespace {
 

@@ -7,23 +7,23 @@
 #include <limits>
 #include <utility>
 
-#include "dermis/report/estimator_table.hpp"
-#include "dermis/report/plot.hpp"
-#include "dermis/report/wording.hpp"
+#include "dermis/out/report/estimator_table.hpp"
+#include "dermis/out/report/plot.hpp"
+#include "dermis/out/report/wording.hpp"
 #include "paper/report/paper_figures.hpp"
 #include "paper/report/paper_points.hpp"
 
 namespace dermis::paper {
 
-using report::Axis;
-using report::Drawing;
-using report::Figure;
-using report::fine_percent;
-using report::kPaperTolerance;
-using report::nice_axis;
-using report::Plot;
-using report::Point;
-using report::Scale;
+using out::report::Axis;
+using out::report::Drawing;
+using out::report::Figure;
+using out::report::fine_percent;
+using out::report::kPaperTolerance;
+using out::report::nice_axis;
+using out::report::Plot;
+using out::report::Point;
+using out::report::Scale;
 
 namespace {
 

@@ -11,20 +11,20 @@
 #include <numbers>
 #include <utility>
 
-#include "dermis/report/canvas.hpp"
-#include "dermis/report/heat_map.hpp"
+#include "dermis/out/report/canvas.hpp"
+#include "dermis/out/report/heat_map.hpp"
 
 namespace dermis::paper {
 
-using report::Anchor;
-using report::Canvas;
-using report::diverging_colour;
-using report::Drawing;
-using report::line_to;
-using report::move_to;
-using report::Point;
-using report::tick_label;
-using report::to_hex;
+using out::report::Anchor;
+using out::report::Canvas;
+using out::report::diverging_colour;
+using out::report::Drawing;
+using out::report::line_to;
+using out::report::move_to;
+using out::report::Point;
+using out::report::tick_label;
+using out::report::to_hex;
 
 namespace {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "dermis/report/plot.hpp"
-#include "dermis/report/svg.hpp"
+#include "dermis/out/report/plot.hpp"
+#include "dermis/out/report/svg.hpp"
 
 namespace dermis::paper {
 
@@ -15,14 +15,14 @@ namespace dermis::paper {
 /// elevation 30 degrees, in parallel projection. Colours are those of diverging_colour() over the height.
 struct Surface {
   std::string title;
-  report::Axis x;  ///< Linear axes; the samples are spread evenly over x and y.
-  report::Axis y;
-  report::Axis z;
+  out::report::Axis x;  ///< Linear axes; the samples are spread evenly over x and y.
+  out::report::Axis y;
+  out::report::Axis z;
   std::size_t rows = 2;        ///< >= 2, along y.
   std::size_t cols = 2;        ///< >= 2, along x.
   std::vector<double> values;  ///< [rows, cols]; facets with a corner that is not finite are left out.
 };
 
-[[nodiscard]] report::Drawing surface(const Surface& surface);
+[[nodiscard]] out::report::Drawing surface(const Surface& surface);
 
 }  // namespace dermis::paper

@@ -7,16 +7,16 @@
 #include <algorithm>
 #include <utility>
 
-#include "dermis/report/plot.hpp"
+#include "dermis/out/report/plot.hpp"
 
 namespace dermis::paper {
 
-using report::Axis;
-using report::Drawing;
-using report::nice_axis;
-using report::Plot;
-using report::Point;
-using report::Scale;
+using out::report::Axis;
+using out::report::Drawing;
+using out::report::nice_axis;
+using out::report::Plot;
+using out::report::Point;
+using out::report::Scale;
 
 namespace {
 

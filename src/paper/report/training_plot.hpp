@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "dermis/out/report/svg.hpp"
 #include "dermis/paper/paper_report.hpp"
-#include "dermis/report/svg.hpp"
 
 namespace dermis::paper {
 
@@ -31,6 +31,6 @@ struct TrainingPlot {
   std::optional<double> goal;  ///< Of eq. (2), drawn across.
 };
 
-[[nodiscard]] report::Drawing training_plot(const TrainingPlot& training);
+[[nodiscard]] out::report::Drawing training_plot(const TrainingPlot& training);
 
 }  // namespace dermis::paper

@@ -10,17 +10,17 @@
 #include <utility>
 #include <vector>
 
-#include "dermis/calibration/calibrate.hpp"
-#include "dermis/calibration/evaluation.hpp"
+#include "dermis/learn/calibration/calibrate.hpp"
+#include "dermis/learn/calibration/evaluation.hpp"
+#include "dermis/learn/simulation/reference_array.hpp"
+#include "dermis/learn/simulation/simulator.hpp"
 #include "dermis/paper/structured_start.hpp"
-#include "dermis/preprocessing/conditioner.hpp"
-#include "dermis/simulation/reference_array.hpp"
-#include "dermis/simulation/simulator.hpp"
+#include "dermis/touch/preprocessing/conditioner.hpp"
 
 namespace dermis::paper {
 namespace {
 
-using calibration::SampleDatabase;
+using learn::calibration::SampleDatabase;
 
 constexpr std::uint64_t kCalibrationSeed = 1;
 constexpr std::uint64_t kPointsSeed = 3;
@@ -33,7 +33,7 @@ struct Recording {
 };
 
 Result<Recording> record(const ArrayDescription& array, const char* scene, std::uint64_t seed) {
-  auto simulator = simulation::Simulator::create(array, {}, scene, seed);
+  auto simulator = learn::simulation::Simulator::create(array, {}, scene, seed);
   if (!simulator) return simulator.error();
   Recording recording;
   RawFrame frame;
@@ -99,7 +99,7 @@ TrainingCurve descend(BankTraining& training, BankStart start, const char* name,
 /// The voltage that the calibration gives for a taxel and a force: between its presses, straight in logarithms.
 double calibration_volts(const SampleDatabase& database, std::size_t taxel, double newtons, double supply_v) {
   std::vector<std::pair<double, double>> presses;  // ln force, ln ratio
-  for (const calibration::Sample& sample : database.samples) {
+  for (const learn::calibration::Sample& sample : database.samples) {
     const double force = sample.known_newtons[taxel];
     const auto ratio = static_cast<double>(sample.ratio[taxel]);
     if (force > 0.0 && ratio > 0.0) presses.emplace_back(std::log(force), std::log(ratio));
@@ -114,12 +114,12 @@ double calibration_volts(const SampleDatabase& database, std::size_t taxel, doub
 }
 
 std::vector<PaperPoint> list_points(const ArrayDescription& array, const SampleDatabase& database,
-                                    const Recording& points, const calibration::Evaluation& evaluation) {
+                                    const Recording& points, const learn::calibration::Evaluation& evaluation) {
   std::vector<PaperPoint> listed;
-  preprocessing::Conditioner conditioner(array);
+  touch::preprocessing::Conditioner conditioner(array);
   std::vector<ConditionedFrame> conditioned(points.frames.size());
   for (std::size_t k = 0; k < conditioned.size(); ++k) conditioner.process(points.frames[k], conditioned[k]);
-  for (const calibration::JudgedTaxel& judged : evaluation.taxels) {
+  for (const learn::calibration::JudgedTaxel& judged : evaluation.taxels) {
     listed.push_back({array.taxel_name(judged.taxel), judged.true_newtons,
                       *array.readout.supply_v * conditioned[judged.frame].ratio[judged.taxel],
                       calibration_volts(database, judged.taxel, judged.true_newtons, *array.readout.supply_v),
@@ -131,7 +131,7 @@ std::vector<PaperPoint> list_points(const ArrayDescription& array, const SampleD
 }  // namespace
 
 ArrayDescription paper_array(std::size_t rows, std::size_t cols) {
-  ArrayDescription array = simulation::reference_array({rows, cols});
+  ArrayDescription array = learn::simulation::reference_array({rows, cols});
   array.name = "paper";
   return array;
 }
@@ -143,9 +143,10 @@ Status reproduce_bank(const ArrayDescription& array, const BankEffort& effort,
   found.start = start_systems(array.taxel_count());
   const Result<Recording> presses = record(array, "paper_calibration", kCalibrationSeed);
   if (!presses) return presses.error();
-  const Result<SampleDatabase> database = calibration::build_sample_database(array, presses->frames, presses->loads);
+  const Result<SampleDatabase> database =
+      learn::calibration::build_sample_database(array, presses->frames, presses->loads);
   if (!database) return database.error();
-  auto calibrated = calibration::calibrate(*database);
+  auto calibrated = learn::calibration::calibrate(*database);
   if (!calibrated) return calibrated.error();
 
   Result<BankTraining> training = BankTraining::create(*database, kBankSeed);
@@ -175,12 +176,12 @@ Status reproduce_bank(const ArrayDescription& array, const BankEffort& effort,
   found.bank_samples = database->samples.size();
   found.own_samples = static_cast<std::size_t>(
       std::count_if(database->samples.begin(), database->samples.end(),
-                    [](const calibration::Sample& sample) { return sample.known_newtons.front() > 0.0F; }));
+                    [](const learn::calibration::Sample& sample) { return sample.known_newtons.front() > 0.0F; }));
 
   const Result<Recording> points = record(array, "paper", kPointsSeed);
   if (!points) return points.error();
-  Result<calibration::Evaluation> evaluation =
-      calibration::evaluate(calibrated->model, points->frames, points->loads, &trained->bank);
+  Result<learn::calibration::Evaluation> evaluation =
+      learn::calibration::evaluate(calibrated->model, points->frames, points->loads, &trained->bank);
   if (!evaluation) return evaluation.error();
   found.points = list_points(array, *database, *points, *evaluation);
   found.evaluation = std::move(*evaluation);

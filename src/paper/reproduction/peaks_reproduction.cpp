@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "dermis/calibration/parallel.hpp"
-#include "dermis/core/random.hpp"
+#include "dermis/learn/calibration/parallel.hpp"
 #include "dermis/paper/initialisation.hpp"
 #include "dermis/paper/peaks.hpp"
 #include "dermis/paper/training.hpp"
+#include "dermis/touch/frames/random.hpp"
 #include "paper/training/levenberg_marquardt.hpp"
 
 namespace dermis::paper {
@@ -71,7 +71,7 @@ class PeaksExperiment {
     const PackedSamples<double> packed(shape, samples());
     Fit fit;
     fit.parameters = uniform_start<double>(shape, kStartRange, seed(hidden, start));
-    network::LevenbergMarquardtOptions options;
+    touch::network::LevenbergMarquardtOptions options;
     options.max_iterations = iterations;
     options.error_goal = 0.5 * kGoal * static_cast<double>(PeaksSamples::kCount);  // eq. (2) in terms of eq. (6)
     options.relative_reduction = 1e-7;
@@ -111,7 +111,7 @@ void try_starts(const PeaksExperiment& experiment, std::size_t first, std::size_
                 HiddenLayerFit& result, Fit& best) {
   for (; first < last && best.mse > goal; first += kStartsAtOnce) {
     std::vector<Fit> fits(std::min(kStartsAtOnce, last - first));
-    calibration::parallel_for(fits.size(), [&](std::size_t k) {
+    learn::calibration::parallel_for(fits.size(), [&](std::size_t k) {
       fits[k] = experiment.levenberg_marquardt(result.hidden, first + k, iterations);
     });
     result.starts += fits.size();
@@ -176,7 +176,7 @@ TrainingCurve drawn(const ErrorCurve& curve, std::string name) {
 void reproduce_adaptive_rate(const PeaksExperiment& experiment, const PeaksEffort& effort, Fit& best,
                              HiddenLayerFit& fit_of_paper_size, PeaksReproduction& found) {
   std::vector<TrainingState<double>> states(effort.adaptive_rate_starts);
-  calibration::parallel_for(states.size(), [&](std::size_t start) {
+  learn::calibration::parallel_for(states.size(), [&](std::size_t start) {
     states[start] = experiment.adaptive_rate(start, effort.adaptive_rate_epochs);
   });
   const auto& winner = *std::min_element(states.begin(), states.end(),

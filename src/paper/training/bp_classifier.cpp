@@ -14,7 +14,7 @@
 namespace dermis::paper {
 namespace {
 
-using recognition::Lesson;
+using learn::recognition::Lesson;
 
 constexpr std::array<std::size_t, 2> kHiddenUnits{16, 64};
 constexpr std::uint64_t kMostEpochs = 200;

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "dermis/core/random.hpp"
+#include "dermis/touch/frames/random.hpp"
 #include "paper/training/algorithm.hpp"
 #include "paper/training/pattern_descent.hpp"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "dermis/core/random.hpp"
+#include "dermis/touch/frames/random.hpp"
 
 namespace dermis::paper {
 namespace {

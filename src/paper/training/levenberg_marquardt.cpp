@@ -8,7 +8,7 @@
 namespace dermis::paper {
 namespace {
 
-class NetworkProblem : public network::LeastSquaresProblem {
+class NetworkProblem : public touch::network::LeastSquaresProblem {
  public:
   NetworkProblem(FeedForward<double>& network, const PackedSamples<double>& samples)
       : network_(network), samples_(samples) {}
@@ -26,12 +26,12 @@ class NetworkProblem : public network::LeastSquaresProblem {
 
 }  // namespace
 
-network::LevenbergMarquardtReport minimise(FeedForward<double>& network, const PackedSamples<double>& samples,
-                                           std::vector<double>& parameters,
-                                           const network::LevenbergMarquardtOptions& options) {
+touch::network::LevenbergMarquardtReport minimise(FeedForward<double>& network, const PackedSamples<double>& samples,
+                                                  std::vector<double>& parameters,
+                                                  const touch::network::LevenbergMarquardtOptions& options) {
   assert(parameters.size() == network.shape().parameter_count());
   NetworkProblem problem(network, samples);
-  return network::minimise(problem, parameters, options);
+  return touch::network::minimise(problem, parameters, options);
 }
 
 }  // namespace dermis::paper

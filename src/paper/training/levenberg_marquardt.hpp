@@ -4,15 +4,15 @@
 
 #include <vector>
 
-#include "dermis/network/levenberg_marquardt.hpp"
 #include "dermis/paper/feed_forward.hpp"
+#include "dermis/touch/network/levenberg_marquardt.hpp"
 
 namespace dermis::paper {
 
 /// Minimises the weighted error of a network over samples, eq. (6), by Levenberg-Marquardt: Hagan and Menhaj 1994. The
-/// Jacobian is never stored. `parameters` [network.shape().parameter_count()]; the rest as network::minimise().
-network::LevenbergMarquardtReport minimise(FeedForward<double>& network, const PackedSamples<double>& samples,
-                                           std::vector<double>& parameters,
-                                           const network::LevenbergMarquardtOptions& options = {});
+/// Jacobian is never stored. `parameters` [network.shape().parameter_count()]; the rest as touch::network::minimise().
+touch::network::LevenbergMarquardtReport minimise(FeedForward<double>& network, const PackedSamples<double>& samples,
+                                                  std::vector<double>& parameters,
+                                                  const touch::network::LevenbergMarquardtOptions& options = {});
 
 }  // namespace dermis::paper

@@ -6,7 +6,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "dermis/core/random.hpp"
+#include "dermis/touch/frames/random.hpp"
 
 namespace dermis::paper {
 namespace {

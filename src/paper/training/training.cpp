@@ -147,10 +147,10 @@ class Run {
   }
 
   StopReason run_levenberg_marquardt() {
-    using network::LevenbergMarquardtStop;
+    using touch::network::LevenbergMarquardtStop;
     std::optional<StopReason> stop = reason_to_stop();
     if (stop) return *stop;
-    network::LevenbergMarquardtOptions options;
+    touch::network::LevenbergMarquardtOptions options;
     options.max_iterations =
         static_cast<int>(std::min<std::uint64_t>(options_.epochs - state_.epoch, std::numeric_limits<int>::max()));
     options.gradient_limit = options_.gradient_limit / point_.scale;
@@ -162,7 +162,7 @@ class Run {
       stop = finish_epoch();
       return !stop;
     };
-    const network::LevenbergMarquardtReport report =
+    const touch::network::LevenbergMarquardtReport report =
         minimise(point_.network, point_.packed, state_.parameters, options);
     if (stop) return *stop;
     switch (report.stop) {

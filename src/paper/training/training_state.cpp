@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "dermis/network/levenberg_marquardt.hpp"
 #include "dermis/paper/training.hpp"
+#include "dermis/touch/network/levenberg_marquardt.hpp"
 
 namespace dermis::paper {
 namespace {
@@ -116,7 +116,7 @@ TrainingState<Real> start_training(const NetworkShape& shape, std::vector<Real> 
       break;
     case TrainingAlgorithm::conjugate_gradient: state.numbers[0] = kFirstLambda; break;
     case TrainingAlgorithm::levenberg_marquardt:
-      state.numbers[0] = network::LevenbergMarquardtOptions{}.initial_damping;
+      state.numbers[0] = touch::network::LevenbergMarquardtOptions{}.initial_damping;
       break;
     default: break;
   }

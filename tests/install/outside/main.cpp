@@ -4,10 +4,10 @@
 #include <cstdio>
 #include <vector>
 
-#include "dermis/calibration/calibrate.hpp"
-#include "dermis/core/version.hpp"
-#include "dermis/pipeline/pipeline.hpp"
-#include "dermis/simulation/simulator.hpp"
+#include "dermis/learn/calibration/calibrate.hpp"
+#include "dermis/learn/simulation/simulator.hpp"
+#include "dermis/touch/frames/version.hpp"
+#include "dermis/touch/pipeline/pipeline.hpp"
 
 // Calibrates a simulated array of 4 x 4 taxels and prints the newtons of one more frame.
 int main() {
@@ -19,17 +19,17 @@ int main() {
 
   std::vector<dermis::RawFrame> frames;
   std::vector<dermis::Load> loads;
-  const auto rig = dermis::simulation::Simulator::create(array, {}, "calibration", 1);
+  const auto rig = dermis::learn::simulation::Simulator::create(array, {}, "calibration", 1);
   if (!rig) return 1;
   dermis::RawFrame frame;
   for (auto more = (*rig)->next(frame); more && *more; more = (*rig)->next(frame)) {
     frames.push_back(frame);
     loads.insert(loads.end(), (*rig)->loads().begin(), (*rig)->loads().end());
   }
-  const auto calibration = dermis::calibration::calibrate(array, frames, loads);
+  const auto calibration = dermis::learn::calibration::calibrate(array, frames, loads);
   if (!calibration) return 1;
 
-  auto pipeline = dermis::pipeline::Pipeline::create(calibration->model);
+  auto pipeline = dermis::touch::pipeline::Pipeline::create(calibration->model);
   if (!pipeline) return 1;
   dermis::ForceFrame force;
   pipeline->process(frames.back(), force);

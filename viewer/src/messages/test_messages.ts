@@ -9,7 +9,7 @@ import { MessageWriter } from "@foxglove/rosmsg2-serialization";
 
 export type Definition = ReturnType<typeof parse>[number];
 
-const FOLDER = fileURLToPath(new URL("../../../src/messages/msg/", import.meta.url));
+const FOLDER = fileURLToPath(new URL("../../../src/bytes/ros_messages/msg/", import.meta.url));
 
 /** By "package/msg/Type". */
 export const definitions = new Map<string, Definition>(

@@ -57,7 +57,7 @@ describe("the colour map", () => {
   });
 
   it("is the palette of terminals, pictures and reports", () => {
-    const header = readFileSync("../src/report/palette.hpp", "utf8");
+    const header = readFileSync("../src/out/report/palette.hpp", "utf8");
     const rows = [...header.matchAll(/\{(-?[\d.]+), (-?[\d.]+), (-?[\d.]+)\}/g)].map((match) =>
       match.slice(1).map(Number),
     );

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
 /**
- * The palette of every map, also in terminals, pictures and reports (src/report/palette.hpp, held equal by a test).
+ * The palette of every map, also in terminals, pictures and reports (src/out/report/palette.hpp, held equal by a test).
  *
  * From ink through red to pale yellow, in equal steps to the eye: lightness and distance in OKLab rise evenly. So a map
  * shows no edge that the forces have not, and reads the same in grey. Rows: coefficients of share^0, share^1, ... for

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dermis/touch/contacts/contact_tracker.hpp"
+#include "dermis/touch/frames/contacts.hpp"
+#include "dermis/touch/frames/frames.hpp"
+#include "dermis/touch/pipeline/model.hpp"
+
+namespace dermis::learn::health {
+
+/// The reading of an array while an object lies still on it, all contacts together.
+struct WeighedPress {
+  double newtons = 0.0;        ///< > 0
+  double sigma_newtons = 0.0;  ///< As the model says, > 0.
+};
+
+/// The verdict on a calibration by an object of known weight.
+struct WeightFinding {
+  double weight_n = 0.0;
+  std::vector<WeighedPress> presses;  ///< Of the object.
+  std::size_t others = 0;    ///< Presses that read less than half or more than twice the weight: of something else.
+  double other_n = 0.0;      ///< Reading of the last of them [N].
+  std::size_t unsteady = 0;  ///< Presses that were too short or not steady.
+  double ratio = 1.0;        ///< Reading over weight; geometric mean of the presses.
+  double sigma = 0.0;        ///< Standard deviation of its logarithm, that from touch to touch included.
+
+  /// A larger change of the gain counts: three standard deviations, and 3 % at least.
+  [[nodiscard]] double limit() const noexcept;
+  [[nodiscard]] bool has_aged() const noexcept;
+};
+
+/// Lines of text: the weight, then "well: reads 1.2 % low, within 4 %" or "recalibrate: gains have changed by about 9 %
+/// (± 3 %): it reads too much". Without a press, one line without an end names what is missing.
+[[nodiscard]] std::string describe(const WeightFinding& finding);
+
+/// Weighs a known object that is put on an array, once or several times. The steadiest second of each press counts,
+/// from one second after its onset on, that reads between half and twice the weight. Not thread-safe.
+class WeightCheck {
+ public:
+  /// `weight_n` > 0.
+  WeightCheck(const touch::pipeline::Model& model, double weight_n);
+
+  /// The next frame of the array. Allocates nothing while a press lasts.
+  void add(const ForceFrame& force);
+
+  /// The finding over all frames so far; a press that still lasts counts.
+  [[nodiscard]] WeightFinding finding() const;
+
+ private:
+  /// A second of a press, or more where frames are rare.
+  struct Piece {
+    Nanos begin{};
+    std::size_t frames = 0;
+    double sum_n = 0.0;
+    double sum_square = 0.0;
+    double sum_sigma_n = 0.0;
+  };
+  struct Press {
+    Nanos onset{};
+    std::optional<Piece> piece;
+    std::optional<WeighedPress> steadiest;  ///< The steadiest piece that may be the weight.
+    double deviation = 0.0;                 ///< Of `steadiest`, relative.
+    std::optional<double> other_n;          ///< A still reading of less than half or more than twice the weight.
+  };
+
+  void hold(Nanos time);
+  void close_piece(Press& press) const;
+  static void count(const Press& press, WeightFinding& finding);
+
+  touch::contacts::ContactTracker tracker_;
+  ContactReport report_;
+  std::optional<Press> press_;  ///< That lasts.
+  WeightFinding finding_;       ///< Of the presses that are over.
+};
+
+}  // namespace dermis::learn::health

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dermis/live/fleet/robot_health.hpp"
+#include "dermis/live/fleet/stream_address.hpp"
+#include "dermis/touch/frames/frames.hpp"
+#include "dermis/touch/frames/result.hpp"
+
+namespace dermis::live::fleet {
+
+class Broker;
+
+/// A robot whose health is older does not talk to the hub.
+inline constexpr Nanos kSilentAfter = std::chrono::seconds(10);
+
+/// The frames of a robot on the hub, and how it is.
+struct RobotState {
+  std::string name;
+  std::uint64_t messages = 0;
+  std::uint64_t bytes = 0;
+  Nanos last{};           ///< The last message arrived then at the robot's server, by UTC; 0: none did.
+  std::uint64_t lag = 0;  ///< Messages that the robot's server has and the hub not yet, as far as the hub knows.
+
+  std::optional<RobotHealth> health{};  ///< The last that it told; empty: none that can be read,
+  std::string health_error{};           ///< and why not.
+  Nanos health_time{};                  ///< It arrived then at the robot's server, by UTC; 0: none did.
+
+  /// It does not tell how it is, or its clock is far from that of the hub.
+  [[nodiscard]] bool is_silent(Nanos now) const noexcept {
+    return health_time + kSilentAfter < now || now + kSilentAfter < health_time;
+  }
+};
+
+/// All robots of a hub at one moment.
+struct FleetState {
+  std::string hub;      ///< Its address, as it may be shown.
+  std::string error{};  ///< Why the hub does not answer; empty: it does.
+  std::vector<RobotState> robots{};
+};
+
+/// For a page: the names of RobotState and ArrayHealth, and ages at `now` in seconds.
+[[nodiscard]] std::string fleet_to_json(const FleetState& fleet, Nanos now);
+
+/// The server that has copies of the streams of all robots. Thread-safe.
+class Hub {
+ public:
+  /// Fails where the plugin is not there, and where no server answers.
+  [[nodiscard]] static Result<std::unique_ptr<Hub>> connect(const BrokerAddress& address);
+  Hub(const Hub&) = delete;
+  Hub& operator=(const Hub&) = delete;
+  ~Hub();
+
+  /// From now on the hub copies all that the robot's server has and gets. A robot that is there stays.
+  [[nodiscard]] Status add_robot(const std::string& name);
+  [[nodiscard]] Result<std::vector<RobotState>> robots();
+
+ private:
+  explicit Hub(std::unique_ptr<Broker> broker);
+  void add_health(RobotState& robot);
+
+  std::unique_ptr<Broker> broker_;
+};
+
+}  // namespace dermis::live::fleet

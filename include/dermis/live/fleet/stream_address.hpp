@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "dermis/touch/frames/frames.hpp"
+#include "dermis/touch/frames/result.hpp"
+
+/// Frames of fleets of robots, in the streams of NATS JetStream (docs/fleet.md).
+namespace dermis::live::fleet {
+
+/// A server, and who asks it.
+struct BrokerAddress {
+  std::string url{};  ///< "nats://hub:4222", "tls://hub:4222", also with "user:password@".
+  std::string ca{};  ///< Path of the certificates that sign that of the server; empty: those of the machine, with tls:.
+  std::string key{};  ///< Path of the seed of the user (nkey); empty: none.
+};
+
+/// A place in a stream: after all that is there, at a number of the stream, or at a time by UTC.
+struct Newest {};
+using StreamPlace = std::variant<Newest, std::uint64_t, Nanos>;
+
+/// The frames of one array, as nats://HUB?robot=R&array=A&from=TIME|SEQUENCE|new&to=TIME|SEQUENCE|last.
+struct StreamAddress {
+  std::string text;  ///< As it was given, without user and password.
+  BrokerAddress broker{};
+  std::string robot{};
+  std::string array{};
+  StreamPlace from = Newest{};
+  StreamPlace to = Newest{};  ///< The last frame that is read, where it ends.
+  bool ends = false;          ///< `to` is there; otherwise the source waits for frames that come.
+};
+
+/// True if the text begins as nats: or tls:.
+[[nodiscard]] bool is_stream_address(std::string_view text);
+
+/// Fails, with the mend, on an unknown or a missing part.
+[[nodiscard]] Result<StreamAddress> parse_stream_address(const std::string& text);
+
+/// nats://HOST[:PORT][?ca=FILE&key=FILE]
+[[nodiscard]] Result<BrokerAddress> parse_broker_address(const std::string& text);
+
+/// An address as it may be shown: without user and password.
+[[nodiscard]] inline std::string without_password(const std::string& text) {
+  const std::size_t begin = text.find("://");
+  if (begin == std::string::npos) return text;
+  const std::size_t end = text.find_first_of("/?", begin + 3);
+  const std::size_t at = text.substr(0, end).rfind('@');
+  if (at == std::string::npos) return text;
+  return text.substr(0, begin + 3) + text.substr(at + 1);
+}
+
+/// Names of robots and arrays are parts of subjects: letters, digits, '_' and '-', at most 64. Fails on others.
+[[nodiscard]] Status check_name(const std::string& what, const std::string& name);
+
+/// "dermis_ROBOT", the stream of a robot.
+[[nodiscard]] std::string stream_of(const std::string& robot);
+/// "dermis.ROBOT.ARRAY.frames"
+[[nodiscard]] std::string subject_of(const std::string& robot, const std::string& array, const char* what);
+/// "dermis.ROBOT.health"
+[[nodiscard]] std::string health_subject_of(const std::string& robot);
+
+}  // namespace dermis::live::fleet

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "dermis/bytes/devices/source_uri.hpp"
+#include "dermis/live/buses/bus_address.hpp"
+#include "dermis/live/fleet/stream_address.hpp"
+#include "dermis/touch/frames/result.hpp"
+
+namespace dermis::live::sources {
+
+enum class SourceKind {
+  device,      ///< By its URI; also the bytes of a device in a file.
+  simulation,  ///< sim:SCENE
+  recording,   ///< MCAP, of one or several arrays.
+  file,        ///< Any other file of frames, by its path or by file:PATH?rate=...
+  stream,      ///< nats://HUB?robot=...&array=...
+  bus,         ///< modbus-tcp://HOST?map=..., modbus-rtu:///dev/...?map=..., dds://DOMAIN/TOPIC?type=...
+};
+
+/// The name of a source, parsed (docs/devices.md). Opens nothing.
+struct SourceName {
+  std::string text;  ///< As it was given.
+  SourceKind kind = SourceKind::file;
+  std::string file{};                              ///< Path of the file, recording or bytes; empty: it is none.
+  std::string array{};                             ///< "chest" of "rec.mcap#chest"; empty: none is named.
+  std::optional<bytes::devices::SourceUri> uri{};  ///< Empty: the name is the path of a file.
+  std::optional<fleet::StreamAddress> stream{};    ///< A stream of NATS; empty: it is none.
+  std::optional<buses::BusAddress> bus{};          ///< Registers or a topic; empty: it is none.
+
+  /// Fails on what bytes::devices::parse_source_uri(), fleet::parse_stream_address() or buses::parse_bus_address()
+  /// refuses. Everything else is the path of a file.
+  [[nodiscard]] static Result<SourceName> parse(const std::string& text);
+
+  /// "rec.mcap#chest": the file without its folder, as tables name it.
+  [[nodiscard]] std::string short_name() const;
+  /// Frames come as fast as they are read: to be live, the name must give a rate.
+  [[nodiscard]] bool needs_rate() const noexcept;
+  /// Times begin at 0 and follow from the rate in the name: they are not those of the readings.
+  [[nodiscard]] bool has_times_of_its_own() const noexcept;
+  /// It is a topic of DDS, as DDS names it: "rt/chest/frame".
+  [[nodiscard]] bool hears(std::uint32_t domain, std::string_view topic) const;
+};
+
+}  // namespace dermis::live::sources

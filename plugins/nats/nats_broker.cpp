@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <nats/nats.h>
+#include <openssl/sha.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "destroyer.hpp"
+#include "live/fleet/broker.hpp"
+#include "nkeys.hpp"
+
+/// The plugin that dermis::fleet loads.
+namespace dermis::live::fleet {
+namespace {
+
+constexpr std::int64_t kConnectMs = 2000;
+constexpr std::int64_t kReconnectMs = 200;
+constexpr std::int64_t kAnswerMs = 2000;
+constexpr int kForEver = -1;
+constexpr natsStatus kAskAgain = NATS_ILLEGAL_STATE;
+constexpr int kMostQuestions = 8;  // all of them end in vain once in 10^19 times
+constexpr const char* kIdHeader = "Nats-Msg-Id";
+
+using Options = std::unique_ptr<natsOptions, Destroyer<natsOptions_Destroy>>;
+using Connection = std::unique_ptr<natsConnection, Destroyer<natsConnection_Destroy>>;
+using JetStream = std::unique_ptr<jsCtx, Destroyer<jsCtx_Destroy>>;
+using Message = std::unique_ptr<natsMsg, Destroyer<natsMsg_Destroy>>;
+using PublishAck = std::unique_ptr<jsPubAck, Destroyer<jsPubAck_Destroy>>;
+
+Error error_of(const std::string& place, natsStatus status) {
+  if (status == NATS_NO_SERVER) return failed(place + ": no server answers there");
+  return failed(place + ": " + natsStatus_GetText(status));
+}
+
+StoredMessage stored_message(natsMsg* message) {
+  StoredMessage stored;
+  stored.sequence = natsMsg_GetSequence(message);
+  stored.time = Nanos(natsMsg_GetTime(message));
+  const char* id = nullptr;
+  if (natsMsgHeader_Get(message, kIdHeader, &id) == NATS_OK) stored.id = id;
+  const auto* const data = reinterpret_cast<const std::uint8_t*>(natsMsg_GetData(message));
+  stored.bytes.assign(data, data + natsMsg_GetDataLength(message));
+  return stored;
+}
+
+class NatsBroker final : public Broker {
+ public:
+  NatsBroker(std::string url, std::unique_ptr<std::string> seed, Connection connection, JetStream jet_stream)
+      : url_(std::move(url)),
+        seed_(std::move(seed)),
+        connection_(std::move(connection)),
+        jet_stream_(std::move(jet_stream)) {}
+
+  [[nodiscard]] Result<std::string> ask(const std::string& subject, const std::string& request) override;
+  [[nodiscard]] Result<std::optional<Delivery>> take(const std::string& subject, const std::string& request) override;
+  void stop() override { natsConnection_Close(connection_.get()); }
+  [[nodiscard]] Status send(const std::string& subject, const std::string& text) override;
+  [[nodiscard]] Result<std::uint64_t> store(const std::string& subject, const std::string& id,
+                                            std::span<const std::uint8_t> bytes) override;
+  [[nodiscard]] Result<std::optional<StoredMessage>> last(const std::string& stream,
+                                                          const std::string& subject) override;
+  [[nodiscard]] Result<std::optional<StoredMessage>> next(const std::string& stream, const std::string& subject,
+                                                          std::uint64_t sequence) override;
+
+ private:
+  [[nodiscard]] Result<std::optional<StoredMessage>> get(const std::string& stream, jsDirectGetMsgOptions& which);
+  [[nodiscard]] Error why_not(natsStatus status) const;
+
+  const std::string url_;
+  const std::unique_ptr<std::string> seed_;  // the connection signs with it
+  const Connection connection_;
+  const JetStream jet_stream_;
+};
+
+/// A server says to the connection that a request is not permitted, and does not answer it.
+Error NatsBroker::why_not(natsStatus status) const {
+  const char* text = nullptr;
+  const bool is_denied =
+      status == NATS_TIMEOUT && natsConnection_GetLastError(connection_.get(), &text) == NATS_NOT_PERMITTED;
+  return is_denied ? bad_input(url_ + ": the user of this key may not do that") : error_of(url_, status);
+}
+
+Result<std::string> NatsBroker::ask(const std::string& subject, const std::string& request) {
+  natsMsg* got = nullptr;
+  const natsStatus asked =
+      natsConnection_RequestString(&got, connection_.get(), subject.c_str(), request.c_str(), kAnswerMs);
+  const Message answer(got);
+  if (asked != NATS_OK) return why_not(asked);
+  return std::string(natsMsg_GetData(answer.get()), static_cast<std::size_t>(natsMsg_GetDataLength(answer.get())));
+}
+
+Result<std::optional<Delivery>> NatsBroker::take(const std::string& subject, const std::string& request) {
+  natsMsg* got = nullptr;
+  const natsStatus asked =
+      natsConnection_RequestString(&got, connection_.get(), subject.c_str(), request.c_str(), kAnswerMs);
+  const Message message(got);
+  if (asked == NATS_TIMEOUT) return std::optional<Delivery>();
+  if (asked != NATS_OK) return error_of(url_, asked);
+  const char* lease = natsMsg_GetReply(message.get());
+  if (lease == nullptr) return std::optional<Delivery>();  // the server says that there is none
+  const auto length = static_cast<std::size_t>(natsMsg_GetDataLength(message.get()));
+  return std::optional(Delivery{std::string(natsMsg_GetData(message.get()), length), lease});
+}
+
+Status NatsBroker::send(const std::string& subject, const std::string& text) {
+  const natsStatus sent = natsConnection_PublishString(connection_.get(), subject.c_str(), text.c_str());
+  if (sent != NATS_OK) return error_of(url_, sent);
+  return Done{};
+}
+
+Result<std::uint64_t> NatsBroker::store(const std::string& subject, const std::string& id,
+                                        std::span<const std::uint8_t> bytes) {
+  natsMsg* created = nullptr;
+  const natsStatus made = natsMsg_Create(&created, subject.c_str(), nullptr,
+                                         reinterpret_cast<const char*>(bytes.data()), static_cast<int>(bytes.size()));
+  const Message message(created);
+  if (made != NATS_OK) return error_of(url_, made);
+  jsPubOptions options;
+  jsPubOptions_Init(&options);
+  if (!id.empty()) options.MsgId = id.c_str();
+  options.MaxWait = kAnswerMs;
+  jsPubAck* answer = nullptr;
+  const natsStatus published = js_PublishMsg(&answer, jet_stream_.get(), message.get(), &options, nullptr);
+  const PublishAck acknowledged(answer);
+  if (published == NATS_MAX_PAYLOAD) return bad_input(url_ + ": " + subject + ": the server takes no message so large");
+  if (published != NATS_OK) return error_of(url_ + ": " + subject, published);
+  return acknowledged->Sequence;
+}
+
+Result<std::optional<StoredMessage>> NatsBroker::get(const std::string& stream, jsDirectGetMsgOptions& which) {
+  natsMsg* got = nullptr;
+  jsOptions options;
+  jsOptions_Init(&options);
+  options.Wait = kAnswerMs;
+  const natsStatus asked = js_DirectGetMsg(&got, jet_stream_.get(), stream.c_str(), &options, &which);
+  const Message message(got);
+  if (asked == NATS_NOT_FOUND) return std::optional<StoredMessage>();
+  if (asked != NATS_OK) return error_of(url_ + ": stream " + stream, asked);
+  return std::optional(stored_message(message.get()));
+}
+
+Result<std::optional<StoredMessage>> NatsBroker::last(const std::string& stream, const std::string& subject) {
+  jsDirectGetMsgOptions which;
+  jsDirectGetMsgOptions_Init(&which);
+  which.LastBySubject = subject.c_str();
+  return get(stream, which);
+}
+
+Result<std::optional<StoredMessage>> NatsBroker::next(const std::string& stream, const std::string& subject,
+                                                      std::uint64_t sequence) {
+  jsDirectGetMsgOptions which;
+  jsDirectGetMsgOptions_Init(&which);
+  which.Sequence = sequence;
+  which.NextBySubject = subject.c_str();
+  return get(stream, which);
+}
+
+/// "hub" of "tls://user:password@hub:4222".
+std::string host_of(const std::string& url) {
+  const std::string rest = without_password(url).substr(url.find("://") + 3);
+  const std::size_t end = rest.starts_with('[') ? rest.find(']') : rest.find_first_of(":/");
+  return rest.starts_with('[') ? rest.substr(1, end - 1) : rest.substr(0, end);
+}
+
+bool is_encrypted(const BrokerAddress& address) {
+  return address.url.starts_with("tls:") || !address.ca.empty();
+}
+
+/// The seed in the file. No error shows it.
+Result<std::string> read_seed(const std::string& path) {
+  std::ifstream file(path);
+  std::string seed;
+  if (!(file >> seed)) return bad_input(path + ": cannot be read; it must hold the key of a user of NATS");
+  return seed;
+}
+
+/// Signs what the server asks. libnats 3.4 leaves a signature out that begins with 0, as one in 256 does. Such a
+/// connection ends here; the next one is asked something else.
+natsStatus sign_nonce(char** /*error*/, unsigned char** signature, int* length, const char* nonce, void* seed) {
+  const Result<Signature> made = sign(*static_cast<const std::string*>(seed), nonce);
+  if (!made) return NATS_ERR;
+  if (made->front() == 0) return kAskAgain;
+  *signature = static_cast<unsigned char*>(std::malloc(made->size()));  // which the library frees
+  if (*signature == nullptr) return NATS_NO_MEMORY;
+  std::copy(made->begin(), made->end(), *signature);
+  *length = static_cast<int>(made->size());
+  return NATS_OK;
+}
+
+/// The seed must live as long as the connection.
+Status set_key(natsOptions* options, const std::string& path, std::string& seed) {
+  Result<std::string> read = read_seed(path);
+  if (!read) return read.error();
+  seed = *std::move(read);
+  const Result<std::string> user = user_of_seed(seed);
+  if (!user) return bad_input(path + ": " + user.error().message);
+  const natsStatus status = natsOptions_SetNKey(options, user->c_str(), sign_nonce, &seed);
+  if (status != NATS_OK) return error_of(path, status);
+  return Done{};
+}
+
+natsStatus set_options(natsOptions* options, const BrokerAddress& address) {
+  const auto both = [](natsStatus first, natsStatus second) { return first != NATS_OK ? first : second; };
+  natsStatus status = natsOptions_SetURL(options, address.url.c_str());
+  status = both(status, natsOptions_SetTimeout(options, kConnectMs));
+  status = both(status, natsOptions_SetMaxReconnect(options, kForEver));
+  status = both(status, natsOptions_SetReconnectWait(options, kReconnectMs));
+  status = both(status, natsOptions_SetFailRequestsOnDisconnect(options, true));
+  status = both(status, natsOptions_SetName(options, "dermis"));
+  if (!is_encrypted(address)) return status;
+  status = both(status, natsOptions_SetSecure(options, true));
+  return both(status, natsOptions_SetExpectedHostname(options, host_of(address.url).c_str()));
+}
+
+Result<Options> make_options(const BrokerAddress& address, std::string& seed) {
+  natsOptions* made = nullptr;
+  natsStatus status = natsOptions_Create(&made);
+  Options options(made);
+  if (status == NATS_OK) status = set_options(options.get(), address);
+  if (status != NATS_OK) return error_of(without_password(address.url), status);
+  if (!address.ca.empty() && natsOptions_LoadCATrustedCertificates(options.get(), address.ca.c_str()) != NATS_OK) {
+    return bad_input(address.ca + ": cannot be read; it must hold the certificates that sign that of the server");
+  }
+  if (address.key.empty()) return options;
+  if (const Status set = set_key(options.get(), address.key, seed); !set) return set.error();
+  return options;
+}
+
+/// Why there is no connection, and the mend.
+Error refusal(const BrokerAddress& address, natsStatus status) {
+  const std::string place = without_password(address.url);
+  switch (status) {
+    case NATS_CONNECTION_AUTH_FAILED:
+      return bad_input(place + ": the server does not know this user; give key=FILE of one that it knows");
+    case NATS_SSL_ERROR:
+      return bad_input(place + ": the server has no certificate of this name that is signed by " +
+                       (address.ca.empty() ? "those of the machine; give ca=FILE" : address.ca));
+    case NATS_SECURE_CONNECTION_WANTED:
+      return bad_input(place + ": the server does not encrypt; leave out ca=FILE and write nats://");
+    default: return error_of(place, status);
+  }
+}
+
+Result<std::unique_ptr<Broker>> connect(const BrokerAddress& address) {
+  auto seed = std::make_unique<std::string>();
+  Result<Options> options = make_options(address, *seed);
+  if (!options) return options.error();
+  natsConnection* made_connection = nullptr;
+  natsStatus status = natsConnection_Connect(&made_connection, options->get());
+  for (int question = 1; status == kAskAgain && question < kMostQuestions; ++question) {
+    status = natsConnection_Connect(&made_connection, options->get());
+  }
+  Connection connection(made_connection);
+  if (status != NATS_OK) return refusal(address, status);
+  jsCtx* made_context = nullptr;
+  status = natsConnection_JetStream(&made_context, connection.get(), nullptr);
+  JetStream jet_stream(made_context);
+  if (status != NATS_OK) return error_of(without_password(address.url), status);
+  return std::unique_ptr<Broker>(std::make_unique<NatsBroker>(without_password(address.url), std::move(seed),
+                                                              std::move(connection), std::move(jet_stream)));
+}
+
+}  // namespace
+}  // namespace dermis::live::fleet
+
+extern "C" __attribute__((visibility("default"))) void dermis_connect_broker(
+    const dermis::live::fleet::BrokerAddress& address,
+    dermis::Result<std::unique_ptr<dermis::live::fleet::Broker>>& connected) {
+  connected = dermis::live::fleet::connect(address);
+}
+
+extern "C" __attribute__((visibility("default"))) void dermis_sha256(std::string_view bytes, std::string& digits) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::array<std::uint8_t, SHA256_DIGEST_LENGTH> hash{};
+  SHA256(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), hash.data());
+  digits.clear();
+  for (const std::uint8_t byte : hash) {
+    digits += kDigits[byte / 16U];
+    digits += kDigits[byte % 16U];
+  }
+}

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/bytes/files/text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+
+namespace dermis::bytes::files {
+namespace {
+
+constexpr std::int64_t kNanosPerSecond = 1'000'000'000;
+constexpr double kMaxSeconds = 9e9;
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+template <typename Number>
+bool parse_all(std::string_view text, Number& value) {
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc{} && stop == end;
+}
+
+/// Up to seven digits, which a float holds exactly: nearly all raw counts.
+bool parse_short_integer(std::string_view text, float& value) {
+  constexpr std::size_t kMaxDigits = 7;
+  if (text.empty() || text.size() > kMaxDigits) return false;
+  int whole = 0;
+  for (const char c : text) {
+    if (!is_digit(c)) return false;
+    whole = whole * 10 + (c - '0');
+  }
+  value = static_cast<float>(whole);
+  return true;
+}
+
+/// digits[.digits], with at most ten and nine digits.
+bool parse_plain_decimal(std::string_view text, std::int64_t& nanos) {
+  const std::size_t dot = std::min(text.find('.'), text.size());
+  const std::string_view whole = text.substr(0, dot);
+  const std::string_view fraction = text.substr(std::min(dot + 1, text.size()));
+  if (whole.empty() || whole.size() > 10 || fraction.size() > 9) return false;
+  if (!std::all_of(whole.begin(), whole.end(), is_digit)) return false;
+  if (!std::all_of(fraction.begin(), fraction.end(), is_digit)) return false;
+  nanos = 0;
+  for (const char c : whole) nanos = nanos * 10 + (c - '0');
+  if (nanos > static_cast<std::int64_t>(kMaxSeconds)) return false;
+  for (std::size_t i = 0; i < 9; ++i) nanos = nanos * 10 + (i < fraction.size() ? fraction[i] - '0' : 0);
+  return true;
+}
+
+template <typename Number>
+void append_shortest(std::string& text, Number value) {
+  if (std::isnan(value)) {
+    text += "nan";
+    return;
+  }
+  std::array<char, 32> digits{};
+  const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+  text.append(digits.data(), end);
+}
+
+}  // namespace
+
+std::string in_quotes(std::string_view text) {
+  constexpr std::size_t kMaxShown = 200;
+  return "'" + std::string(text.substr(0, kMaxShown)) + (text.size() > kMaxShown ? "...'" : "'");
+}
+
+std::string_view trimmed(std::string_view text) noexcept {
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+std::string in_lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return lower;
+}
+
+bool parse_number(std::string_view text, float& value) {
+  return parse_short_integer(text, value) || parse_all(text, value);
+}
+
+bool parse_number(std::string_view text, double& value) {
+  return parse_all(text, value);
+}
+
+bool parse_number(std::string_view text, std::size_t& value) {
+  return parse_all(text, value);
+}
+
+bool parse_seconds(std::string_view text, Nanos& time) {
+  const bool is_negative = text.starts_with('-');
+  std::int64_t nanos = 0;
+  if (parse_plain_decimal(text.substr(is_negative ? 1 : 0), nanos)) {
+    time = Nanos(is_negative ? -nanos : nanos);
+    return true;
+  }
+  double seconds = 0.0;
+  if (!parse_all(text, seconds)) return false;
+  const std::optional<Nanos> rounded = nanos_from_seconds(seconds);
+  time = rounded.value_or(time);
+  return rounded.has_value();
+}
+
+std::optional<Nanos> nanos_from_seconds(double seconds) {
+  if (!(std::abs(seconds) <= kMaxSeconds)) return std::nullopt;
+  // The product would be rounded to the doubles of its size: 256 ns apart since 1970.
+  const double whole = std::floor(seconds);
+  return Nanos(static_cast<std::int64_t>(whole) * kNanosPerSecond +
+               std::llround((seconds - whole) * static_cast<double>(kNanosPerSecond)));
+}
+
+double seconds_of(Nanos time) {
+  const auto micros = std::chrono::floor<std::chrono::microseconds>(time);
+  if (micros == time) return static_cast<double>(micros.count()) / 1e6;
+  const auto whole = std::chrono::floor<std::chrono::seconds>(time);
+  return static_cast<double>(whole.count()) + 1e-9 * static_cast<double>((time - whole).count());
+}
+
+void append_number(std::string& text, float value) {
+  append_shortest(text, value);
+}
+
+void append_number(std::string& text, double value) {
+  append_shortest(text, value);
+}
+
+void append_seconds(std::string& text, Nanos time) {
+  const std::int64_t nanos = time.count();
+  if (nanos < 0) text += '-';
+  text += std::to_string(std::abs(nanos / kNanosPerSecond));
+  const std::int64_t fraction = std::abs(nanos % kNanosPerSecond);
+  if (fraction == 0) return;
+  const std::string digits = std::to_string(fraction + kNanosPerSecond).substr(1);
+  text += '.';
+  text += digits.substr(0, digits.find_last_not_of('0') + 1);
+}
+
+}  // namespace dermis::bytes::files

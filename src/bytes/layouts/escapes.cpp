@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/bytes/layouts/escapes.hpp"
+
+namespace dermis::bytes::layouts {
+namespace {
+
+/// A code of n stands before n - 1 bytes and, but for 255, a byte of 0. Cheshire, Baker, "Consistent Overhead Byte
+/// Stuffing", IEEE/ACM Transactions on Networking 7 (1999).
+bool undo_cobs(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& plain) {
+  while (!bytes.empty()) {
+    const std::size_t code = bytes.front();
+    if (code == 0 || code > bytes.size()) return false;
+    plain.insert(plain.end(), bytes.begin() + 1, bytes.begin() + static_cast<std::ptrdiff_t>(code));
+    bytes = bytes.subspan(code);
+    if (code < 0xFF && !bytes.empty()) plain.push_back(0);
+  }
+  return true;
+}
+
+bool undo_slip(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& plain) {
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    if (bytes[i] != 0xDB) {
+      plain.push_back(bytes[i]);
+      continue;
+    }
+    if (++i == bytes.size() || (bytes[i] != 0xDC && bytes[i] != 0xDD)) return false;
+    plain.push_back(bytes[i] == 0xDC ? 0xC0 : 0xDB);
+  }
+  return true;
+}
+
+bool undo_stuffing(const PacketLayout& layout, std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& plain) {
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    const bool is_escaped = bytes[i] == layout.escape_byte;
+    if (is_escaped && ++i == bytes.size()) return false;
+    plain.push_back(is_escaped ? bytes[i] ^ layout.escape_xor : bytes[i]);
+  }
+  return true;
+}
+
+}  // namespace
+
+std::uint8_t delimiter_of(const PacketLayout& layout) noexcept {
+  if (layout.escape == PacketLayout::Escape::slip) return 0xC0;
+  return layout.escape == PacketLayout::Escape::stuffed ? layout.delimiter : 0;
+}
+
+bool undo_escapes(const PacketLayout& layout, std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& plain) {
+  plain.clear();
+  switch (layout.escape) {
+    case PacketLayout::Escape::cobs: return undo_cobs(bytes, plain);
+    case PacketLayout::Escape::slip: return undo_slip(bytes, plain);
+    case PacketLayout::Escape::stuffed: return undo_stuffing(layout, bytes, plain);
+    case PacketLayout::Escape::none: break;
+  }
+  plain.assign(bytes.begin(), bytes.end());
+  return true;
+}
+
+}  // namespace dermis::bytes::layouts

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "bytes/layouts/frame_assembly.hpp"
+
+#include <algorithm>
+
+namespace dermis::bytes::layouts {
+FrameAssembly::FrameAssembly(const Layout& layout, std::size_t array, const Moduli& moduli)
+    : array_(array),
+      shape_(layout.arrays[array].shape),
+      fields_(layout, moduli),
+      readings_(shape_.taxel_count()),
+      is_filled_(shape_.taxel_count()) {}
+
+bool FrameAssembly::add(const Piece& piece, std::span<const float> numbers, std::size_t bytes, RawFrame& frame) {
+  if (piece.array != array_) return false;
+  if (filled_ > 0 && piece.frame != first_.frame) end_frame();
+  std::optional<std::size_t> begin = begin_of(piece, numbers.size());
+  if (begin && is_filled(*begin, numbers.size())) {
+    end_frame();
+    begin = begin_of(piece, numbers.size());
+  }
+  if (!begin) {
+    outside_ = piece;
+    damage(bytes);
+    return false;
+  }
+  if (filled_ == 0) begin_frame(piece);
+  fill(*begin, numbers);
+  bytes_ += bytes;
+  return filled_ == readings_.size() && deliver(frame);
+}
+
+/// Index of the first taxel; empty where the array does not have all of them.
+std::optional<std::size_t> FrameAssembly::begin_of(const Piece& piece, std::size_t count) const noexcept {
+  std::size_t begin = filled_;
+  if (piece.first) {
+    begin = std::min<std::uint64_t>(*piece.first, readings_.size());
+  } else if (piece.row) {
+    const std::uint64_t col = piece.col.value_or(0);
+    if (*piece.row >= shape_.rows || col >= shape_.cols || count > shape_.cols - col) return std::nullopt;
+    begin = *piece.row * shape_.cols + col;
+  }
+  const bool is_behind_the_last = !piece.first && !piece.row && begin + count > readings_.size();
+  if (is_behind_the_last) return count <= readings_.size() ? std::optional<std::size_t>(0) : std::nullopt;
+  return begin + count <= readings_.size() ? std::optional(begin) : std::nullopt;
+}
+
+bool FrameAssembly::is_filled(std::size_t begin, std::size_t count) const noexcept {
+  if (filled_ == 0) return false;
+  const auto first = is_filled_.begin() + static_cast<std::ptrdiff_t>(begin);
+  return std::find(first, first + static_cast<std::ptrdiff_t>(count), 1) != first + static_cast<std::ptrdiff_t>(count);
+}
+
+void FrameAssembly::begin_frame(const Piece& piece) {
+  first_ = piece;
+  bytes_ = 0;
+  std::fill(is_filled_.begin(), is_filled_.end(), 0);
+}
+
+void FrameAssembly::fill(std::size_t begin, std::span<const float> numbers) {
+  const std::span<float> readings = std::span(readings_).subspan(begin, numbers.size());
+  std::copy_n(numbers.begin(), numbers.size(), readings.begin());
+  fields_.scale(readings);
+  std::fill_n(is_filled_.data() + begin, numbers.size(), std::uint8_t{1});
+  filled_ += numbers.size();
+}
+
+/// Before the first frame, a part of one is the end of a frame whose beginning nobody saw.
+void FrameAssembly::end_frame() {
+  if (filled_ == 0) return;
+  most_filled_ = std::max(most_filled_, filled_);
+  filled_ = 0;
+  if (counts_.frames > 0) ++counts_.damaged_frames;
+  skip(bytes_);
+}
+
+void FrameAssembly::damage(std::size_t bytes) noexcept {
+  ++counts_.damaged_frames;
+  skip(bytes);
+}
+
+bool FrameAssembly::deliver(RawFrame& frame) {
+  filled_ = 0;
+  frame.counts.assign(readings_.begin(), readings_.end());
+  if (!fields_.write(first_, frame)) {
+    damage(bytes_);
+    return false;
+  }
+  ++counts_.frames;
+  counts_.lost_frames += frame.acquisition.lost_before;
+  return true;
+}
+
+std::string FrameAssembly::advice() const {
+  const auto number = [](const char* name, const std::optional<std::uint64_t>& value) {
+    return value ? std::string(name) + std::to_string(*value) + " " : std::string();
+  };
+  const std::string shape = std::to_string(shape_.rows) + "x" + std::to_string(shape_.cols);
+  if (outside_) {
+    return number("row ", outside_->row) + number("col ", outside_->col) + number("first ", outside_->first) +
+           "is outside of " + shape + ": lines count from 0, or from 1 as {row-1}";
+  }
+  const std::size_t most = std::max(most_filled_, filled_);
+  if (most == 0) return {};
+  return "no frame is complete: at most " + std::to_string(most) + " of " + std::to_string(readings_.size()) +
+         " readings came";
+}
+
+}  // namespace dermis::bytes::layouts

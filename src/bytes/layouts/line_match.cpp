@@ -1,0 +1,401 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "bytes/layouts/line_match.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string_view>
+
+#include "bytes/layouts/has_role.hpp"
+
+namespace dermis::bytes::layouts {
+namespace {
+
+constexpr std::size_t kMostShown = 24;
+constexpr double kMostNanos = 9e18;
+
+bool is_blank(std::uint8_t byte) noexcept {
+  return byte == ' ' || byte == '\t';
+}
+
+/// Blank, or a bracket of a list in a line.
+bool is_passed_over(std::uint8_t byte) noexcept {
+  return is_blank(byte) || byte == '[' || byte == ']' || byte == '(' || byte == ')';
+}
+
+std::uint32_t digit(std::uint8_t byte) noexcept {
+  return static_cast<std::uint32_t>(byte) - '0';
+}
+
+}  // namespace
+
+LineMatch::LineMatch(const Layout& layout, std::size_t array)
+    : layout_(layout),
+      text_(std::get<TextLayout>(layout.form)),
+      array_(array),
+      names_array_(has_role(text_.lines, Role::array)),
+      has_plain_separators_(text_.separator.empty() && text_.decimal_point != ',' && text_.width == 0 &&
+                            !text_.is_hexadecimal) {
+  for (const TextLayout::Pattern& fields : text_.lines) patterns_.push_back(pattern_of(fields));
+  std::size_t most = 0;
+  for (const LayoutArray& other : layout.arrays) most = std::max(most, other.shape.taxel_count());
+  numbers_.resize(most);
+  others_.resize(most);
+  heads_.array = array;
+}
+
+LineMatch::Pattern LineMatch::pattern_of(const TextLayout::Pattern& fields) const {
+  const bool is_head = !has_role(fields, Role::values);
+  const bool has_no_field = std::ranges::all_of(
+      fields, [](const TextField& field) { return field.role == Role::literal || field.role == Role::skip; });
+  const bool begins_frame = is_head && (has_no_field || has_role(fields, Role::frame) || has_time(fields));
+  const bool is_taxel = has_role(fields, Role::col) || has_role(fields, Role::first);
+  const bool is_row = has_role(fields, Role::row) || has_role(text_.lines, Role::row);
+  const bool may_be_row = text_.frame_end.has_value() || !text_.frame_begin.empty() || text_.lines.size() > 1;
+  const Holds holds = is_taxel ? Holds::taxel : is_row ? Holds::row : may_be_row ? Holds::row_or_frame : Holds::frame;
+  std::vector<std::size_t> shares;
+  for (std::size_t k = 0; k < layout_.arrays.size(); ++k) shares.push_back(shares_of(fields, k));
+  return {&fields, holds, std::move(shares), is_head, begins_frame, has_role(fields, Role::temperature)};
+}
+
+bool LineMatch::read(std::span<const std::uint8_t> line, Piece& piece) {
+  misfit_at_ = line.data();
+  for (const Pattern& pattern : patterns_) {
+    pattern_ = &pattern;
+    if (!read_pattern(line, piece)) continue;
+    if (pattern.is_head) heads_ = piece;
+    return true;
+  }
+  return false;
+}
+
+bool LineMatch::read_pattern(std::span<const std::uint8_t> line, Piece& piece) {
+  piece = heads_;
+  if (pattern_->has_temperature) piece.forget_temperatures();
+  count_ = 0;
+  at_ = line.data();
+  end_ = line.data() + line.size();
+  const TextLayout::Pattern& fields = *pattern_->fields;
+  for (std::size_t k = 0; k < fields.size(); ++k) {
+    const TextField* const next = k + 1 < fields.size() ? &fields[k + 1] : nullptr;
+    if (!read_field(fields[k], next, piece)) return false;
+  }
+  skip_separator();
+  return at_ == end_ || fail("the line should end");
+}
+
+std::string LineMatch::misfit() const {
+  if (misfit_at_ == end_) return std::string("at its end: ") + why_;
+  const std::size_t shown = std::min(kMostShown, static_cast<std::size_t>(end_ - misfit_at_));
+  std::string text(misfit_at_, misfit_at_ + shown);
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c < 0x20 || c > 0x7E; }, '?');
+  return "at '" + text + "': " + why_;
+}
+
+bool LineMatch::fail(const char* why) noexcept {
+  if (at_ < misfit_at_) return false;
+  misfit_at_ = at_;
+  why_ = why;
+  return false;
+}
+
+bool LineMatch::read_field(const TextField& field, const TextField* next, Piece& piece) {
+  if (field.role == Role::literal) return read_literal(field.literal);
+  if (field.role == Role::values) return read_readings(names_array_ ? piece.array : field.array, piece);
+  skip_blanks();
+  double number = 0.0;
+  switch (field.role) {
+    case Role::skip: return skip_to(next);
+    case Role::row: return read_counted(field, piece.row);
+    case Role::col: return read_counted(field, piece.col);
+    case Role::first: return read_counted(field, piece.first);
+    case Role::frame: return read_whole(piece.frame);
+    case Role::flags: return read_whole(piece.flags);
+    case Role::array: return read_array(next, piece);
+    case Role::clock: piece.set_time(0, 1.0); return read_clock(*piece.time_ns);
+    case Role::datetime: piece.set_time(0, 1.0); return read_datetime(*piece.time_ns);
+    default: break;
+  }
+  if (!read_number(number)) return fail("a number is expected");
+  number *= field.unit;
+  if (field.role == Role::temperature) piece.add_temperature(number);
+  if (field.role == Role::supply && number > 0.0) piece.supply_v = number;
+  if (field.role != Role::time) return true;
+  const double nanos = std::round(1e9 * number);
+  if (!(nanos >= 0.0 && nanos < kMostNanos)) return fail("a time of 0 or more is expected");
+  piece.set_time(static_cast<std::uint64_t>(nanos), field.unit);
+  return true;
+}
+
+bool LineMatch::read_literal(const std::string& literal) noexcept {
+  if (!is_passed_over(static_cast<std::uint8_t>(literal.front()))) {
+    while (at_ != end_ && is_passed_over(*at_)) ++at_;
+  }
+  for (const char c : literal) {
+    const auto byte = static_cast<std::uint8_t>(c);
+    if (is_blank(byte)) {
+      skip_blanks();
+    } else if (at_ == end_ || *at_ != byte) {
+      return fail("other text is expected");
+    } else {
+      ++at_;
+    }
+  }
+  return true;
+}
+
+bool LineMatch::skip_to(const TextField* next) noexcept {
+  if (next == nullptr) {
+    at_ = end_;
+    return true;
+  }
+  const std::string_view first(next->literal.data(), next->literal.size());
+  const auto* const found = std::search(at_, end_, first.begin(), first.end(), [](std::uint8_t a, char b) {
+    return a == static_cast<std::uint8_t>(b) || (is_blank(a) && is_blank(static_cast<std::uint8_t>(b)));
+  });
+  at_ = found;
+  return found != end_ || fail("more is expected");
+}
+
+bool LineMatch::read_readings(std::size_t array, Piece& piece) {
+  const FrameShape& shape = layout_.arrays[array].shape;
+  const std::size_t shares = std::max<std::size_t>(pattern_->shares[names_array_ ? 0 : array], 1);
+  const Holds holds = pattern_->holds;
+  const bool may_be_row = holds == Holds::row || (holds == Holds::row_or_frame && shares == 1);
+  const std::size_t least = holds == Holds::taxel ? 1 : (may_be_row ? shape.cols : shape.taxel_count()) / shares;
+  const std::size_t most = holds == Holds::row_or_frame ? shape.taxel_count() / shares : least;
+  const std::span<float> values = array == array_ ? std::span(numbers_).subspan(count_) : std::span(others_);
+  if (values.size() < most) return fail("more readings than the array has");
+  if (!read_values(values, 0, least)) return false;
+  const std::uint8_t* const row_end = at_;
+  const bool is_frame = least == most || read_values(values, least, most);
+  if (!is_frame) at_ = row_end;
+  if (array == array_) count_ += is_frame ? most : least;
+  if (!names_array_) piece.array = count_ > 0 ? array_ : array;
+  return true;
+}
+
+bool LineMatch::read_values(std::span<float> values, std::size_t from, std::size_t to) noexcept {
+  for (std::size_t i = from; i < to; ++i) {
+    if (i == 0 || text_.width > 0) {
+      while (at_ != end_ && is_passed_over(*at_)) ++at_;
+    } else if (!skip_separator()) {
+      return fail(at_ == end_ ? "more readings are expected" : "a separator is expected");
+    }
+    if (!read_reading(values[i])) return fail("a reading is expected");
+    if (has_plain_separators_) i += read_plain(values.subspan(i + 1, to - i - 1));
+  }
+  return true;
+}
+
+/// Reads whole numbers behind one blank or comma each, as most lines have them. Returns how many there are before
+/// anything else.
+std::size_t LineMatch::read_plain(std::span<float> values) noexcept {
+  constexpr std::ptrdiff_t kMostDigits = 9;
+  const std::uint8_t* at = at_;
+  std::size_t count = 0;
+  for (; count < values.size() && at != end_ && (*at == ' ' || *at == ','); ++count) {
+    const std::uint8_t* const first = ++at;
+    std::uint32_t whole = 0;
+    for (std::uint32_t next = digit(*at); next <= 9; next = digit(*++at)) whole = 10 * whole + next;
+    const bool is_whole = at != first && at - first <= kMostDigits && *at != '.' && (*at | 0x20U) != 'e';
+    if (!is_whole) break;
+    values[count] = static_cast<float>(whole);
+    at_ = at;
+  }
+  return count;
+}
+
+/// A reading, or NaN for an empty one and for nan.
+bool LineMatch::read_reading(float& value) noexcept {
+  const std::uint8_t* const first = at_;
+  if (text_.width > 0 || text_.is_hexadecimal) {
+    const std::uint8_t* const last =
+        text_.width > 0 && static_cast<std::size_t>(end_ - at_) >= text_.width ? at_ + text_.width : end_;
+    if (text_.width > 0 && last == end_ && static_cast<std::size_t>(end_ - at_) < text_.width) return false;
+    std::uint32_t whole = 0;
+    const bool has_prefix = text_.is_hexadecimal && last - at_ > 2 && *at_ == '0' && (at_[1] | 0x20U) == 'x';
+    if (has_prefix) at_ += 2;
+    const char* const from = reinterpret_cast<const char*>(at_);
+    const auto [end, error] =
+        std::from_chars(from, reinterpret_cast<const char*>(last), whole, text_.is_hexadecimal ? 16 : 10);
+    if (error != std::errc{} || (text_.width > 0 && end != reinterpret_cast<const char*>(last))) return false;
+    at_ += end - from;
+    value = static_cast<float>(whole);
+    return true;
+  }
+  std::uint32_t whole = 0;
+  for (std::uint32_t next = digit(*at_); next <= 9; next = digit(*++at_)) whole = 10 * whole + next;
+  const bool is_whole = at_ != first && at_ - first <= 9 && *at_ != static_cast<std::uint8_t>(text_.decimal_point) &&
+                        (*at_ | 0x20U) != 'e';
+  if (is_whole) {
+    value = static_cast<float>(whole);
+    return true;
+  }
+  at_ = first;
+  double number = 0.0;
+  if (read_number(number)) {
+    value = static_cast<float>(number);
+    return true;
+  }
+  const bool is_empty = at_ != end_ && (*at_ == ',' || *at_ == ';');
+  value = std::numeric_limits<float>::quiet_NaN();
+  return is_empty || skip_absent();
+}
+
+/// Programs print these for no reading, beside nan.
+bool LineMatch::skip_absent() noexcept {
+  constexpr std::array<std::string_view, 5> kWords = {"null", "None", "N/A", "NA", "--"};
+  const std::string_view rest(reinterpret_cast<const char*>(at_), static_cast<std::size_t>(end_ - at_));
+  for (const std::string_view word : kWords) {
+    if (!rest.starts_with(word)) continue;
+    at_ += word.size();
+    return true;
+  }
+  return false;
+}
+
+bool LineMatch::read_whole(std::optional<std::uint64_t>& value) noexcept {
+  const char* const from = reinterpret_cast<const char*>(at_);
+  std::uint64_t whole = 0;
+  const auto [end, error] = std::from_chars(from, reinterpret_cast<const char*>(end_), whole);
+  if (error != std::errc{}) return fail("a whole number is expected");
+  at_ += end - from;
+  value = whole;
+  return true;
+}
+
+/// Of rows, columns or taxels, which may be counted from 1 on.
+bool LineMatch::read_counted(const TextField& field, std::optional<std::uint64_t>& value) noexcept {
+  if (!read_whole(value)) return false;
+  if (*value < field.from) return fail("a number of 1 or more is expected");
+  *value -= field.from;
+  return true;
+}
+
+bool LineMatch::read_number(double& value) noexcept {
+  constexpr std::size_t kLongest = 32;
+  const std::uint8_t* last = at_;
+  std::array<char, kLongest> text{};
+  std::size_t size = 0;
+  const auto is_part = [](std::uint8_t byte) {
+    return digit(byte) <= 9 || byte == '+' || byte == '-' || (byte | 0x20U) == 'e' || (byte | 0x20U) == 'n' ||
+           (byte | 0x20U) == 'a';
+  };
+  if (last != end_ && *last == '+') ++last;
+  for (; last != end_ && size < kLongest; ++last) {
+    const bool is_point = *last == static_cast<std::uint8_t>(text_.decimal_point);
+    if (!is_point && !is_part(*last)) break;
+    text[size++] = is_point ? '.' : static_cast<char>(*last);
+  }
+  const auto [end, error] = std::from_chars(text.data(), text.data() + size, value);
+  if (error != std::errc{} || end != text.data() + size) return false;
+  at_ = last;
+  return true;
+}
+
+/// "18:45:00", with a fraction behind a point or comma.
+bool LineMatch::read_clock(std::uint64_t& nanos) noexcept {
+  const auto part = [&](std::uint64_t most, std::uint64_t& value) {
+    std::optional<std::uint64_t> whole;
+    if (!read_whole(whole) || *whole > most) return false;
+    value = *whole;
+    return true;
+  };
+  std::uint64_t hours = 0;
+  std::uint64_t minutes = 0;
+  std::uint64_t seconds = 0;
+  const auto colon = [&] { return at_ != end_ && *at_++ == ':'; };
+  if (!part(23, hours) || !colon() || !part(59, minutes) || !colon() || !part(60, seconds)) {
+    return fail("a time of day is expected, as 18:45:00");
+  }
+  nanos = ((hours * 60 + minutes) * 60 + seconds) * 1'000'000'000;
+  if (at_ == end_ || (*at_ != '.' && *at_ != ',') || at_ + 1 == end_ || digit(at_[1]) > 9) return true;
+  std::uint64_t unit = 100'000'000;
+  for (++at_; at_ != end_ && digit(*at_) <= 9; ++at_, unit /= 10) nanos += unit * digit(*at_);
+  return true;
+}
+
+bool LineMatch::read_datetime(std::uint64_t& nanos) noexcept {
+  std::optional<std::uint64_t> year;
+  std::optional<std::uint64_t> month;
+  std::optional<std::uint64_t> day;
+  const auto dash = [&] { return at_ != end_ && *at_++ == '-'; };
+  if (!read_whole(year) || !dash() || !read_whole(month) || !dash() || !read_whole(day) || at_ == end_) {
+    return fail("a date and time is expected, as 2026-11-27 18:45:00");
+  }
+  ++at_;
+  if (!read_clock(nanos)) return false;
+  std::int64_t east_ns = 0;
+  if (!read_zone(east_ns)) return false;
+  if (*year < 1970 || *year > 2200 || *month > 12 || *day > 31) return fail("a date after 1970 is expected");
+  const std::chrono::year_month_day date{std::chrono::year(static_cast<int>(*year)),
+                                         std::chrono::month(static_cast<unsigned>(*month)),
+                                         std::chrono::day(static_cast<unsigned>(*day))};
+  if (!date.ok()) return fail("there is no such date");
+  nanos += static_cast<std::uint64_t>(Nanos(std::chrono::sys_days(date).time_since_epoch()).count() - east_ns);
+  return true;
+}
+
+/// "Z", "+01:00", "-0330", or nothing.
+bool LineMatch::read_zone(std::int64_t& east_ns) noexcept {
+  if (at_ == end_) return true;
+  if (*at_ == 'Z') return ++at_, true;
+  const bool is_west = *at_ == '-';
+  if (!is_west && *at_ != '+') return true;
+  std::array<std::uint32_t, 4> digits{};
+  ++at_;
+  for (std::size_t k = 0; k < digits.size(); ++k, ++at_) {
+    if (k == 2 && at_ != end_ && *at_ == ':') ++at_;
+    if (at_ == end_ || digit(*at_) > 9) return fail("a time zone is expected, as +01:00");
+    digits[k] = digit(*at_);
+  }
+  const std::int64_t minutes = 60 * (10 * digits[0] + digits[1]) + 10 * digits[2] + digits[3];
+  east_ns = (is_west ? -minutes : minutes) * 60'000'000'000;
+  return true;
+}
+
+/// A name or an id, up to a blank or the text that follows.
+bool LineMatch::read_array(const TextField* next, Piece& piece) {
+  const std::uint8_t stop = next != nullptr ? static_cast<std::uint8_t>(next->literal.front()) : 0;
+  const std::uint8_t* const last =
+      std::find_if(at_, end_, [&](std::uint8_t byte) { return is_blank(byte) || (next != nullptr && byte == stop); });
+  const std::string name(at_, last);
+  const auto found = std::find_if(layout_.arrays.begin(), layout_.arrays.end(), [&](const LayoutArray& array) {
+    return array.id ? name == std::to_string(*array.id) : name == array.name;
+  });
+  if (found == layout_.arrays.end()) return fail("the name or id of an array is expected");
+  at_ = last;
+  piece.array = static_cast<std::size_t>(found - layout_.arrays.begin());
+  return true;
+}
+
+void LineMatch::skip_blanks() noexcept {
+  while (at_ != end_ && is_blank(*at_)) ++at_;
+}
+
+/// True where something separates two readings.
+bool LineMatch::skip_separator() noexcept {
+  const std::uint8_t* const first = at_;
+  while (at_ != end_ && is_passed_over(*at_)) ++at_;
+  if (text_.separator.empty()) {
+    const bool is_sign = at_ != end_ && ((*at_ == ',' && text_.decimal_point != ',') || *at_ == ';');
+    if (is_sign) ++at_;
+  } else if (static_cast<std::size_t>(end_ - at_) >= text_.separator.size() &&
+             std::memcmp(at_, text_.separator.data(), text_.separator.size()) == 0) {
+    at_ += text_.separator.size();
+  } else if (!is_blank(static_cast<std::uint8_t>(text_.separator.front()))) {
+    return at_ == end_ ? false : (at_ = first, false);
+  }
+  const bool is_separated = at_ != first;
+  while (at_ != end_ && is_passed_over(*at_)) ++at_;
+  return is_separated;
+}
+
+}  // namespace dermis::bytes::layouts

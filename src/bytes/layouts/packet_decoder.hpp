@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bytes/layouts/frame_assembly.hpp"
+#include "bytes/layouts/packet_match.hpp"
+#include "dermis/bytes/layouts/byte_window.hpp"
+#include "dermis/bytes/layouts/decoder.hpp"
+#include "dermis/bytes/layouts/layout.hpp"
+
+namespace dermis::bytes::layouts {
+
+/// Frames of a PacketLayout.
+class PacketDecoder final : public Decoder {
+ public:
+  PacketDecoder(std::shared_ptr<const Layout> layout, std::size_t array);
+
+  void push(std::span<const std::uint8_t> bytes) override;
+  [[nodiscard]] bool next(RawFrame& frame) override;
+  void idle() override { is_idle_ = true; }
+  void finish() override { has_ended_ = true; }
+  [[nodiscard]] std::uint64_t frame_end() const noexcept override { return frame_end_; }
+  [[nodiscard]] std::optional<FrameShape> shape() const noexcept override { return layout_->arrays[array_].shape; }
+  [[nodiscard]] const DecoderCounts& counts() const noexcept override { return assembly_.counts(); }
+  [[nodiscard]] std::string_view request() const noexcept override { return layout_->request_after(is_sending_); }
+  [[nodiscard]] std::string advice() const override;
+
+ private:
+  /// The result of next_packet().
+  enum class Found { nothing, packet, frame };
+
+  [[nodiscard]] Found next_packet(RawFrame& frame);
+  [[nodiscard]] Found next_escaped(RawFrame& frame);
+  [[nodiscard]] bool is_followed_by_packet(std::span<const std::uint8_t> rest) const noexcept;
+  [[nodiscard]] std::size_t distance_to_mark(std::span<const std::uint8_t> bytes) const noexcept;
+  Found skip(std::size_t bytes);
+  Found take(std::size_t bytes, RawFrame& frame);
+
+  std::shared_ptr<const Layout> layout_;
+  const PacketLayout& form_;
+  std::size_t array_;
+  std::size_t longest_packet_;  ///< That is escaped.
+  ByteWindow window_;
+  PacketMatch match_;
+  FrameAssembly assembly_;
+  Piece piece_;
+  std::vector<float> numbers_;       ///< Of the last packet.
+  std::vector<std::uint8_t> plain_;  ///< A packet whose escapes are undone.
+  std::uint64_t frame_end_ = 0;
+  std::string misfit_;  ///< Of the last packet before the first frame that did not fit.
+  bool has_ended_ = false;
+  bool is_sending_ = false;
+  bool is_idle_ = false;
+};
+
+}  // namespace dermis::bytes::layouts

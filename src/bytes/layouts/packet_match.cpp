@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "bytes/layouts/packet_match.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "bytes/layouts/has_role.hpp"
+
+namespace dermis::bytes::layouts {
+namespace {
+
+constexpr double kMostNanos = 9e18;
+
+std::uint64_t range_of(const PacketField& field) {
+  return field.type.bits < 64 && field.type.kind == WireType::Kind::whole ? std::uint64_t{1} << field.type.bits : 0;
+}
+
+/// The bits at place `index`, read from the first byte on: of a big-endian type the highest bit comes first.
+std::uint64_t bits_at(std::span<const std::uint8_t> bytes, const WireType& type, std::size_t index) noexcept {
+  if (type.bits % 8 == 0) {
+    const std::size_t size = type.bits / 8;
+    const std::uint8_t* const first = bytes.data() + index * size;
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < size; ++i) value = value << 8U | first[type.is_big_endian ? i : size - 1 - i];
+    return value;
+  }
+  std::uint64_t value = 0;
+  for (unsigned k = 0; k < type.bits; ++k) {
+    const std::size_t bit = index * type.bits + k;
+    const unsigned shift = type.is_big_endian ? 7U - bit % 8 : bit % 8;
+    const std::uint64_t found = bytes[bit / 8] >> shift & 1U;
+    value |= type.is_big_endian ? found << (type.bits - 1 - k) : found << k;
+  }
+  return value;
+}
+
+double number_of(std::uint64_t bits, const WireType& type) noexcept {
+  if (type.mask != 0) return static_cast<double>((bits & type.mask) >> std::countr_zero(type.mask));
+  if (type.kind == WireType::Kind::real) {
+    return type.bits == 64 ? std::bit_cast<double>(bits)
+                           : static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
+  }
+  if (type.kind == WireType::Kind::whole) return static_cast<double>(bits);
+  const unsigned unused = 64U - type.bits;
+  return static_cast<double>(static_cast<std::int64_t>(bits << unused) >> unused);
+}
+
+/// `IsSwapped`: the bytes of the machine stand the other way round.
+template <bool IsSwapped>
+void read_16(std::span<const std::uint8_t> bytes, std::size_t count, float* values) noexcept {
+  for (std::size_t i = 0; i < count; ++i) {
+    std::uint16_t value = 0;
+    std::memcpy(&value, &bytes[2 * i], sizeof(value));
+    if (IsSwapped) value = static_cast<std::uint16_t>(value << 8U | value >> 8U);
+    values[i] = static_cast<float>(value);
+  }
+}
+
+void read_numbers(std::span<const std::uint8_t> bytes, const WireType& type, std::size_t count,
+                  float* values) noexcept {
+  const bool is_whole = type.kind == WireType::Kind::whole && type.mask == 0;
+  if (is_whole && type.bits == 8) return void(std::copy_n(bytes.begin(), count, values));
+  if (is_whole && type.bits == 16) {
+    const bool is_swapped = type.is_big_endian == (std::endian::native == std::endian::little);
+    return is_swapped ? read_16<true>(bytes, count, values) : read_16<false>(bytes, count, values);
+  }
+  for (std::size_t i = 0; i < count; ++i) values[i] = static_cast<float>(number_of(bits_at(bytes, type, i), type));
+}
+
+}  // namespace
+
+std::size_t bytes_of(const WireType& type, std::size_t count) noexcept {
+  return (type.bits * count + 7) / 8;
+}
+
+Moduli moduli_of(const PacketLayout& layout) {
+  Moduli moduli;
+  for (const PacketField& field : layout.packet) {
+    if (field.role == Role::frame) moduli.frame = range_of(field);
+    const double nanos = std::round(1e9 * field.unit * static_cast<double>(range_of(field)));
+    if (field.role == Role::time && nanos < 9e18) {
+      moduli.time_ns = std::max(moduli.time_ns, static_cast<std::uint64_t>(nanos));
+    }
+  }
+  return moduli;
+}
+
+PacketMatch::PacketMatch(const Layout& layout, std::size_t array)
+    : layout_(layout),
+      packet_(std::get<PacketLayout>(layout.form).packet),
+      array_(array),
+      names_array_(has_role(packet_, Role::array)),
+      has_checksum_(has_role(packet_, Role::checksum)) {
+  for (std::size_t k = 0; k < layout.arrays.size(); ++k) shares_.push_back(shares_of(packet_, k));
+  for (const PacketField& field : packet_) {
+    const bool is_checksum = field.role == Role::checksum;
+    checksums_.push_back(is_checksum ? ChecksumOf(field.checksum, field.type.bits) : ChecksumOf());
+  }
+}
+
+PacketMatch::Outcome PacketMatch::read(std::span<const std::uint8_t> bytes, Piece& piece, std::vector<float>& numbers) {
+  piece = {};
+  piece.array = array_;
+  at_ = count_ = 0;
+  given_count_.reset();
+  end_.reset();
+  for (std::size_t place = 0; place < packet_.size(); ++place) {
+    const Outcome outcome = read_field(place, bytes, piece, numbers);
+    if (outcome == Outcome::whole) continue;
+    misfit_ = place;
+    return outcome;
+  }
+  misfit_ = packet_.size();
+  numbers.resize(count_);
+  return !end_ || *end_ == at_ ? Outcome::whole : Outcome::foreign;
+}
+
+PacketMatch::Outcome PacketMatch::read_field(std::size_t place, std::span<const std::uint8_t> bytes, Piece& piece,
+                                             std::vector<float>& numbers) {
+  const PacketField& field = packet_[place];
+  const std::span<const std::uint8_t> rest = bytes.subspan(at_);
+  if (field.role == Role::literal) return read_literal(field, rest);
+  if (field.role == Role::values) return read_values(field, rest, piece, numbers);
+  const std::size_t size = field.role == Role::skip ? field.count : bytes_of(field.type, 1);
+  if (rest.size() < size) return Outcome::unfinished;
+  const std::size_t begin = at_;
+  at_ += size;
+  if (field.role == Role::skip) return Outcome::whole;
+  const std::uint64_t bits = bits_at(rest, field.type, 0);
+  if (field.role == Role::checksum) {
+    return checksums_[place](bytes.first(begin)) == bits ? Outcome::whole : Outcome::damaged;
+  }
+  return use(field, number_of(bits, field.type), piece) ? Outcome::whole : Outcome::foreign;
+}
+
+PacketMatch::Outcome PacketMatch::read_literal(const PacketField& field, std::span<const std::uint8_t> bytes) {
+  const std::size_t size = std::min(bytes.size(), field.literal.size());
+  if (!std::equal(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size), field.literal.begin())) {
+    return Outcome::foreign;
+  }
+  if (size < field.literal.size()) return Outcome::unfinished;
+  at_ += size;
+  return Outcome::whole;
+}
+
+PacketMatch::Outcome PacketMatch::read_values(const PacketField& field, std::span<const std::uint8_t> bytes,
+                                              const Piece& piece, std::vector<float>& numbers) {
+  const std::size_t array = names_array_ ? piece.array : field.array;
+  const std::size_t taxels = layout_.arrays[array].shape.taxel_count();
+  const std::size_t count = count_of(field, array, piece);
+  if (count > taxels || (array == array_ && count > taxels - count_)) return Outcome::foreign;
+  const std::size_t size = bytes_of(field.type, count);
+  if (bytes.size() < size) return Outcome::unfinished;
+  at_ += size;
+  if (array != array_) return Outcome::whole;
+  if (numbers.size() < count_ + count) numbers.resize(count_ + count);
+  read_numbers(bytes, field.type, count, numbers.data() + count_);
+  count_ += count;
+  return Outcome::whole;
+}
+
+/// As many as the packet says, or as its array has left.
+std::size_t PacketMatch::count_of(const PacketField& field, std::size_t array, const Piece& piece) const noexcept {
+  const FrameShape& shape = layout_.arrays[array].shape;
+  if (given_count_) return static_cast<std::size_t>(std::min<std::uint64_t>(*given_count_, SIZE_MAX / 128));
+  if (field.count > 0) return field.count;
+  if (piece.col) return 1;
+  if (piece.row) return shape.cols / shares_[field.array];
+  const std::size_t first = std::min<std::uint64_t>(piece.first.value_or(0), shape.taxel_count());
+  return (shape.taxel_count() - first) / shares_[field.array];
+}
+
+/// False where the number cannot be what the field holds.
+bool PacketMatch::use(const PacketField& field, double number, Piece& piece) {
+  const double value = field.unit * number + field.offset;
+  if (field.role == Role::temperature) {
+    piece.add_temperature(value);
+    return true;
+  }
+  if (field.role == Role::supply) {
+    if (std::isfinite(value) && value > 0.0) piece.supply_v = value;
+    return true;
+  }
+  if (field.role == Role::time) {
+    const double nanos = std::round(1e9 * value);
+    if (!(nanos >= 0.0 && nanos < kMostNanos)) return false;
+    piece.set_time(static_cast<std::uint64_t>(nanos), field.unit);
+    return true;
+  }
+  if (!(value >= 0.0 && value < kMostNanos)) return false;
+  const auto whole = static_cast<std::uint64_t>(value);
+  switch (field.role) {
+    case Role::row: piece.row = whole; break;
+    case Role::col: piece.col = whole; break;
+    case Role::first: piece.first = whole; break;
+    case Role::frame: piece.frame = whole; break;
+    case Role::flags: piece.flags = whole; break;
+    case Role::count: given_count_ = whole; break;
+    case Role::length: end_ = at_ + whole; break;
+    case Role::array: {
+      const auto found = std::find_if(layout_.arrays.begin(), layout_.arrays.end(),
+                                      [&](const LayoutArray& array) { return array.id == whole; });
+      if (found == layout_.arrays.end()) return false;
+      piece.array = static_cast<std::size_t>(found - layout_.arrays.begin());
+      break;
+    }
+    default: break;
+  }
+  return true;
+}
+
+std::string PacketMatch::misfit() const {
+  if (misfit_ == packet_.size()) return "the length that it says is not its own";
+  return "layout.packet[" + std::to_string(misfit_) + "] does not fit";
+}
+
+}  // namespace dermis::bytes::layouts

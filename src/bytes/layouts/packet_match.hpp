@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bytes/layouts/checksums.hpp"
+#include "bytes/layouts/frame_fields.hpp"
+#include "dermis/bytes/layouts/layout.hpp"
+
+namespace dermis::bytes::layouts {
+
+/// Bytes of so many numbers.
+[[nodiscard]] std::size_t bytes_of(const WireType& type, std::size_t count) noexcept;
+
+/// Where the fields of packets wrap.
+[[nodiscard]] Moduli moduli_of(const PacketLayout& layout);
+
+/// Reads the packets of a layout. Keeps the readings of one array of those that a packet has.
+class PacketMatch {
+ public:
+  enum class Outcome {
+    whole,       ///< A packet of size() bytes.
+    unfinished,  ///< More bytes may make it one.
+    foreign,     ///< No packet.
+    damaged,     ///< A packet whose checksum is wrong.
+  };
+
+  PacketMatch(const Layout& layout, std::size_t array);
+
+  /// Reads the packet that the bytes begin with. `numbers` become the readings of the array that is wanted.
+  [[nodiscard]] Outcome read(std::span<const std::uint8_t> bytes, Piece& piece, std::vector<float>& numbers);
+
+  [[nodiscard]] bool has_checksum() const noexcept { return has_checksum_; }
+  [[nodiscard]] std::size_t size() const noexcept { return at_; }
+  /// "packet[3], a checksum, is 5F where 33 is expected", of the last one that did not fit.
+  [[nodiscard]] std::string misfit() const;
+
+ private:
+  [[nodiscard]] Outcome read_field(std::size_t place, std::span<const std::uint8_t> bytes, Piece& piece,
+                                   std::vector<float>& numbers);
+  [[nodiscard]] Outcome read_literal(const PacketField& field, std::span<const std::uint8_t> bytes);
+  [[nodiscard]] Outcome read_values(const PacketField& field, std::span<const std::uint8_t> bytes, const Piece& piece,
+                                    std::vector<float>& numbers);
+  [[nodiscard]] bool use(const PacketField& field, double number, Piece& piece);
+  [[nodiscard]] std::size_t count_of(const PacketField& field, std::size_t array, const Piece& piece) const noexcept;
+
+  const Layout& layout_;
+  const std::vector<PacketField>& packet_;
+  std::size_t array_;
+  bool names_array_;  ///< A field says whose readings a packet has.
+  bool has_checksum_;
+  std::vector<std::size_t> shares_;    ///< Fields of each array, which share its readings.
+  std::vector<ChecksumOf> checksums_;  ///< [fields]
+  std::size_t count_ = 0;              ///< Readings so far.
+  std::size_t at_ = 0;
+  std::optional<std::uint64_t> given_count_;
+  std::optional<std::uint64_t> end_;  ///< As a field `length` says.
+  std::size_t misfit_ = 0;            ///< The field that did not fit.
+};
+
+}  // namespace dermis::bytes::layouts

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "bytes/proposals/line_columns.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "bytes/proposals/column_names.hpp"
+#include "bytes/proposals/tokens.hpp"
+
+namespace dermis::bytes::proposals {
+namespace {
+
+constexpr std::size_t kMostLeading = 5;   // numbers before the readings
+constexpr std::size_t kMostTrailing = 3;  // behind them
+constexpr std::size_t kFewestLines = 4;
+constexpr std::size_t kMostRuns = 64;
+
+/// The word before a number: "temp" of `,"temp":`.
+std::string label_of(std::string_view text) {
+  const std::size_t from = text.find_last_of(",;{|");
+  return std::string(text.substr(from == std::string_view::npos ? 0 : from + 1));
+}
+
+class ColumnReader {
+ public:
+  ColumnReader(const std::vector<Line>& lines, const LineGroup& group, const Numerals& numerals)
+      : lines_(lines), group_(group) {
+    find_runs(numerals);
+    if (!columns_.empty() && columns_.back().run >= kMostRuns) columns_.clear();
+    name_columns();
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      if (is_beside_readings(k)) columns_[k].series = series_of(k);
+    }
+  }
+
+  std::vector<Column> read() {
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      Column& column = columns_[k];
+      if (column.kind == Token::Kind::clock) give(column, "clock", "time of day");
+      if (column.kind == Token::Kind::datetime) give(column, "datetime", "date and time");
+      if (!column.series.empty() && !has_sisters(k)) read_name(column);
+    }
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      if (is_leading(k) || (is_trailing(k) && run_size(k) > 1)) read_course(columns_[k], is_leading(k));
+    }
+    return std::move(columns_);
+  }
+
+ private:
+  void find_runs(const Numerals& numerals) {
+    const std::vector<Token>& tokens = lines_[group_.members.front()].tokens;
+    std::string_view before;
+    for (std::size_t k = 0; k < tokens.size(); ++k) {
+      if (tokens[k].kind == Token::Kind::text) {
+        before = tokens[k].text;
+        continue;
+      }
+      const bool follows_number = !columns_.empty() && tokens[k].kind == Token::Kind::number &&
+                                  columns_.back().kind == Token::Kind::number && is_separator(before, numerals);
+      const bool is_glued = k > 1 && is_part_of_word(tokens, k - 2);
+      const std::size_t run = columns_.empty() ? 0 : columns_.back().run + (follows_number && !is_glued ? 0 : 1);
+      std::string separator(follows_number ? before : std::string_view());
+      std::erase(separator, ' ');
+      columns_.push_back({.kind = tokens[k].kind,
+                          .run = run,
+                          .label = follows_number ? "" : label_of(before),
+                          .before = std::move(separator)});
+      before = {};
+    }
+  }
+
+  void name_columns() {
+    const std::vector<std::string> names = names_of_columns(lines_, group_.members.front());
+    for (std::size_t k = 0; k < std::min(names.size(), columns_.size()); ++k) columns_[k].name = names[k];
+  }
+
+  [[nodiscard]] std::size_t run_size(std::size_t k) const {
+    return static_cast<std::size_t>(
+        std::count_if(columns_.begin(), columns_.end(), [&](const Column& one) { return one.run == columns_[k].run; }));
+  }
+  [[nodiscard]] std::size_t place_in_run(std::size_t k) const {
+    std::size_t place = 0;
+    while (k > place && columns_[k - place - 1].run == columns_[k].run) ++place;
+    return place;
+  }
+  [[nodiscard]] bool is_beside_readings(std::size_t k) const {
+    if (columns_[k].kind != Token::Kind::number) return false;
+    const bool is_near_begin = k < kMostLeading || columns_[k - kMostLeading].run != columns_[k].run;
+    const bool is_near_end = k + kMostTrailing >= columns_.size() || columns_[k + kMostTrailing].run != columns_[k].run;
+    return is_near_begin || is_near_end;
+  }
+
+  /// Columns beside it have the same name but for a number, as those of readings do.
+  [[nodiscard]] bool has_sisters(std::size_t k) const {
+    const std::string stem = stem_of(columns_[k].name);
+    const auto is_sister = [&](std::size_t other) {
+      return other < columns_.size() && columns_[other].run == columns_[k].run && !columns_[other].name.empty() &&
+             stem_of(columns_[other].name) == stem;
+    };
+    return !columns_[k].name.empty() && (is_sister(k + 1) || is_sister(k - 1));
+  }
+
+  [[nodiscard]] Series series_of(std::size_t k) const {
+    Series series;
+    for (const std::size_t member : group_.members) {
+      std::size_t column = 0;
+      for (const Token& token : lines_[member].tokens) {
+        if (token.kind == Token::Kind::text) continue;
+        if (column++ == k) series.push_back(token.value);
+        if (column > k) break;
+      }
+    }
+    return series;
+  }
+
+  [[nodiscard]] bool is_given(const std::string& field) const {
+    return std::any_of(columns_.begin(), columns_.end(), [&](const Column& one) { return one.field == field; });
+  }
+  [[nodiscard]] bool has_time() const {
+    return std::any_of(columns_.begin(), columns_.end(), [](const Column& one) {
+      return one.field.starts_with("time") || one.field == "clock" || one.field == "datetime";
+    });
+  }
+
+  void give(Column& column, const std::string& field, const std::string& what) {
+    const bool is_second =
+        field.starts_with("time") || field == "clock" || field == "datetime" ? has_time() : is_given(field);
+    if (is_second && field != "cycle" && field != "turn") {
+      column.field = "skip";
+      return;
+    }
+    column.field = field;
+    column.reason = what;
+  }
+
+  void read_name(Column& column) {
+    const std::string name = column.name.empty() ? column.label : column.name;
+    const std::string field = field_of_name(name);
+    const Series& series = column.series;
+    const std::string called = "'" + name + "' ";
+    if (field.starts_with("time") && is_time(series, 0.0)) {
+      give(column, field == "time" ? time_field_of(series, 0.0) : field, called + "grows evenly: it is the time");
+    } else if (field == "frame" && (is_frame_number(series, 0.0) || is_time(series, 0.0))) {
+      give(column, field, called + "grows: it is the number of the frame");
+    } else if ((field == "row" || field == "col") && cycle_of(series)) {
+      give(column, "cycle", called + "counts through the same numbers again and again");
+      column.is_counted_from_1 = cycle_of(series)->first == 1;
+    } else if (field == "array" && !numbers_in_turn(series).empty()) {
+      give(column, "turn", "");
+    } else if (field == "temperature" || field == "supply" || field == "flags") {
+      const bool is_possible = std::all_of(series.begin(), series.end(), [&](double value) {
+        return field == "flags" ? value >= 0.0 && value == static_cast<double>(static_cast<std::uint64_t>(value))
+                                : value > -60.0 && value < 200.0;
+      });
+      if (is_possible) give(column, field, called + "is its " + field);
+    }
+  }
+
+  [[nodiscard]] bool is_leading(std::size_t k) const {
+    const Column& column = columns_[k];
+    if (column.series.empty() || !column.field.empty()) return false;
+    const std::size_t place = place_in_run(k);
+    const bool is_last = place + 1 == run_size(k);
+    if (place > 0 && columns_[k - 1].field.empty()) return false;
+    return !is_last || run_size(k) == 1;
+  }
+
+  [[nodiscard]] bool is_trailing(std::size_t k) const {
+    const Column& column = columns_[k];
+    const bool is_last =
+        k + 1 == columns_.size() || columns_[k + 1].run != column.run || !columns_[k + 1].field.empty();
+    return is_last && !column.series.empty() && column.field.empty() && place_in_run(k) > 1;
+  }
+
+  void read_course(Column& column, bool may_cycle) {
+    const Series& series = column.series;
+    if (series.size() < kFewestLines) return;
+    const std::optional<Cycle> cycle = cycle_of(series);
+    const std::string which =
+        column.label.empty() ? "a number of each line " : "the number behind '" + column.label + "' ";
+    if (may_cycle && cycle && cycle->first <= 1) {
+      give(column, "cycle", "");
+      column.is_counted_from_1 = cycle->first == 1;
+    } else if (is_frame_number(series, 0.0)) {
+      give(column, "frame", which + "grows by 1: it is the number of the frame");
+    } else if (is_time(series, 0.0)) {
+      give(column, time_field_of(series, 0.0), which + "grows evenly: it is the time");
+    } else if (may_cycle && !numbers_in_turn(series).empty()) {
+      give(column, "turn", "");
+    }
+  }
+
+  const std::vector<Line>& lines_;
+  const LineGroup& group_;
+  std::vector<Column> columns_;
+};
+
+}  // namespace
+
+std::vector<Column> columns_of(const std::vector<Line>& lines, const LineGroup& group, const Numerals& numerals) {
+  return ColumnReader(lines, group, numerals).read();
+}
+
+}  // namespace dermis::bytes::proposals

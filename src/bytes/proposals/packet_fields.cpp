@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "bytes/proposals/packet_fields.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "bytes/proposals/series.hpp"
+
+namespace dermis::bytes::proposals {
+namespace {
+
+constexpr std::size_t kFewest = 5;  // packets, to tell a clock from chance
+
+Series series_at(const Packets& packets, std::size_t at, std::size_t size, bool is_big_endian) {
+  Series series;
+  for (const Bytes& packet : packets.packets) {
+    double value = 0.0;
+    for (std::size_t k = 0; k < size; ++k) value = 256.0 * value + packet[at + (is_big_endian ? k : size - 1 - k)];
+    series.push_back(value);
+  }
+  return series;
+}
+
+bool varies(const Packets& packets, std::size_t at) {
+  return !is_constant(packets, at);
+}
+
+/// The number at this place that has the most of the bytes that change, and no more, and goes on as `is_it` says.
+template <typename Test>
+std::optional<PacketField> growing_at(const Packets& packets, std::size_t at, std::size_t end, Test is_it) {
+  std::optional<PacketField> best;
+  std::size_t most = 0;
+  for (const std::size_t size : {1U, 2U, 4U}) {
+    if (at + size > end) break;
+    std::size_t changing = 0;
+    for (std::size_t k = at; k < at + size; ++k) changing += varies(packets, k) ? 1 : 0;
+    for (const char* order : {"le", "be"}) {
+      const Series series = series_at(packets, at, size, order[0] == 'b');
+      if (changing <= most || !is_it(series, std::pow(256.0, static_cast<double>(size)))) continue;
+      best = PacketField{at, size, "frame", size == 1 ? "" : order};
+      most = changing;
+    }
+  }
+  return best;
+}
+
+/// A byte that counts through the same numbers, or is one of a few in turn.
+std::optional<PacketField> in_turn_at(const Packets& packets, std::size_t at, bool may_have_gaps) {
+  const Series series = series_at(packets, at, 1, false);
+  PacketField field{at, 1, "array"};
+  if (const std::optional<Cycle> cycle = cycle_of(series)) {
+    if (cycle->count > 3) field.field = "row";
+    for (std::size_t k = 0; k < cycle->count; ++k) field.numbers.push_back(cycle->first + k);
+  } else if (may_have_gaps) {
+    field.numbers = numbers_in_turn(series);
+  }
+  return field.numbers.empty() ? std::nullopt : std::optional(field);
+}
+
+std::optional<PacketField> field_at(const Packets& packets, std::size_t at, std::size_t end) {
+  if (auto counter = growing_at(packets, at, end, is_frame_number)) return counter;
+  if (auto turn = in_turn_at(packets, at, false)) return turn;
+  if (auto clock = packets.packets.size() >= kFewest ? growing_at(packets, at, end, is_time) : std::nullopt) {
+    const double modulus = std::pow(256.0, static_cast<double>(clock->size));
+    clock->field = time_field_of(series_at(packets, at, clock->size, clock->order == "be"), modulus);
+    if (clock->size > 1) return clock;
+  }
+  return in_turn_at(packets, at, true);
+}
+
+}  // namespace
+
+std::vector<PacketField> fields_in(const Packets& packets, std::size_t begin, std::size_t end) {
+  std::vector<PacketField> fields;
+  for (std::size_t at = begin; at < end;) {
+    std::optional<PacketField> field = varies(packets, at) ? field_at(packets, at, end) : std::nullopt;
+    at += field ? field->size : 1;
+    if (!field) continue;
+    const auto is_same = [&](const PacketField& one) {
+      return one.field == field->field || (one.field.starts_with("time") && field->field.starts_with("time"));
+    };
+    if (std::none_of(fields.begin(), fields.end(), is_same)) fields.push_back(*std::move(field));
+  }
+  return fields;
+}
+
+void widen(PacketField& field, const Packets& packets, std::size_t begin, std::size_t end) {
+  if (field.field != "frame" && !field.field.starts_with("time")) return;
+  const auto constant_zeros = [&](std::size_t from, std::size_t to) {
+    for (std::size_t at = from; at < to; ++at) {
+      if (!is_constant(packets, at) || packets.packets.front()[at] != 0) return false;
+    }
+    return true;
+  };
+  for (const std::size_t size : {4U, 2U}) {
+    const std::size_t more = size > field.size ? size - field.size : 0;
+    if (more == 0) continue;
+    if (field.order != "be" && field.at + size <= end && constant_zeros(field.at + field.size, field.at + size)) {
+      field.size = size;
+      field.order = "le";
+      return;
+    }
+    if (field.order != "le" && field.at >= begin + more && constant_zeros(field.at - more, field.at)) {
+      field.at -= more;
+      field.size = size;
+      field.order = "be";
+      return;
+    }
+  }
+}
+
+}  // namespace dermis::bytes::proposals

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "bytes/proposals/byte_text.hpp"
+#include "bytes/proposals/draft.hpp"
+#include "bytes/proposals/packet_drafts.hpp"
+#include "bytes/proposals/shapes.hpp"
+#include "bytes/proposals/smoothness.hpp"
+#include "bytes/proposals/text_drafts.hpp"
+#include "bytes/proposals/trial.hpp"
+#include "dermis/bytes/proposals/proposals.hpp"
+
+namespace dermis::bytes::proposals {
+namespace {
+
+constexpr double kMostLeft = 1.0 / 3.0;
+constexpr std::size_t kFewestBytes = 16;
+constexpr std::size_t kFewestTaxels = 4;  // of an array that nobody has named
+constexpr double kNoise = 0.85;           // roughness of readings that tell nothing
+
+/// Readings that rest at the top of their range, and fall; true where the draft says so now.
+bool describe_falling(const Trial& trial, Draft& draft) {
+  std::vector<float> all;
+  for (const std::vector<float>& frame : trial.readings) all.insert(all.end(), frame.begin(), frame.end());
+  if (all.empty() || !std::all_of(all.begin(), all.end(), [](float v) { return v >= 0.0F && v == std::floor(v); }))
+    return false;
+  std::sort(all.begin(), all.end());
+  for (const float top : {255.0F, 1023.0F, 4095.0F, 16383.0F, 65535.0F}) {
+    const bool rests_there = all.back() <= top && all[all.size() / 2] > 0.9F * top && all.front() < 0.8F * top;
+    if (!rests_there) continue;
+    draft.keys.emplace_back("scale", "-1.0");
+    draft.keys.emplace_back("offset", std::to_string(static_cast<int>(top)) + ".0");
+    if (trial.has_empty_array) draft.keys.emplace_back("absent", "0");
+    draft.reasons.push_back("most readings are near " + std::to_string(static_cast<int>(top)) +
+                            " and some far below: pressing lowers them");
+    return true;
+  }
+  return false;
+}
+
+bool are_whole(const Readings& readings) {
+  return std::all_of(readings.begin(), readings.end(), [](const std::vector<float>& frame) {
+    return std::all_of(frame.begin(), frame.end(),
+                       [](float value) { return !std::isfinite(value) || value == std::floor(value); });
+  });
+}
+
+std::vector<float> frame_that_differs_most(const Readings& readings) {
+  const auto range = [](const std::vector<float>& frame) {
+    const auto [least, most] = std::minmax_element(frame.begin(), frame.end());
+    return std::isfinite(*most - *least) ? *most - *least : 0.0F;
+  };
+  const auto best = std::max_element(readings.begin(), readings.end(),
+                                     [&](const auto& a, const auto& b) { return range(a) < range(b); });
+  return best == readings.end() ? std::vector<float>() : *best;
+}
+
+std::string question_of(const Draft& draft, const Known& known) {
+  const FrameShape& shape = draft.arrays.front().shape;
+  const std::string text = "rows=" + std::to_string(shape.rows) + ", cols=" + std::to_string(shape.cols);
+  const std::string arrays = draft.arrays.size() > 1 ? std::to_string(draft.arrays.size()) + " arrays, each " : "";
+  const bool is_certain = draft.has_certain_shape || (known.rows && known.cols);
+  return draft.look + ": " + arrays + text + (is_certain ? "" : "?");
+}
+
+std::vector<std::string> open_keys(const Draft& draft, const Readings& readings, const Known& known) {
+  std::vector<std::string> open;
+  if (!draft.has_certain_shape && !known.rows) open.emplace_back("rows");
+  if (!draft.has_certain_shape && !known.cols) open.emplace_back("cols");
+  if (!draft.has_certain_unit && known.unit.empty() && !are_whole(readings)) open.emplace_back("unit");
+  return open;
+}
+
+struct Judged {
+  Proposal proposal;
+  double merit = 0.0;
+};
+
+std::optional<Judged> judge(Draft draft, std::span<const std::uint8_t> bytes, const Known& known) {
+  const bool is_tiny = draft.arrays.front().shape.taxel_count() < kFewestTaxels;
+  if (is_tiny && !known.rows && !known.cols) return std::nullopt;
+  if (!known.unit.empty()) draft.keys.emplace_back("unit", quoted(known.unit));
+  std::optional<Trial> trial = try_layout(toml_of(draft), bytes);
+  if (!trial || trial->frames == 0) return std::nullopt;
+  const double left = static_cast<double>(trial->left) / static_cast<double>(bytes.size());
+  // The first and the last frame may be cut.
+  const double frame = (1.0 - left) / static_cast<double>(trial->frames);
+  if (left - std::min(2.0 * frame, 0.5 * (1.0 - left)) > kMostLeft) return std::nullopt;
+  const double along = roughness_along(trial->readings);
+  const double in_time = roughness_in_time(trial->readings);
+  if (draft.is_weak && along > kNoise && in_time > kNoise) return std::nullopt;
+  const bool is_changed = describe_falling(*trial, draft);
+  Judged judged;
+  judged.merit = draft.merit + (1.0 - left) - 0.3 * along - 0.2 * in_time;
+  Proposal& proposal = judged.proposal;
+  proposal.toml = toml_of(draft);
+  if (is_changed) trial = try_layout(proposal.toml, bytes);
+  proposal.summary = question_of(draft, known);
+  proposal.reasons = std::move(draft.reasons);
+  proposal.left_over = std::move(draft.left_over);
+  if (!draft.packet.empty() && trial->left > 0) {
+    proposal.left_over.push_back(std::to_string(trial->left) + " of " + std::to_string(bytes.size()) +
+                                 " bytes belong to no packet");
+  }
+  proposal.parts = std::move(draft.parts);
+  std::sort(proposal.parts.begin(), proposal.parts.end(),
+            [](const Part& a, const Part& b) { return a.begin < b.begin; });
+  proposal.open = open_keys(draft, trial->readings, known);
+  proposal.frames = trial->frames;
+  proposal.left_share = left;
+  proposal.shape = draft.arrays.front().shape;
+  proposal.arrays = draft.arrays.size();
+  proposal.merit = judged.merit;
+  proposal.example = frame_that_differs_most(trial->readings);
+  return judged;
+}
+
+}  // namespace
+
+std::vector<Proposal> propose(std::span<const std::uint8_t> bytes, const Known& known) {
+  bytes = bytes.first(std::min(bytes.size(), kMostBytes));
+  if (bytes.size() < kFewestBytes) return {};
+  const std::vector<Draft> drafts =
+      is_text(bytes) ? text_drafts({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, known)
+                     : packet_drafts(bytes, known);
+  std::vector<Judged> all;
+  for (const Draft& draft : drafts) {
+    const auto is_same = [&](const Judged& other) { return other.proposal.toml == toml_of(draft); };
+    if (std::any_of(all.begin(), all.end(), is_same)) continue;
+    if (std::optional<Judged> judged = judge(draft, bytes, known)) all.push_back(*std::move(judged));
+  }
+  std::stable_sort(all.begin(), all.end(), [](const Judged& a, const Judged& b) { return a.merit > b.merit; });
+  std::vector<Proposal> proposals;
+  for (Judged& one : all) {
+    if (proposals.size() < kMostProposals) proposals.push_back(std::move(one.proposal));
+  }
+  return proposals;
+}
+
+}  // namespace dermis::bytes::proposals

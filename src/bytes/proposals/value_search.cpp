@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "bytes/proposals/value_search.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "bytes/proposals/byte_text.hpp"
+#include "bytes/proposals/checksum_search.hpp"
+#include "bytes/proposals/draft.hpp"
+#include "bytes/proposals/trial.hpp"
+#include "dermis/bytes/layouts/layout.hpp"
+
+namespace dermis::bytes::proposals {
+namespace {
+
+constexpr std::size_t kMostLeading = 24;  // bytes before the readings
+constexpr std::size_t kMostTrailing = 12;
+constexpr std::size_t kPackets = 24;
+constexpr std::size_t kMostSpans = 4;
+constexpr std::size_t kMostUnexplained = 4;
+constexpr std::size_t kFewest = 4;  // readings
+
+struct Type {
+  const char* name;
+  std::size_t bits;
+};
+constexpr std::array kTypes = {Type{"u8", 8},     Type{"u16le", 16}, Type{"u16be", 16}, Type{"i16le", 16},
+                               Type{"i16be", 16}, Type{"u12be", 12}, Type{"u12le", 12}, Type{"u10be", 10},
+                               Type{"u10le", 10}, Type{"f32le", 32}, Type{"f32be", 32}, Type{"u32le", 32},
+                               Type{"u32be", 32}, Type{"u24le", 24}, Type{"u24be", 24}};
+
+/// How unusual an array of so many readings is.
+double strangeness(std::size_t count) {
+  const auto side = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(count))));
+  if (side * side == count) return 0.0;
+  for (std::size_t rows = side + 1; rows > 1; --rows) {
+    if (count % rows == 0) return count / rows > 4 * rows ? 0.25 : 0.1;
+  }
+  return 0.3;
+}
+
+std::optional<FrameShape> any_shape(std::size_t count) {
+  if (count <= 1024) return FrameShape{1, count};
+  for (std::size_t cols = 1024; cols >= 32; --cols) {
+    if (count % cols == 0 && count / cols <= 1024) return FrameShape{count / cols, cols};
+  }
+  return std::nullopt;
+}
+
+class ValueSearch {
+ public:
+  ValueSearch(const Packets& packets, std::span<const std::uint8_t> bytes, const std::vector<PacketField>& fields)
+      : packets_(packets), sample_(first_packets(packets, bytes, kPackets)), fields_(fields) {
+    for (std::size_t at = 0; at < packets.size; ++at) is_constant_.push_back(is_constant(packets, at) ? 1 : 0);
+  }
+
+  void try_span(std::size_t begin, std::size_t end, const Type& type, std::size_t count, std::size_t unexplained,
+                bool is_count_known) {
+    ValueSpan span{begin, end, type.name, count};
+    const std::optional<Trial> trial = decode(span);
+    if (!trial || trial->readings.empty()) return;
+    span.readings = trial->readings;
+    double sum = 0.0;
+    double size = 0.0;
+    bool has_negative = false;
+    for (const std::vector<float>& frame : span.readings) {
+      for (const float value : frame) {
+        const double magnitude = std::abs(static_cast<double>(value));
+        if (!std::isfinite(value) || magnitude > 1e10 || (magnitude > 0.0 && magnitude < 1e-12)) return;
+        has_negative = has_negative || value < 0.0F;
+        sum += magnitude;
+        size += 1.0;
+      }
+    }
+    if (span.type.front() == 'i' && !has_negative) return;  // the same as without a sign
+    span.merit = -0.5 * roughness_along(span.readings) - 0.3 * roughness_in_time(span.readings) -
+                 0.02 * std::log2(1.0 + sum / size) - 0.1 * static_cast<double>(unexplained) -
+                 (is_count_known ? 0.0 : strangeness(count));
+    for (const PacketField& field : fields_) span.merit -= field.at < end && field.at + field.size > begin ? 0.4 : 0.0;
+    spans_.push_back(std::move(span));
+  }
+
+  /// Bytes that vary and that no field explains.
+  [[nodiscard]] std::size_t unexplained(std::size_t begin, std::size_t end) const {
+    std::size_t count = 0;
+    for (std::size_t at = begin; at < end; ++at) {
+      const bool is_field = std::any_of(fields_.begin(), fields_.end(),
+                                        [&](const PacketField& one) { return at >= one.at && at < one.at + one.size; });
+      count += is_constant_[at] == 0 && !is_field ? 1 : 0;
+    }
+    return count;
+  }
+
+  std::vector<ValueSpan> best() {
+    std::stable_sort(spans_.begin(), spans_.end(),
+                     [](const ValueSpan& a, const ValueSpan& b) { return a.merit > b.merit; });
+    if (spans_.size() > kMostSpans) spans_.resize(kMostSpans);
+    return std::move(spans_);
+  }
+
+ private:
+  [[nodiscard]] std::optional<Trial> decode(const ValueSpan& span) const {
+    const std::optional<FrameShape> shape = any_shape(span.count);
+    if (!shape) return std::nullopt;
+    Draft draft{.arrays = {{"", *shape}}};
+    const std::size_t mark = packets_.escape.empty() ? packets_.mark_size : 0;
+    if (mark > 0) draft.packet.push_back(layouts::hexadecimal(std::span(packets_.packets.front()).first(mark)));
+    if (span.begin > mark) draft.packet.push_back("skip " + std::to_string(span.begin - mark));
+    draft.packet.push_back("values " + span.type);
+    if (span.end < packets_.size) draft.packet.push_back("skip " + std::to_string(packets_.size - span.end));
+    if (!packets_.escape.empty()) draft.keys.emplace_back("escape", quoted(packets_.escape));
+    return try_layout(toml_of(draft), sample_);
+  }
+
+  const Packets& packets_;
+  std::span<const std::uint8_t> sample_;
+  const std::vector<PacketField>& fields_;
+  std::vector<std::uint8_t> is_constant_;
+  std::vector<ValueSpan> spans_;
+};
+
+}  // namespace
+
+std::vector<ValueSpan> value_spans(const Packets& packets, std::span<const std::uint8_t> bytes, std::size_t begin,
+                                   std::size_t end, const std::vector<PacketField>& fields,
+                                   const std::vector<std::size_t>& counts) {
+  ValueSearch search(packets, bytes, fields);
+  for (std::size_t from = begin; from < std::min(end, begin + kMostLeading); ++from) {
+    const std::size_t leading = search.unexplained(begin, from);
+    if (leading > kMostUnexplained) break;
+    for (std::size_t to = end; to > from && to + kMostTrailing > end; --to) {
+      const std::size_t unexplained = leading + search.unexplained(to, end);
+      if (unexplained > kMostUnexplained) break;
+      for (const Type& type : kTypes) {
+        const std::size_t count = (to - from) * 8 / type.bits;
+        const bool is_whole = (count * type.bits + 7) / 8 == to - from;
+        const bool is_known = std::find(counts.begin(), counts.end(), count) != counts.end();
+        if (!is_whole || count < (is_known ? 1 : kFewest) || (!counts.empty() && !is_known)) continue;
+        if (counts.empty() && (unexplained > 1 || strangeness(count) > 0.2) && from > begin) continue;
+        search.try_span(from, to, type, count, unexplained, is_known);
+      }
+    }
+  }
+  return search.best();
+}
+
+}  // namespace dermis::bytes::proposals

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <algorithm>
+#include <cassert>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "bytes/recordings/message_kind.hpp"
+#include "bytes/recordings/recording_description.hpp"
+#include "dermis/bytes/files/input.hpp"
+#include "dermis/bytes/files/taxel_text.hpp"
+#include "dermis/bytes/recordings/suit_recording.hpp"
+
+namespace dermis::bytes::recordings {
+namespace {
+
+/// Log times of the files of others may have 64 bits.
+Nanos time_of(std::uint64_t log_time) {
+  return Nanos(static_cast<std::int64_t>(log_time & std::numeric_limits<std::int64_t>::max()));
+}
+
+/// An array that is being read.
+struct ReadArray {
+  std::optional<FrameShape> shape;
+
+  // The messages before the image, of the same frame and so of the same log time.
+  RawFrame acquisition;
+  std::optional<std::uint64_t> acquisition_time;
+  double celsius = 0.0;
+  std::optional<std::uint64_t> temperature_time;
+  RawFrame sensors;  // as counts
+  std::optional<std::uint64_t> sensors_time;
+
+  void add_to(RawFrame& frame, std::uint64_t log_time);
+};
+
+void ReadArray::add_to(RawFrame& frame, std::uint64_t log_time) {
+  frame.time = time_of(log_time);
+  frame.acquisition = {};
+  frame.acquisition.arrival_utc = frame.time;
+  frame.supply_v.reset();
+  frame.temperature_celsius.reset();
+  if (acquisition_time == log_time) {
+    frame.time = acquisition.time;
+    frame.acquisition = acquisition.acquisition;
+    frame.supply_v = acquisition.supply_v;
+  }
+  if (temperature_time == log_time) frame.temperature_celsius = celsius;
+  frame.sensor_celsius.clear();
+  if (sensors_time == log_time) frame.sensor_celsius = sensors.counts;
+  acquisition_time.reset();
+  temperature_time.reset();
+  sensors_time.reset();
+}
+
+/// The meaning of a channel's messages for the frames.
+struct Use {
+  MessageKind kind = MessageKind::none;
+  std::size_t array = 0;
+};
+
+}  // namespace
+
+class SuitRecordingReader::Implementation {
+ public:
+  Implementation(std::unique_ptr<McapReader> mcap, std::string path) : mcap_(std::move(mcap)), path_(std::move(path)) {}
+
+  [[nodiscard]] Status begin();
+  [[nodiscard]] const std::vector<RecordedArray>& arrays() const noexcept { return arrays_; }
+  void read_only(std::size_t array) { only_ = array; }
+  [[nodiscard]] Result<bool> next(std::size_t& array, RawFrame& frame);
+  void seek(Nanos time);
+  [[nodiscard]] bool complete() const noexcept { return mcap_->complete(); }
+
+ private:
+  void describe();
+  void describe_arrays();
+  [[nodiscard]] Use use_of(const McapMessage& message);
+  [[nodiscard]] Use find_use(std::uint16_t id, const McapChannel& channel);
+  [[nodiscard]] Result<bool> read_frame(std::size_t& array, RawFrame& frame);
+  [[nodiscard]] Status read_other(const Use& use, const McapMessage& message);
+  [[nodiscard]] Status read_image(const Use& use, const McapMessage& message, RawFrame& frame);
+  [[nodiscard]] Error error(const McapMessage& message, const Error& what) const;
+
+  std::unique_ptr<McapReader> mcap_;
+  std::string path_;
+  std::vector<RecordedArray> arrays_;
+  std::vector<ReadArray> read_;
+  std::map<std::string, std::size_t, std::less<>> folders_;  ///< Folders of the arrays' topics; empty: not known yet.
+  std::map<std::uint16_t, Use> uses_;
+  std::optional<std::size_t> only_;
+  std::uint64_t begin_time_ = 0;  ///< Frames of earlier log times are left out.
+
+  RawFrame first_;  ///< Read by begin().
+  std::size_t first_array_ = 0;
+  bool has_first_ = false;
+};
+
+Status SuitRecordingReader::Implementation::begin() {
+  if (mcap_->complete() && descriptions_of(*mcap_).size() > 1) mcap_->read_as_written();
+  const Result<bool> got_first = read_frame(first_array_, first_);
+  if (!got_first) return got_first.error();
+  has_first_ = *got_first;
+  if (arrays_.empty()) describe();
+  return Done{};
+}
+
+/// A recording of one array is not asked for the name of its topics: it may have been made by others.
+void SuitRecordingReader::Implementation::describe() {
+  const std::vector<RecordingDescription> descriptions = descriptions_of(*mcap_);
+  const std::size_t count = std::max<std::size_t>(descriptions.size(), 1);
+  arrays_.resize(count);
+  read_.resize(count);
+  for (std::size_t i = 0; i < descriptions.size(); ++i) {
+    const RecordingDescription& description = descriptions[i];
+    arrays_[i].name = description.name;
+    arrays_[i].array_toml = description.array_toml;
+    arrays_[i].model_hash = description.model_hash;
+    arrays_[i].simulation = description.simulation;
+    if (count > 1) read_[i].shape = description.shape;
+    if (count > 1) folders_.emplace(description.folder, i);
+  }
+  for (std::size_t i = 0; i < count; ++i) arrays_[i].shape = read_[i].shape.value_or(FrameShape{});
+}
+
+/// The first topic of images is taken where the arrays are not said; images beside sensors of touch are of cameras.
+Use SuitRecordingReader::Implementation::find_use(std::uint16_t id, const McapChannel& channel) {
+  Use use{kind_of(channel), 0};
+  const std::string_view folder = topic_folder(channel.topic);
+  if (folders_.empty()) {
+    if (use.kind != MessageKind::image) return use;
+    const auto is_touch = [](const auto& known) { return is_tactile_state(known.second); };
+    const bool is_camera = !is_touch(std::pair(id, channel)) && std::ranges::any_of(mcap_->channels(), is_touch);
+    if (is_camera) return {};
+    uses_.clear();
+    folders_.emplace(folder, 0);
+  } else {
+    const auto found = folders_.find(folder);
+    if (found == folders_.end()) return {};
+    use.array = found->second;
+    const bool has_images = std::any_of(uses_.begin(), uses_.end(), [&](const auto& known) {
+      return known.first != id && known.second.kind == MessageKind::image && known.second.array == use.array;
+    });
+    if (use.kind == MessageKind::image && has_images) return {};
+  }
+  return use;
+}
+
+Use SuitRecordingReader::Implementation::use_of(const McapMessage& message) {
+  const auto known = uses_.find(message.channel);
+  if (known != uses_.end()) return known->second;
+  const Use use = find_use(message.channel, mcap_->channels().at(message.channel));
+  uses_[message.channel] = use;
+  return use;
+}
+
+Error SuitRecordingReader::Implementation::error(const McapMessage& message, const Error& what) const {
+  return bad_input(path_ + ": message " + std::to_string(message.sequence) + " of " +
+                   mcap_->channels().at(message.channel).topic + ": " + what.message);
+}
+
+Status SuitRecordingReader::Implementation::read_other(const Use& use, const McapMessage& message) {
+  ReadArray& array = read_[use.array];
+  if (use.kind == MessageKind::acquisition) {
+    const Status taken = ros_messages::decode_acquisition(message.data, array.acquisition);
+    if (!taken) return error(message, taken.error());
+    array.acquisition_time = message.log_time;
+  } else if (use.kind == MessageKind::temperature) {
+    const Result<double> taken = ros_messages::decode_temperature(message.data);
+    if (!taken) return error(message, taken.error());
+    array.celsius = *taken;
+    array.temperature_time = message.log_time;
+  } else if (use.kind == MessageKind::sensors) {
+    const Result<FrameShape> taken = ros_messages::decode_image(message.data, array.sensors);
+    if (!taken) return error(message, taken.error());
+    array.sensors_time = message.log_time;
+  }
+  return Done{};
+}
+
+Status SuitRecordingReader::Implementation::read_image(const Use& use, const McapMessage& message, RawFrame& frame) {
+  ReadArray& array = read_[use.array];
+  const Result<FrameShape> decoded = decode_counts(mcap_->channels().at(message.channel), message.data, frame);
+  if (!decoded) return error(message, decoded.error());
+  if (array.shape && *decoded != *array.shape) {
+    return error(message, bad_input("the image is " + files::size_text(*decoded) + ", the first " +
+                                    files::size_text(*array.shape)));
+  }
+  array.shape = *decoded;
+  array.add_to(frame, message.log_time);
+  return Done{};
+}
+
+Result<bool> SuitRecordingReader::Implementation::read_frame(std::size_t& array, RawFrame& frame) {
+  McapMessage message;
+  while (true) {
+    Result<bool> got_message = mcap_->next(message);
+    if (!got_message || !*got_message) return got_message;
+    if (arrays_.empty()) describe();
+    const Use use = use_of(message);
+    const bool is_wanted = !only_ || *only_ == use.array;
+    if (use.kind == MessageKind::none || !is_wanted || message.log_time < begin_time_) continue;
+    if (use.kind == MessageKind::image) {
+      if (const Status taken = read_image(use, message, frame); !taken) return taken.error();
+      arrays_[use.array].shape = *read_[use.array].shape;
+      array = use.array;
+      return true;
+    }
+    if (const Status taken = read_other(use, message); !taken) return taken.error();
+  }
+}
+
+Result<bool> SuitRecordingReader::Implementation::next(std::size_t& array, RawFrame& frame) {
+  const bool is_first = std::exchange(has_first_, false);
+  if (!is_first || (only_ && *only_ != first_array_)) return read_frame(array, frame);
+  std::swap(frame, first_);
+  array = first_array_;
+  return true;
+}
+
+void SuitRecordingReader::Implementation::seek(Nanos time) {
+  begin_time_ = static_cast<std::uint64_t>(std::max<std::int64_t>(time.count(), 0));
+  has_first_ = false;
+  mcap_->seek(begin_time_);
+  for (ReadArray& array : read_) {
+    array.acquisition_time.reset();
+    array.temperature_time.reset();
+    array.sensors_time.reset();
+  }
+}
+
+SuitRecordingReader::SuitRecordingReader(std::unique_ptr<Implementation> implementation)
+    : implementation_(std::move(implementation)) {}
+
+SuitRecordingReader::~SuitRecordingReader() = default;
+
+Result<std::unique_ptr<SuitRecordingReader>> SuitRecordingReader::open(const std::string& path) {
+  Result<std::unique_ptr<std::istream>> in = files::open_input(path);
+  if (!in) return in.error();
+  return open(*std::move(in), path);
+}
+
+Result<std::unique_ptr<SuitRecordingReader>> SuitRecordingReader::open(std::unique_ptr<std::istream> in,
+                                                                       const std::string& name) {
+  Result<std::unique_ptr<McapReader>> mcap = McapReader::open(std::move(in), name);
+  if (!mcap) return mcap.error();
+  auto implementation = std::make_unique<Implementation>(*std::move(mcap), name);
+  if (const Status begun = implementation->begin(); !begun) return begun.error();
+  return std::unique_ptr<SuitRecordingReader>(new SuitRecordingReader(std::move(implementation)));
+}
+
+const std::vector<RecordedArray>& SuitRecordingReader::arrays() const noexcept {
+  return implementation_->arrays();
+}
+
+void SuitRecordingReader::read_only(std::size_t array) {
+  assert(array < arrays().size());
+  implementation_->read_only(array);
+}
+
+Result<bool> SuitRecordingReader::next(std::size_t& array, RawFrame& frame) {
+  return implementation_->next(array, frame);
+}
+
+void SuitRecordingReader::seek(Nanos time) {
+  implementation_->seek(time);
+}
+
+bool SuitRecordingReader::complete() const noexcept {
+  return implementation_->complete();
+}
+
+}  // namespace dermis::bytes::recordings

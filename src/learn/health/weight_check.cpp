@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/learn/health/weight_check.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cassert>
+#include <chrono>
+#include <cmath>
+
+namespace dermis::learn::health {
+namespace {
+
+constexpr Nanos kOnset = std::chrono::seconds(1);  // a hand lets go meanwhile
+constexpr Nanos kPiece = std::chrono::seconds(1);
+constexpr std::size_t kLeastFrames = 3;
+constexpr double kMostDeviation = 0.05;  // within a piece, relative: more is a hand
+constexpr double kLeastChange = 0.03;    // of a gain: less is not worth a calibration
+constexpr double kSomethingElse = 2.0;   // times the weight, or a part of it
+constexpr double kNewtonsPerGram = 9.80665e-3;
+constexpr double kSigmas = 3.0;
+constexpr double kTooMuch = 0.1;      // of a gain: a check that is less sure is of little use
+constexpr double kLeastSigma = 1e-3;  // relative
+
+bool is_near(double ratio) {
+  return ratio < kSomethingElse && ratio > 1.0 / kSomethingElse;
+}
+
+/// Standard deviation of the logarithm of the mean ratio. It is the model's for a force, or the scatter of the presses
+/// if that is more.
+double sigma_of(const std::vector<WeighedPress>& presses, double log_ratio, double weight_n) {
+  double modelled = 0.0;
+  double seen = 0.0;
+  for (const WeighedPress& press : presses) {
+    modelled += std::pow(press.sigma_newtons / press.newtons, 2);
+    seen += std::pow(std::log(press.newtons / weight_n) - log_ratio, 2);
+  }
+  const auto count = static_cast<double>(presses.size());
+  const double of_one = std::max(modelled / count, count > 1.0 ? seen / (count - 1.0) : 0.0);
+  return std::max(std::sqrt(of_one / count), kLeastSigma);
+}
+
+void weigh(WeightFinding& finding) {
+  if (finding.presses.empty()) return;
+  double sum = 0.0;
+  for (const WeighedPress& press : finding.presses) sum += std::log(press.newtons / finding.weight_n);
+  const double log_ratio = sum / static_cast<double>(finding.presses.size());
+  finding.ratio = std::exp(log_ratio);
+  finding.sigma = sigma_of(finding.presses, log_ratio, finding.weight_n);
+}
+
+std::string readings(const std::vector<WeighedPress>& presses) {
+  constexpr std::size_t kMostNamed = 8;
+  std::string text;
+  for (std::size_t k = 0; k < std::min(presses.size(), kMostNamed); ++k) {
+    text += fmt::format("{}{:.3g}", k == 0 ? "" : ", ", presses[k].newtons);
+  }
+  return text + (presses.size() > kMostNamed ? ", ... N" : " N");
+}
+
+std::string missing(const WeightFinding& finding) {
+  if (finding.others > 0) {
+    const bool is_in_grams = is_near(finding.other_n / (kNewtonsPerGram * finding.weight_n));
+    return fmt::format("no press reads between half and twice the weight; {} read something else, the last {:.3g} N{}",
+                       finding.others, finding.other_n,
+                       is_in_grams ? fmt::format("; if it weighs {0:g} grams, write '{0:g} g'", finding.weight_n) : "");
+  }
+  if (finding.unsteady > 0) return "no press lay still for a second: put the object down and let go of it";
+  return "nothing was put on";
+}
+
+}  // namespace
+
+double WeightFinding::limit() const noexcept {
+  return std::max(kSigmas * sigma, kLeastChange);
+}
+
+bool WeightFinding::has_aged() const noexcept {
+  return !presses.empty() && std::abs(std::log(ratio)) > limit();
+}
+
+std::string describe(const WeightFinding& finding) {
+  if (finding.presses.empty()) return missing(finding);
+  const std::size_t count = finding.presses.size();
+  std::string text = fmt::format("weight  {:.4g} N, put on {}\n", finding.weight_n,
+                                 count == 1 ? "once" : fmt::format("{} times", count));
+  text += fmt::format("reads   {:.3g} N ({})\n", finding.ratio * finding.weight_n, readings(finding.presses));
+  if (finding.others + finding.unsteady > 0) {
+    text += fmt::format("besides {} of another weight, {} not steady\n", finding.others, finding.unsteady);
+  }
+  const double change = finding.ratio - 1.0;
+  if (finding.has_aged()) {
+    return text + fmt::format("recalibrate: gains have changed by about {:.0f} % (\u00b1 {:.0f} %): it reads {}\n",
+                              100.0 * std::abs(change), std::max(100.0 * finding.sigma, 1.0),
+                              change > 0.0 ? "too much" : "too little");
+  }
+  const bool has_told = finding.limit() <= kTooMuch;
+  return text + fmt::format("{}: reads {:.1f} % {}, within {:.0f} %{}\n", has_told ? "well" : "no change seen",
+                            100.0 * std::abs(change), change > 0.0 ? "high" : "low", 100.0 * finding.limit(),
+                            has_told ? "" : ": put the object on again, in other places");
+}
+
+WeightCheck::WeightCheck(const touch::pipeline::Model& model, double weight_n)
+    : tracker_(model.array, {}, model.strip) {
+  assert(weight_n > 0.0);
+  finding_.weight_n = weight_n;
+}
+
+void WeightCheck::add(const ForceFrame& force) {
+  if (has(force.status, FrameStatus::rejected)) return;
+  tracker_.process(force, report_);
+  const bool is_pressed = std::any_of(report_.contacts.begin(), report_.contacts.end(),
+                                      [](const Contact& contact) { return contact.phase != ContactPhase::release; });
+  if (is_pressed) return hold(force.time);
+  if (press_) count(*press_, finding_);
+  press_.reset();
+}
+
+void WeightCheck::hold(Nanos time) {
+  if (!press_) {
+    press_ = Press{};
+    press_->onset = time;
+  }
+  if (time - press_->onset < kOnset) return;
+  std::optional<Piece>& piece = press_->piece;
+  if (piece && time - piece->begin >= kPiece && piece->frames >= kLeastFrames) {
+    close_piece(*press_);
+    piece.reset();
+  }
+  if (!piece) {
+    piece = Piece{};
+    piece->begin = time;
+  }
+  ++piece->frames;
+  piece->sum_n += report_.total_force_n;
+  piece->sum_square += report_.total_force_n * report_.total_force_n;
+  piece->sum_sigma_n += report_.sigma_total_n;
+}
+
+void WeightCheck::close_piece(Press& press) const {
+  const Piece& piece = *press.piece;
+  const auto frames = static_cast<double>(piece.frames);
+  const WeighedPress weighed{piece.sum_n / frames, piece.sum_sigma_n / frames};
+  const double variance = std::max(piece.sum_square / frames - weighed.newtons * weighed.newtons, 0.0);
+  const double deviation = std::sqrt(variance) / weighed.newtons;
+  if (!std::isfinite(weighed.sigma_newtons) || !(deviation < kMostDeviation)) return;
+  const double ratio = weighed.newtons / finding_.weight_n;
+  const bool is_the_weight = is_near(ratio);
+  if (!is_the_weight) press.other_n = weighed.newtons;
+  if (!is_the_weight || (press.steadiest && deviation >= press.deviation)) return;
+  press.steadiest = weighed;
+  press.deviation = deviation;
+}
+
+void WeightCheck::count(const Press& press, WeightFinding& finding) {
+  if (press.steadiest) {
+    finding.presses.push_back(*press.steadiest);
+  } else if (press.other_n) {
+    ++finding.others;
+    finding.other_n = *press.other_n;
+  } else {
+    ++finding.unsteady;
+  }
+}
+
+WeightFinding WeightCheck::finding() const {
+  WeightFinding finding = finding_;
+  if (press_ && press_->steadiest) count(*press_, finding);
+  weigh(finding);
+  return finding;
+}
+
+}  // namespace dermis::learn::health

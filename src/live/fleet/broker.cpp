@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "live/fleet/broker.hpp"
+
+#include "dermis/bytes/system/plugin.hpp"
+#include "dermis/live/fleet/model_store.hpp"
+#include "live/fleet/fleet_keys.hpp"
+
+namespace dermis::live::fleet {
+namespace {
+
+Result<void*> find_function(const char* name) {
+  return find_plugin_function(
+      {"NATS", "libdermis_nats.so", "of a build with DERMIS_BUILD_NATS, and its library (Debian: libnats3.4)"}, name);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Broker>> connect_broker(const BrokerAddress& address) {
+  const Result<void*> function = find_function(kConnectBroker);
+  if (!function) return function.error();
+  Result<std::unique_ptr<Broker>> connected{std::unique_ptr<Broker>()};
+  reinterpret_cast<ConnectBroker>(*function)(address, connected);
+  return connected;
+}
+
+Result<std::unique_ptr<FleetKeys>> load_fleet_keys() {
+  const Result<void*> function = find_function(kMakeFleetKeys);
+  if (!function) return function.error();
+  std::unique_ptr<FleetKeys> made;
+  reinterpret_cast<MakeFleetKeys>(*function)(made);
+  return made;
+}
+
+Result<std::string> sha256(std::string_view bytes) {
+  const Result<void*> function = find_function(kFindSha256);
+  if (!function) return function.error();
+  std::string digits;
+  reinterpret_cast<FindSha256>(*function)(bytes, digits);
+  return digits;
+}
+
+}  // namespace dermis::live::fleet

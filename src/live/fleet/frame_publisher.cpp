@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/live/fleet/frame_publisher.hpp"
+
+#include <pthread.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "dermis/bytes/recordings/frame_batches.hpp"
+#include "live/fleet/broker.hpp"
+#include "live/fleet/streams.hpp"
+
+namespace dermis::live::fleet {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kMostThreads = 4;
+constexpr std::chrono::milliseconds kLookEvery{20};
+constexpr std::chrono::milliseconds kRetryAfter{200};
+constexpr std::chrono::seconds kDescribeEvery{60};
+constexpr std::chrono::seconds kLastWords{2};
+
+/// An array whose batches go to the server, one at a time.
+struct PublishedArray {
+  PublishedArray(const std::string& robot, const std::string& run, bytes::recordings::RecordedArray array)
+      : frames(subject_of(robot, array.name, "frames")),
+        contacts(subject_of(robot, array.name, "contacts")),
+        description(subject_of(robot, array.name, "description")),
+        first_id(run + array.name + "-"),
+        writer(std::move(array)) {}
+
+  std::string frames;
+  std::string contacts;
+  std::string description;
+  std::string first_id;
+  bytes::recordings::FrameBatchWriter writer;
+  std::uint64_t next_id = 0;
+  Clock::time_point described{};  ///< When the server has stored the description; 0: never.
+  Clock::time_point begun = Clock::now();
+  Clock::time_point contacts_begun = Clock::now();
+  std::atomic<std::uint64_t> refused = 0;  ///< Frames that the server will never take.
+
+  [[nodiscard]] std::uint64_t left_out() const noexcept { return refused + writer.left_out(); }
+};
+
+/// Runs of a robot differ by the millisecond in which they begin.
+std::string new_run() {
+  const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
+  return std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(since_1970).count());
+}
+
+}  // namespace
+
+class FramePublisher::Implementation {
+ public:
+  explicit Implementation(PublisherOptions options) : options_(std::move(options)) {}
+  ~Implementation();
+
+  [[nodiscard]] Status begin(std::vector<bytes::recordings::RecordedArray> arrays);
+  void publish(std::size_t array, const RawFrame& frame) { arrays_[array]->writer.add(frame); }
+  void publish(const RobotHealth& health);
+  [[nodiscard]] PublisherCounts counts() const noexcept;
+  void publish_contacts(std::size_t array, Nanos time, std::span<const std::uint8_t> message) {
+    arrays_[array]->writer.add_contacts(time, message);
+  }
+  [[nodiscard]] std::uint64_t left_out(std::size_t array) const noexcept { return arrays_[array]->left_out(); }
+
+ private:
+  /// The fate of a message; late: there was no time left.
+  enum class Fate : std::uint8_t { stored, refused, late };
+
+  void work(std::size_t first, std::size_t stride, const std::stop_token& stop);
+  [[nodiscard]] bool send_waiting(PublishedArray& array, bool unfinished);
+  [[nodiscard]] bool send_contacts(PublishedArray& array, bool unfinished);
+  [[nodiscard]] bool describe(PublishedArray& array);
+  void send_health();
+  [[nodiscard]] Fate store(const std::string& subject, const std::string& id, std::span<const std::uint8_t> bytes);
+  [[nodiscard]] std::optional<Fate> try_to_store(const std::string& subject, const std::string& id,
+                                                 std::span<const std::uint8_t> bytes);
+  [[nodiscard]] bool has_stored(const std::string& subject, const std::string& id);
+  [[nodiscard]] Broker* broker();
+  void tell(const Status& outcome);
+  [[nodiscard]] bool is_over() const noexcept { return Clock::now() >= end_.load(); }
+
+  const PublisherOptions options_;
+  std::vector<std::unique_ptr<PublishedArray>> arrays_;
+
+  std::mutex connecting_;
+  std::unique_ptr<Broker> broker_;  ///< Null: the server has not answered yet.
+  bool answers_ = true;             ///< As it was told last; guarded by `connecting_`.
+
+  std::atomic<std::uint64_t> batches_ = 0;
+  std::atomic<std::uint64_t> frames_ = 0;
+  std::atomic<std::uint64_t> bytes_ = 0;
+  std::mutex health_mutex_;
+  std::string health_;  ///< That is not sent yet; empty: none.
+
+  std::atomic<Clock::time_point> end_ = Clock::time_point::max();
+  std::vector<std::jthread> threads_;
+};
+
+FramePublisher::Implementation::~Implementation() {
+  end_ = Clock::now() + kLastWords;
+  for (std::jthread& thread : threads_) thread.request_stop();
+}
+
+Status FramePublisher::Implementation::begin(std::vector<bytes::recordings::RecordedArray> arrays) {
+  Result<std::unique_ptr<Broker>> connected = connect_broker(options_.broker);
+  if (!connected && connected.error().kind == ErrorKind::bad_input) return connected.error();
+  if (connected)
+    broker_ = *std::move(connected);
+  else
+    tell(connected.error());
+  const std::string run = new_run();
+  for (bytes::recordings::RecordedArray& array : arrays) {
+    arrays_.push_back(std::make_unique<PublishedArray>(options_.robot, run, std::move(array)));
+  }
+  const std::size_t threads = std::min(arrays_.size(), kMostThreads);
+  for (std::size_t first = 0; first < threads; ++first) {
+    threads_.emplace_back([this, first, threads](const std::stop_token& stop) { work(first, threads, stop); });
+  }
+  return Done{};
+}
+
+/// Sends the batches of every `stride`th array.
+void FramePublisher::Implementation::work(std::size_t first, std::size_t stride, const std::stop_token& stop) {
+  ::pthread_setname_np(::pthread_self(), "publish");
+  std::mutex mutex;
+  std::unique_lock lock(mutex);
+  std::condition_variable_any stopped;
+  bool is_last_round = false;
+  while (!is_last_round) {
+    is_last_round = stop.stop_requested();
+    for (std::size_t i = first; i < arrays_.size(); i += stride) {
+      if (!send_waiting(*arrays_[i], is_last_round) || !send_contacts(*arrays_[i], is_last_round)) return;
+    }
+    if (first == 0) send_health();
+    stopped.wait_for(lock, stop, kLookEvery, [] { return false; });
+  }
+}
+
+/// false: there is no time left.
+bool FramePublisher::Implementation::send_waiting(PublishedArray& array, bool unfinished) {
+  bool is_due = Clock::now() - array.begun > bytes::recordings::FrameBatchWriter::kLongest;
+  while (const std::optional<bytes::recordings::FrameBatch> batch = array.writer.take(unfinished || is_due)) {
+    is_due = false;  // what comes meanwhile is for the next round
+    array.begun = Clock::now();
+    if (is_over() || !describe(array)) return false;
+    const Fate fate = store(array.frames, array.first_id + std::to_string(array.next_id++), batch->bytes);
+    if (fate == Fate::late) return false;
+    if (fate == Fate::refused) {
+      array.refused += batch->frames;
+      continue;
+    }
+    ++batches_;
+    frames_ += batch->frames;
+    bytes_ += batch->bytes.size();
+  }
+  return true;
+}
+
+/// The same for contacts.
+bool FramePublisher::Implementation::send_contacts(PublishedArray& array, bool unfinished) {
+  bool is_due = Clock::now() - array.contacts_begun > bytes::recordings::FrameBatchWriter::kLongest;
+  while (const std::optional<bytes::recordings::FrameBatch> batch = array.writer.take_contacts(unfinished || is_due)) {
+    is_due = false;
+    array.contacts_begun = Clock::now();
+    if (is_over() || !describe(array)) return false;
+    const std::string id = array.first_id + std::to_string(array.next_id++);
+    if (store(array.contacts, id, batch->bytes) == Fate::late) return false;
+    bytes_ += batch->bytes.size();
+  }
+  return true;
+}
+
+/// Streams forget: the description is there again once a minute. false: there is no time left.
+bool FramePublisher::Implementation::describe(PublishedArray& array) {
+  const bool is_fresh = array.described != Clock::time_point{} && Clock::now() - array.described < kDescribeEvery;
+  if (is_fresh) return true;
+  const std::string id = array.first_id + "d" + std::to_string(array.next_id++);
+  if (store(array.description, id, array.writer.description()) == Fate::late) return false;
+  array.described = Clock::now();
+  return true;
+}
+
+/// Tries once: the next one is newer.
+void FramePublisher::Implementation::send_health() {
+  std::string health;
+  {
+    const std::scoped_lock lock(health_mutex_);
+    health.swap(health_);
+  }
+  if (health.empty()) return;
+  static_cast<void>(try_to_store(health_subject_of(options_.robot), "",
+                                 {reinterpret_cast<const std::uint8_t*>(health.data()), health.size()}));
+}
+
+/// Tries until the server has stored or refused it, or there is no time left.
+FramePublisher::Implementation::Fate FramePublisher::Implementation::store(const std::string& subject,
+                                                                           const std::string& id,
+                                                                           std::span<const std::uint8_t> bytes) {
+  while (true) {
+    if (const std::optional<Fate> fate = try_to_store(subject, id, bytes)) return *fate;
+    if (is_over()) return Fate::late;
+    std::this_thread::sleep_for(kRetryAfter);
+    if (has_stored(subject, id)) return Fate::stored;
+  }
+}
+
+/// Empty: it is to be tried again.
+std::optional<FramePublisher::Implementation::Fate> FramePublisher::Implementation::try_to_store(
+    const std::string& subject, const std::string& id, std::span<const std::uint8_t> bytes) {
+  Broker* const server = broker();
+  if (server == nullptr) return std::nullopt;
+  Result<std::uint64_t> stored = server->store(subject, id, bytes);
+  if (!stored && stored.error().kind == ErrorKind::failed && make_stream(*server, options_.robot)) {
+    stored = server->store(subject, id, bytes);
+  }
+  tell(stored ? Status(Done{}) : Status(stored.error()));
+  if (stored) return Fate::stored;
+  return stored.error().kind == ErrorKind::bad_input ? std::optional(Fate::refused) : std::nullopt;
+}
+
+/// A server may have stored a message and gone before it said so.
+bool FramePublisher::Implementation::has_stored(const std::string& subject, const std::string& id) {
+  Broker* const server = broker();
+  if (server == nullptr) return false;
+  const Result<std::optional<StoredMessage>> last = server->last(stream_of(options_.robot), subject);
+  return last && *last && (*last)->id == id;
+}
+
+Broker* FramePublisher::Implementation::broker() {
+  const std::scoped_lock lock(connecting_);
+  if (broker_ != nullptr) return broker_.get();
+  Result<std::unique_ptr<Broker>> connected = connect_broker(options_.broker);
+  if (connected) broker_ = *std::move(connected);
+  return broker_.get();
+}
+
+void FramePublisher::Implementation::tell(const Status& outcome) {
+  const std::scoped_lock lock(connecting_);
+  if (static_cast<bool>(outcome) == answers_) return;
+  answers_ = static_cast<bool>(outcome);
+  if (!options_.notice) return;
+  options_.notice(outcome
+                      ? without_password(options_.broker.url) + ": stores frames again"
+                      : outcome.error().message +
+                            (outcome.error().kind == ErrorKind::failed ? "; frames wait, and it is asked again" : ""));
+}
+
+void FramePublisher::Implementation::publish(const RobotHealth& health) {
+  std::string text = health_to_json(health);
+  const std::scoped_lock lock(health_mutex_);
+  health_ = std::move(text);
+}
+
+PublisherCounts FramePublisher::Implementation::counts() const noexcept {
+  PublisherCounts counts{batches_, frames_, bytes_};
+  for (const auto& array : arrays_) counts.left_out += array->left_out();
+  return counts;
+}
+
+FramePublisher::FramePublisher(std::unique_ptr<Implementation> implementation)
+    : implementation_(std::move(implementation)) {}
+
+FramePublisher::~FramePublisher() = default;
+
+Result<std::unique_ptr<FramePublisher>> FramePublisher::create(std::vector<bytes::recordings::RecordedArray> arrays,
+                                                               PublisherOptions options) {
+  if (const Status good = check_name("robot", options.robot); !good) return good.error();
+  for (const bytes::recordings::RecordedArray& array : arrays) {
+    if (const Status good = check_name("array", array.name); !good) return good.error();
+  }
+  auto implementation = std::make_unique<Implementation>(std::move(options));
+  if (const Status begun = implementation->begin(std::move(arrays)); !begun) return begun.error();
+  return std::unique_ptr<FramePublisher>(new FramePublisher(std::move(implementation)));
+}
+
+void FramePublisher::publish(std::size_t array, const RawFrame& frame) {
+  implementation_->publish(array, frame);
+}
+
+void FramePublisher::publish_contacts(std::size_t array, Nanos time, std::span<const std::uint8_t> message) {
+  implementation_->publish_contacts(array, time, message);
+}
+
+void FramePublisher::publish(const RobotHealth& health) {
+  implementation_->publish(health);
+}
+
+PublisherCounts FramePublisher::counts() const noexcept {
+  return implementation_->counts();
+}
+
+std::uint64_t FramePublisher::left_out(std::size_t array) const noexcept {
+  return implementation_->left_out(array);
+}
+
+}  // namespace dermis::live::fleet

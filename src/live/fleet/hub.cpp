@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/live/fleet/hub.hpp"
+
+#include <chrono>
+#include <string_view>
+#include <utility>
+
+#include "live/fleet/broker.hpp"
+#include "live/fleet/health_json.hpp"
+#include "live/fleet/json_values.hpp"
+#include "live/fleet/parse_utc.hpp"
+#include "live/fleet/streams.hpp"
+
+namespace dermis::live::fleet {
+namespace {
+
+constexpr std::size_t kMostRobots = 1'000'000;
+
+RobotState state_of(const Json& stream) {
+  const Json state = object_at(stream, "state");
+  RobotState robot;
+  robot.name = text_at(object_at(stream, "config"), "name").substr(stream_of("").size());
+  robot.messages = number_at(state, "messages");
+  robot.bytes = number_at(state, "bytes");
+  if (robot.messages > 0) robot.last = parse_utc(text_at(state, "last_ts")).value_or(Nanos{});
+  robot.lag = number_at(object_at(stream, "mirror"), "lag");
+  return robot;
+}
+
+/// null: `then` is not known.
+Json seconds_since(Nanos then, Nanos now) {
+  if (then == Nanos{}) return nullptr;
+  return std::chrono::duration<double>(now - then).count();
+}
+
+}  // namespace
+
+std::string fleet_to_json(const FleetState& fleet, Nanos now) {
+  Json list = Json::array();
+  for (const RobotState& robot : fleet.robots) {
+    Json& json = list.emplace_back();
+    json = {{"name", robot.name},
+            {"messages", robot.messages},
+            {"bytes", robot.bytes},
+            {"age_s", seconds_since(robot.last, now)},
+            {"lag", robot.lag},
+            {"health_age_s", seconds_since(robot.health_time, now)},
+            {"health_error", robot.health_error},
+            {"silent", robot.is_silent(now)}};
+    json["live"] = robot.health ? robot.health->live : "";
+    json["arrays"] = robot.health ? arrays_to_json(robot.health->arrays) : Json::array();
+  }
+  return json_text({{"hub", fleet.hub}, {"error", fleet.error}, {"robots", std::move(list)}});
+}
+
+Hub::Hub(std::unique_ptr<Broker> broker) : broker_(std::move(broker)) {}
+
+Hub::~Hub() = default;
+
+Result<std::unique_ptr<Hub>> Hub::connect(const BrokerAddress& address) {
+  Result<std::unique_ptr<Broker>> broker = connect_broker(address);
+  if (!broker) return broker.error();
+  return std::unique_ptr<Hub>(new Hub(*std::move(broker)));
+}
+
+Status Hub::add_robot(const std::string& name) {
+  if (Status good = check_name("robot", name); !good) return good;
+  return mirror_stream(*broker_, name);
+}
+
+Result<std::vector<RobotState>> Hub::robots() {
+  std::vector<RobotState> robots;
+  for (std::size_t offset = 0, total = 1; offset < total && robots.size() < kMostRobots;) {
+    const Result<std::string> answer = broker_->ask("$JS.API.STREAM.LIST", Json({{"offset", offset}}).dump());
+    if (!answer) return answer.error();
+    const Json list = Json::parse(*answer, nullptr, false);
+    if (!list.is_object() || !list.contains("streams") || !list["streams"].is_array()) break;
+    if (list["streams"].empty()) break;
+    for (const Json& stream : list["streams"]) {
+      const std::string name = text_at(object_at(stream, "config"), "name");
+      if (name.starts_with(stream_of(""))) robots.push_back(state_of(stream));
+    }
+    offset += list["streams"].size();
+    total = number_at(list, "total");
+  }
+  for (RobotState& robot : robots) add_health(robot);
+  return robots;
+}
+
+/// A robot that tells nonsense, or whose stream does not answer, costs no other.
+void Hub::add_health(RobotState& robot) {
+  if (robot.messages == 0 || !check_name("robot", robot.name)) return;
+  const Result<std::optional<StoredMessage>> last = broker_->last(stream_of(robot.name), health_subject_of(robot.name));
+  if (!last) robot.health_error = last.error().message;
+  if (!last || !*last) return;
+  const std::vector<std::uint8_t>& bytes = (*last)->bytes;
+  Result<RobotHealth> health = health_from_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  robot.health_time = (*last)->time;
+  if (health)
+    robot.health = *std::move(health);
+  else
+    robot.health_error = health.error().message;
+}
+
+}  // namespace dermis::live::fleet

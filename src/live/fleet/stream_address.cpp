@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/live/fleet/stream_address.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "dermis/touch/frames/nearest_name.hpp"
+#include "live/fleet/parse_utc.hpp"
+
+namespace dermis::live::fleet {
+namespace {
+
+constexpr std::size_t kMostCharacters = 4096;
+constexpr std::size_t kMostOfAName = 64;
+
+bool is_of_name(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+}
+
+struct ParsedText {
+  std::string url;
+  std::map<std::string, std::string> values;
+};
+
+Error wrong(const std::string& text, const std::string& what) {
+  return bad_input("'" + without_password(text) + "': " + what);
+}
+
+Result<ParsedText> parse(const std::string& text, const std::set<std::string>& known) {
+  if (text.size() > kMostCharacters) return bad_input("an address of NATS is longer than 4096 characters");
+  const std::size_t mark = text.find('?');
+  ParsedText parsed{text.substr(0, mark), {}};
+  if (parsed.url.find("://") == std::string::npos || parsed.url.ends_with("://")) {
+    return wrong(text, "names no server; write nats://HOST or tls://HOST");
+  }
+  std::string rest = mark == std::string::npos ? "" : text.substr(mark + 1);
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find('&'), rest.size());
+    const std::string part = rest.substr(0, end);
+    rest.erase(0, end + 1);
+    const std::size_t equals = part.find('=');
+    const std::string name = part.substr(0, equals);
+    if (!known.contains(name)) {
+      const std::string near = nearest_name(name, known);
+      return wrong(text, "'" + name + "' is no parameter" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+    }
+    if (equals == std::string::npos || equals + 1 == part.size()) return wrong(text, name + ": has no value");
+    if (!parsed.values.emplace(name, part.substr(equals + 1)).second) return wrong(text, name + ": is there twice");
+  }
+  return parsed;
+}
+
+std::string value_of(const ParsedText& parsed, const char* name) {
+  const auto found = parsed.values.find(name);
+  return found == parsed.values.end() ? "" : found->second;
+}
+
+BrokerAddress broker_of(const ParsedText& parsed) {
+  return {parsed.url, value_of(parsed, "ca"), value_of(parsed, "key")};
+}
+
+Result<StreamPlace> place_of(const std::string& text, const std::string& name, const std::string& value,
+                             const std::string& newest) {
+  if (value == newest) return StreamPlace(Newest{});
+  std::uint64_t sequence = 0;
+  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), sequence);
+  if (error == std::errc{} && end == value.data() + value.size() && sequence > 0) return StreamPlace(sequence);
+  if (const std::optional<Nanos> time = parse_utc(value)) return StreamPlace(*time);
+  return wrong(text, name + ": must be a number of the stream from 1 on, a time as 2026-11-28T05:00:00Z, or " + newest);
+}
+
+}  // namespace
+
+bool is_stream_address(std::string_view text) {
+  return text.starts_with("nats:") || text.starts_with("tls:");
+}
+
+Status check_name(const std::string& what, const std::string& name) {
+  if (!name.empty() && name.size() <= kMostOfAName && std::all_of(name.begin(), name.end(), is_of_name)) return Done{};
+  return bad_input(what + ": '" + name + "' must be 1 to 64 letters, digits, '_' or '-'");
+}
+
+Result<BrokerAddress> parse_broker_address(const std::string& text) {
+  if (!is_stream_address(text)) return wrong(text, "is no address of NATS; write nats://HOST or tls://HOST");
+  const Result<ParsedText> parsed = parse(text, {"ca", "key"});
+  if (!parsed) return parsed.error();
+  return broker_of(*parsed);
+}
+
+Result<StreamAddress> parse_stream_address(const std::string& text) {
+  const Result<ParsedText> parsed = parse(text, {"robot", "array", "from", "to", "ca", "key"});
+  if (!parsed) return parsed.error();
+  StreamAddress address{.text = without_password(text), .broker = broker_of(*parsed)};
+  address.robot = value_of(*parsed, "robot");
+  address.array = value_of(*parsed, "array");
+  for (const auto& [what, name] : {std::pair("robot", address.robot), std::pair("array", address.array)}) {
+    if (name.empty()) return wrong(text, std::string("lacks ") + what + "=NAME");
+    if (const Status good = check_name(what, name); !good) return wrong(text, good.error().message);
+  }
+  if (const std::string from = value_of(*parsed, "from"); !from.empty()) {
+    const Result<StreamPlace> place = place_of(text, "from", from, "new");
+    if (!place) return place.error();
+    address.from = *place;
+  }
+  if (const std::string to = value_of(*parsed, "to"); !to.empty()) {
+    const Result<StreamPlace> place = place_of(text, "to", to, "last");
+    if (!place) return place.error();
+    address.to = *place;
+    address.ends = true;
+  }
+  if (address.ends && std::holds_alternative<Newest>(address.from)) {
+    return wrong(text, "to: needs from, as from=1&to=last");
+  }
+  return address;
+}
+
+std::string stream_of(const std::string& robot) {
+  return "dermis_" + robot;
+}
+
+std::string subject_of(const std::string& robot, const std::string& array, const char* what) {
+  return "dermis." + robot + "." + array + "." + what;
+}
+
+std::string health_subject_of(const std::string& robot) {
+  return "dermis." + robot + ".health";
+}
+
+}  // namespace dermis::live::fleet

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "dermis/touch/frames/result.hpp"
+#include "live/fleet/broker.hpp"
+
+/// Streams of JetStream (https://docs.nats.io/reference/reference-protocols/nats_api_reference).
+namespace dermis::live::fleet {
+
+/// The stream of a robot, on the disk of its own server. One that is there keeps its settings.
+[[nodiscard]] Status make_stream(Broker& broker, const std::string& robot);
+
+/// A copy of a robot's stream, with the same numbers, which follows that of the robot's server. One that is there
+/// stays.
+[[nodiscard]] Status mirror_stream(Broker& broker, const std::string& robot);
+
+/// Whether the server has a stream of this name.
+[[nodiscard]] Result<bool> has_stream(Broker& broker, const std::string& name);
+
+/// A stream from which a message is away when a worker has acknowledged it, and its consumer of the same name. Another
+/// worker gets a message that is not acknowledged within the lease of its try; later tries have the last one.
+[[nodiscard]] Status make_work_queue(Broker& broker, const std::string& name, const std::string& subject,
+                                     std::span<const std::chrono::seconds> leases);
+
+/// A stream that keeps the last message of each subject.
+[[nodiscard]] Status make_log(Broker& broker, const std::string& name, const std::string& subjects);
+
+}  // namespace dermis::live::fleet

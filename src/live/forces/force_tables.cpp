@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/live/forces/force_tables.hpp"
+
+#include <utility>
+
+namespace dermis::live::forces {
+namespace {
+
+Status create_table(std::optional<bytes::files::ForcesCsvWriter>& table, const std::string& path,
+                    const ArrayDescription& array, bytes::files::ForceColumn column) {
+  if (path.empty()) return Done{};
+  Result<bytes::files::ForcesCsvWriter> created =
+      bytes::files::ForcesCsvWriter::create(path, array.rows, array.cols, column);
+  if (!created) return created.error();
+  table.emplace(std::move(*created));
+  return Done{};
+}
+
+}  // namespace
+
+Result<ForceTables> ForceTables::create(const ForceTablePaths& paths, const touch::pipeline::Model& model) {
+  const ArrayDescription& array = model.array;
+  ForceTables tables;
+  const Status forces = create_table(tables.forces_, paths.forces, array, bytes::files::ForceColumn::newtons);
+  if (!forces) return forces.error();
+  const Status sigmas = create_table(tables.sigmas_, paths.sigmas, array, bytes::files::ForceColumn::sigma_newtons);
+  if (!sigmas) return sigmas.error();
+  if (!paths.totals.empty()) {
+    Result<bytes::files::TotalsCsvWriter> totals = bytes::files::TotalsCsvWriter::create(paths.totals);
+    if (!totals) return totals.error();
+    tables.totals_.emplace(*std::move(totals));
+  }
+  if (paths.contacts.empty()) return tables;
+  Result<bytes::files::ContactsCsvWriter> contacts = bytes::files::ContactsCsvWriter::create(paths.contacts);
+  if (!contacts) return contacts.error();
+  tables.contacts_.emplace(ContactTable{touch::contacts::ContactTracker(array, {}, model.strip), *std::move(contacts)});
+  return tables;
+}
+
+Status ForceTables::write(const ForceFrame& force) {
+  return for_each([&](auto& table) { return table.write(force); });
+}
+
+Status ForceTables::commit() {
+  return for_each([](auto& table) { return table.commit(); });
+}
+
+/// Until one fails.
+template <typename Work>
+Status ForceTables::for_each(Work work) {
+  Status status = Done{};
+  if (forces_) status = work(*forces_);
+  if (status && sigmas_) status = work(*sigmas_);
+  if (status && totals_) status = work(*totals_);
+  if (status && contacts_) status = work(*contacts_);
+  return status;
+}
+
+Status ForceTables::ContactTable::write(const ForceFrame& force) {
+  tracker.process(force, report);
+  return table.write(report);
+}
+
+}  // namespace dermis::live::forces

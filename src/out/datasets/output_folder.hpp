@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "dermis/touch/frames/result.hpp"
+
+namespace dermis::out::datasets {
+
+/// A folder that appears complete or not at all: it grows beside its place under another name. Not thread-safe.
+class OutputFolder {
+ public:
+  /// Fails where the folder exists and is not empty.
+  [[nodiscard]] static Result<std::unique_ptr<OutputFolder>> create(const std::string& folder);
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+  /// Without commit(), all is removed.
+  ~OutputFolder();
+
+  /// Where the file of this relative name is until then; its folder is made.
+  [[nodiscard]] std::string place(const std::string& name) const;
+  [[nodiscard]] Status write(const std::string& name, std::string_view bytes) const;
+  [[nodiscard]] Status commit();
+
+ private:
+  OutputFolder(std::string target, std::string unfinished)
+      : target_(std::move(target)), unfinished_(std::move(unfinished)) {}
+
+  std::string target_;
+  std::string unfinished_;  ///< Empty after commit().
+};
+
+}  // namespace dermis::out::datasets

@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/out/serve/array_setup.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "dermis/bytes/files/array_toml.hpp"
+#include "out/serve/requests/array_request.hpp"
+#include "out/serve/requests/json_request.hpp"
+#include "out/serve/setup/first_look.hpp"
+#include "out/serve/setup/known_arrays.hpp"
+#include "out/serve/setup/layout_proposals.hpp"
+#include "out/serve/setup/source_choice.hpp"
+#include "out/serve/setup/touch_watch.hpp"
+
+namespace dermis::out::serve {
+namespace {
+
+using live::sources::SourceName;
+using nlohmann::ordered_json;
+
+constexpr std::chrono::milliseconds kPeriod{50};
+constexpr std::chrono::milliseconds kToAnswer{300};  // until a client has what it asked for
+constexpr std::size_t kMostFileName = 255;
+constexpr std::size_t kMostShown = 256;  // bytes of which no frame was made
+constexpr const char* kNoSource = "choose where the array is first";
+
+/// /suit.json of an array that is not described yet.
+std::string suit_json(const std::optional<SourceName>& name, const FirstLook& found) {
+  ordered_json json;
+  json["name"] = "";
+  json["arrays"] = ordered_json::array();
+  ordered_json& setup = json["setup"];
+  setup["from"] = name ? name->text : "";
+  setup["turnable"] = name && name->kind != live::sources::SourceKind::recording;
+  setup["readable"] = found.has_frames;
+  setup["rows"] = found.shape ? ordered_json(found.shape->rows) : ordered_json();
+  setup["cols"] = found.shape ? ordered_json(found.shape->cols) : ordered_json();
+  setup["message"] = found.message;
+  setup["bytes"] = hex_of(std::span(found.bytes).first(std::min(found.bytes.size(), kMostShown)));
+  return json_text(json);
+}
+
+Result<std::string> list_known() {
+  ordered_json answer;
+  answer["arrays"] = ordered_json::array();
+  for (const KnownArray& known : known_arrays()) {
+    answer["arrays"].push_back({{"file", known.file},
+                                {"name", known.array.name},
+                                {"rows", known.array.rows},
+                                {"cols", known.array.cols},
+                                {"calibrated", known.is_calibrated}});
+  }
+  return json_text(answer);
+}
+
+/// Missing readings are null.
+ordered_json counts_json(const std::vector<float>& counts) {
+  ordered_json json = ordered_json::array();
+  for (const float count : counts) json.push_back(std::isfinite(count) ? ordered_json(count) : ordered_json());
+  return json;
+}
+
+}  // namespace
+
+class ArraySetup::Implementation {
+ public:
+  /// `name`: empty where clients choose it.
+  Implementation(std::unique_ptr<websocket::Server> server, std::optional<SourceName> name, const FirstLook& found,
+                 live::sources::SourceOptions options)
+      : name_(std::move(name)), options_(std::move(options)), server_(std::move(server)) {
+    const bool is_chosen = name_.has_value();
+    show(found);
+    server_->start({}, services(!is_chosen));
+  }
+
+  [[nodiscard]] std::uint16_t port() const noexcept { return server_->port(); }
+
+  DescribedArray run(const std::atomic<bool>& stop) {
+    while (!stop) {
+      if (DescribedArray array = described(); !array.model.empty()) {
+        std::this_thread::sleep_for(kToAnswer);
+        return array;
+      }
+      std::this_thread::sleep_for(kPeriod);
+    }
+    return {};
+  }
+
+ private:
+  using Call = Result<std::string> (Implementation::*)(std::string_view);
+
+  std::vector<websocket::Service> services(bool with_choice) {
+    const auto service = [this](const char* name, Call call) {
+      return websocket::Service{name, [this, call](std::string_view request) { return (this->*call)(request); }};
+    };
+    std::vector<websocket::Service> services = {service("/array/describe", &Implementation::describe),
+                                                service("/array/use", &Implementation::use),
+                                                service("/array/watch", &Implementation::watch),
+                                                service("/array/touch", &Implementation::touch),
+                                                service("/layout/propose", &Implementation::propose),
+                                                service("/layout/use", &Implementation::use_layout),
+                                                service("/source/look", &Implementation::look),
+                                                {"/array/known", [](std::string_view) { return list_known(); }}};
+    if (!with_choice) return services;
+    services.push_back({"/source/list", [](std::string_view) { return Result<std::string>(source_choices()); }});
+    services.push_back(service("/source/open", &Implementation::open));
+    services.push_back(service("/source/leave", &Implementation::leave));
+    return services;
+  }
+
+  void show(const FirstLook& found) {
+    unread_ = found.bytes;
+    server_->set_document("/suit.json", "application/json", suit_json(name_, found));
+  }
+
+  [[nodiscard]] DescribedArray described() {
+    const std::lock_guard lock(mutex_);
+    return described_;
+  }
+
+  Result<std::string> open(std::string_view request) {
+    Result<SourceName> name = source_request(request);
+    if (!name) return name.error();
+    return look_at(*std::move(name));
+  }
+
+  Result<std::string> look(std::string_view /*request*/) {
+    if (!name_) return bad_input(kNoSource);
+    return look_at(*name_);
+  }
+
+  /// A source that cannot be opened is not taken.
+  Result<std::string> look_at(SourceName name) {
+    watch_.reset();  // a device can be opened once
+    const Result<FirstLook> found = first_look(name, options_);
+    if (!found) return found.error();
+    name_ = std::move(name);
+    show(*found);
+    return json_text(nlohmann::json{{"from", name_->text}});
+  }
+
+  /// Another source may be chosen.
+  Result<std::string> leave(std::string_view /*request*/) {
+    watch_.reset();
+    name_.reset();
+    show({});
+    return std::string("{}");
+  }
+
+  Result<std::string> describe(std::string_view request) {
+    if (!name_) return bad_input(kNoSource);
+    const Result<ArrayDescription> array = array_request(request);
+    if (!array) return array.error();
+    const std::string path = array->name + ".toml";
+    std::error_code ignored;
+    if (std::filesystem::exists(path, ignored)) {
+      return bad_field("name", path + " is there already: choose another name, or take the array from last time");
+    }
+    if (Status sends = check_frames(*array); !sends) return sends.error();
+    if (Status written = bytes::files::write_array(path, *array); !written) return written.error();
+    return serve_as(path);
+  }
+
+  /// {"file": "mat.safetensors"}, one of those that are known.
+  Result<std::string> use(std::string_view text) {
+    if (!name_) return bad_input(kNoSource);
+    const Result<JsonRequest> request = JsonRequest::parse(text);
+    if (!request) return request.error();
+    const Result<std::string> file = request->text("file", kMostFileName);
+    if (!file) return file.error();
+    const Result<KnownArray> known = known_array(*file);
+    if (!known) return known.error();
+    if (name_->kind == live::sources::SourceKind::recording) {
+      if (const auto suit = open_suit({.from = name_->text, .model = known->file}, options_); !suit)
+        return suit.error();
+    }
+    if (Status sends = check_frames(known->array); !sends) return sends.error();
+    return serve_as(known->file);
+  }
+
+  Result<std::string> serve_as(const std::string& model) {
+    const std::lock_guard lock(mutex_);
+    described_ = {name_->text, model};
+    return json_text(nlohmann::json{{"file", model}});
+  }
+
+  /// Waits for a frame of such an array: a source without one is not served, as its map would stay blank. Those of
+  /// recordings are turned already.
+  Status check_frames(const ArrayDescription& array) {
+    const FrameShape shape{array.rows, array.cols};
+    const FrameShape sent = name_->kind == live::sources::SourceKind::recording ? shape : array.order.sent(shape);
+    if (!watch_ || watch_->shape() != sent) begin_watch(sent);
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    for (;;) {
+      const TouchWatch::Seen seen = watch_->seen();
+      if (seen.frames > 0) return Done{};
+      if (!seen.problem.empty()) return bad_input(seen.problem);
+      const bool is_stopped = options_.stop != nullptr && *options_.stop;
+      if (is_stopped || std::chrono::steady_clock::now() > end) {
+        return bad_input(fmt::format("no frame of {}x{} readings came within 8 s", sent.rows, sent.cols));
+      }
+      std::this_thread::sleep_for(kPeriod);
+    }
+  }
+
+  void begin_watch(FrameShape shape) {
+    watch_.reset();  // a device can be opened once
+    watch_ = std::make_unique<TouchWatch>(*name_, shape, options_);
+  }
+
+  /// Layouts of the bytes of which no frame was made; `text` has what the client knows of the array.
+  Result<std::string> propose(std::string_view text) {
+    const Result<JsonRequest> request = JsonRequest::parse(text);
+    if (!request) return request.error();
+    const Result<bytes::proposals::Known> known = known_request(*request);
+    if (!known) return known.error();
+    return layout_proposals(unread_, *known);
+  }
+
+  /// {"name": "mat", "place": 0} and what the client knows: writes that layout, by which the source is then read.
+  Result<std::string> use_layout(std::string_view text) {
+    if (!name_ || !name_->uri) return bad_input(kNoSource);
+    const Result<JsonRequest> request = JsonRequest::parse(text);
+    if (!request) return request.error();
+    const Result<bytes::proposals::Known> known = known_request(*request);
+    if (!known) return known.error();
+    const Result<std::string> name = request->file_name("name");
+    if (!name) return name.error();
+    const Result<std::optional<std::uint64_t>> place = request->number("place", "that of a proposal");
+    if (!place) return place.error();
+    const std::string file = *name + ".layout.toml";
+    const Result<std::string> array = write_layout(unread_, *known, place->value_or(0), file);
+    if (!array) return array.error();
+    const std::string& from = name_->text;
+    Result<SourceName> described = SourceName::parse(from + (from.find('?') == std::string::npos ? "?" : "&") +
+                                                     "layout=" + file + (array->empty() ? "" : "&array=" + *array));
+    if (!described) return described.error();
+    return look_at(*std::move(described));
+  }
+
+  /// From now on touch() gives the sent readings; `request` has their shape.
+  Result<std::string> watch(std::string_view request) {
+    if (!name_) return bad_input(kNoSource);
+    const Result<FrameShape> shape = shape_request(request);
+    if (!shape) return shape.error();
+    begin_watch(*shape);
+    return std::string("{}");
+  }
+
+  Result<std::string> touch(std::string_view /*request*/) {
+    if (!watch_) return bad_input("nothing is watched");
+    const TouchWatch::Seen seen = watch_->seen();
+    const std::size_t cols = watch_->shape().cols;
+    ordered_json answer;
+    answer["ready"] = seen.is_ready;
+    answer["touched"] = seen.taxel ? ordered_json{*seen.taxel / cols, *seen.taxel % cols} : ordered_json();
+    answer["problem"] = seen.problem;
+    answer["counts"] = counts_json(seen.counts);
+    return json_text(answer);
+  }
+
+  std::mutex mutex_;
+  DescribedArray described_;
+  std::optional<SourceName> name_;  // this and the rest: of the services, which are called one at a time
+  live::sources::SourceOptions options_;
+  std::vector<std::uint8_t> unread_;   // of which no frame was made
+  std::unique_ptr<TouchWatch> watch_;  // null: nobody asked for it
+  std::unique_ptr<websocket::Server> server_;
+};
+
+Result<std::unique_ptr<ArraySetup>> ArraySetup::create(const std::string& from, const SessionOptions& options,
+                                                       live::sources::SourceOptions source_options) {
+  if (from.empty() && !options.server.is_local()) {
+    return bad_input("host: others reach this server, so clients may not choose a device; name its URI");
+  }
+  std::optional<SourceName> name;
+  FirstLook found;
+  if (!from.empty()) {
+    Result<SourceName> parsed = SourceName::parse(from);
+    if (!parsed) return parsed.error();
+    name = *std::move(parsed);
+    Result<FirstLook> looked = first_look(*name, source_options);
+    if (!looked) return looked.error();
+    found = *std::move(looked);
+  }
+  Result<std::unique_ptr<websocket::Server>> server = websocket::Server::create(options.server, options.page);
+  if (!server) return server.error();
+  return std::unique_ptr<ArraySetup>(new ArraySetup(
+      std::make_unique<Implementation>(*std::move(server), std::move(name), found, std::move(source_options))));
+}
+
+ArraySetup::ArraySetup(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}
+
+ArraySetup::~ArraySetup() = default;
+
+std::uint16_t ArraySetup::port() const noexcept {
+  return implementation_->port();
+}
+
+DescribedArray ArraySetup::run(const std::atomic<bool>& stop) {
+  return implementation_->run(stop);
+}
+
+}  // namespace dermis::out::serve

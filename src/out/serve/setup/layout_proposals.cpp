@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "out/serve/setup/layout_proposals.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "dermis/bytes/files/atomic_file.hpp"
+#include "dermis/bytes/layouts/layout.hpp"
+#include "dermis/touch/frames/array_description.hpp"
+
+namespace dermis::out::serve {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::size_t kMostShown = 1024;  // bytes
+
+const char* name_of(bytes::layouts::Role role) {
+  using bytes::layouts::Role;
+  switch (role) {
+    case Role::literal: return "mark";
+    case Role::values: return "values";
+    case Role::time:
+    case Role::clock:
+    case Role::datetime: return "time";
+    case Role::row:
+    case Role::col:
+    case Role::first:
+    case Role::count:
+    case Role::array:
+    case Role::frame: return "number";
+    case Role::checksum: return "checksum";
+    default: return "other";
+  }
+}
+
+ordered_json parts_json(const std::vector<bytes::proposals::Part>& parts) {
+  ordered_json json = ordered_json::array();
+  for (const bytes::proposals::Part& part : parts) {
+    if (part.begin >= kMostShown) continue;
+    json.push_back({part.begin, std::min(part.end, kMostShown), name_of(part.role)});
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string hex_of(std::span<const std::uint8_t> bytes) {
+  std::string hex;
+  for (const std::uint8_t byte : bytes) hex += fmt::format("{:02x}", byte);
+  return hex;
+}
+
+Result<bytes::proposals::Known> known_request(const JsonRequest& request) {
+  bytes::proposals::Known known;
+  for (const auto& [field, lines] : {std::pair{"rows", &known.rows}, {"cols", &known.cols}}) {
+    const Result<std::optional<std::uint64_t>> number = request.number(field, "1 to 1024");
+    if (!number) return number.error();
+    if (*number && (**number < 1 || **number > kMaxLines)) return bad_field(field, "must be 1 to 1024");
+    if (*number) *lines = **number;
+  }
+  return known;
+}
+
+std::string layout_proposals(std::span<const std::uint8_t> bytes, const bytes::proposals::Known& known) {
+  ordered_json answer = {{"bytes", hex_of(bytes.first(std::min(bytes.size(), kMostShown)))},
+                         {"proposals", ordered_json::array()}};
+  for (const bytes::proposals::Proposal& proposal : bytes::proposals::propose(bytes, known)) {
+    answer["proposals"].push_back({{"summary", proposal.summary},
+                                   {"layout", proposal.toml},
+                                   {"reasons", proposal.reasons},
+                                   {"left_over", proposal.left_over},
+                                   {"open", proposal.open},
+                                   {"rows", proposal.shape.rows},
+                                   {"cols", proposal.shape.cols},
+                                   {"frames", proposal.frames},
+                                   {"example", proposal.example},
+                                   {"parts", parts_json(proposal.parts)}});
+  }
+  return json_text(answer);
+}
+
+Result<std::string> write_layout(std::span<const std::uint8_t> bytes, const bytes::proposals::Known& known,
+                                 std::size_t place, const std::string& file) {
+  const std::vector<bytes::proposals::Proposal> proposals = bytes::proposals::propose(bytes, known);
+  if (place >= proposals.size()) return bad_input("no such layout reads these bytes");
+  std::error_code ignored;
+  if (std::filesystem::exists(file, ignored)) return bad_field("name", file + " is there already: choose another name");
+  Result<bytes::files::AtomicFile> written = bytes::files::AtomicFile::create(file);
+  if (!written) return written.error();
+  written->write(proposals[place].toml);
+  if (Status committed = written->commit(); !committed) return committed.error();
+  const Result<bytes::layouts::Layout> layout = bytes::layouts::layout_from_toml(proposals[place].toml, file);
+  return layout ? Result<std::string>(layout->arrays.front().name) : Result<std::string>(layout.error());
+}
+
+}  // namespace dermis::out::serve

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "dermis/bytes/proposals/proposals.hpp"
+#include "dermis/touch/frames/result.hpp"
+#include "out/serve/requests/json_request.hpp"
+
+namespace dermis::out::serve {
+
+/// Two digits a byte.
+[[nodiscard]] std::string hex_of(std::span<const std::uint8_t> bytes);
+
+/// {"rows": 8, "cols": 8}: what a client knows; either may be missing.
+[[nodiscard]] Result<bytes::proposals::Known> known_request(const JsonRequest& request);
+
+/// Layouts of the bytes, for a client: {"bytes": hexadecimal, "proposals": [{"summary", "layout", "reasons",
+/// "left_over", "open", "rows", "cols", "frames", "example", "parts": [[begin, end, "values"], ...]}, ...]}. The bytes
+/// are the first 1024, and parts are of these.
+[[nodiscard]] std::string layout_proposals(std::span<const std::uint8_t> bytes, const bytes::proposals::Known& known);
+
+/// Writes the layout at that place as `file`, which must not be there. Returns the name of its first array; empty where
+/// it has but one.
+[[nodiscard]] Result<std::string> write_layout(std::span<const std::uint8_t> bytes,
+                                               const bytes::proposals::Known& known, std::size_t place,
+                                               const std::string& file);
+
+}  // namespace dermis::out::serve

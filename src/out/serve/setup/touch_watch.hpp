@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "dermis/live/sources/open_source.hpp"
+#include "dermis/touch/frames/frame_source.hpp"
+
+namespace dermis::out::serve {
+
+/// Reads a source as long as it lives, for its readings and for where the array is touched. A recording is read at its
+/// own pace. Thread-safe.
+class TouchWatch {
+ public:
+  struct Seen {
+    std::uint64_t frames = 0;            ///< So far; 0: `counts` is empty.
+    std::vector<float> counts{};         ///< Of the newest frame, row-major.
+    bool is_ready = false;               ///< The readings at rest are known.
+    std::optional<std::size_t> taxel{};  ///< That is touched, row-major.
+    std::string problem{};               ///< Why the source gives no frames (any more).
+  };
+
+  /// `shape`: of the frames. The options `array` and `stop` are not used.
+  TouchWatch(live::sources::SourceName name, FrameShape shape, live::sources::SourceOptions options);
+  TouchWatch(const TouchWatch&) = delete;
+  TouchWatch& operator=(const TouchWatch&) = delete;
+  ~TouchWatch();
+
+  [[nodiscard]] FrameShape shape() const noexcept { return shape_; }
+  [[nodiscard]] Seen seen() const;
+
+ private:
+  [[nodiscard]] Status watch(live::sources::SourceOptions options);
+  void keep(Seen seen);
+
+  const live::sources::SourceName name_;
+  const FrameShape shape_;
+  mutable std::mutex mutex_;
+  Seen seen_;
+  std::atomic<bool> stop_ = false;
+  std::thread thread_;
+};
+
+}  // namespace dermis::out::serve

@@ -1,0 +1,375 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "touch/compensation/grounded_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+#include "dermis/touch/frames/processor_clones.hpp"
+#include "touch/compensation/readout_parts.hpp"
+#include "touch/compensation/sensed_line.hpp"
+#include "touch/compensation/shorted_crossings.hpp"
+
+namespace dermis::touch::compensation {
+namespace {
+
+constexpr double kLeastSteps = 200.0;  // of a frame where steps are bounded
+constexpr double kMixedWork = 8.0;     // of a mixed step beside a plain one
+constexpr int kPlainSteps = 24;
+constexpr double kShrinks = 0.95;  // of the certificate in a step; what shrinks less is left to the mixing
+constexpr int kMixedSteps = 400;
+constexpr int kDampedSteps = 200;
+constexpr int kStepsWithoutGain = 60;
+constexpr int kRoundedStepsWithoutGain = 5;
+constexpr double kRough = 1e-4;     // certificate, above which single precision shows the way as well
+constexpr double kRounded = 1e-12;  // certificate; what is left of it is rounding
+constexpr std::size_t kMixingDepth = 8;
+constexpr double kLeastSiemens = 1e-12;  // held at 0 below
+constexpr double kSourceShare = 1e-3;    // of the tolerance, to which the sources' column voltages are found
+constexpr int kSourcePasses = 200;
+constexpr double kMostLogStep = 2.0;
+constexpr double kMostLogResidual = 2.302585092994046;  // ln 10
+
+DERMIS_PROCESSOR_CLONES bool any_is_missing(std::span<const double> ratio) {
+  const double* const readings = ratio.data();
+  std::uint64_t missing = 0;
+  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) missing |= readings[taxel] != readings[taxel] ? 1 : 0;
+  return missing != 0;
+}
+
+}  // namespace
+
+GroundedRows::Sources::Sources(std::size_t stride)
+    : siemens(stride), column_ratio(stride), column_return(stride), column_sum(stride) {}
+
+GroundedRows::Mixing::Mixing(std::size_t size)
+    : anderson(size, kMixingDepth), log_siemens(size), last_log_siemens(size), log_step(size) {}
+
+GroundedRows::GroundedRows(const ArrayDescription& array, double tolerance_ratio, const InversionOptions& options)
+    : tolerance_(tolerance_ratio),
+      budget_(options.is_bounded ? kLeastSteps : 0.0),
+      state_(array.rows, array.cols, array.readout.idle_columns),
+      reading_siemens_(state_.stride),
+      offset_siemens_(state_.stride),
+      sources_(state_.stride),
+      last_estimate_(state_.siemens.size()),
+      best_siemens_(state_.siemens.size()),
+      best_explained_(state_.siemens.size()),
+      mixing_(state_.siemens.size()),
+      sigma_column_(state_.stride) {
+  state_.kept.reserve(array.taxel_count());
+  state_.shorted.reserve(array.cols);
+  joined_.pairs.reserve(array.rows);
+  const Readout& readout = array.readout;
+  state_.drive_ohm = joined_.drive_ohm = readout.drive_ohm;
+  const double weakest_driver = *std::max_element(state_.drive_ohm.begin(), state_.drive_ohm.end());
+  const bool one_loaded = readout.idle_columns == IdleColumns::floating;
+  const auto cols = static_cast<std::ptrdiff_t>(array.cols);
+  for (std::size_t col = 0; col < array.cols; ++col) {
+    const SensedLine sensed = sensed_line(readout, col);
+    reading_siemens_[col] = 1.0 / sensed.gain;
+    offset_siemens_[col] = -sensed.offset / sensed.gain;
+    state_.column_ohm[col] = sensed.rho;
+    state_.certificate_ratio[col] = (one_loaded ? 1.0 + weakest_driver / sensed.rho : 1.0) * sensed.gain;
+  }
+  if (options.counts_driver_errors && !is_absent(readout.drive_error_ohm)) {
+    driver_error_.emplace(array, std::vector<double>(state_.column_ohm.begin(), state_.column_ohm.begin() + cols));
+  }
+  if (is_absent(readout.amplifier_offset_v)) return;
+  sources_.ratio.resize(state_.stride);
+  for (std::size_t col = 0; col < array.cols; ++col) sources_.ratio[col] = sensed_line(readout, col).emf;
+}
+
+double GroundedRows::siemens_per_ratio() const noexcept {
+  return *std::max_element(reading_siemens_.begin(), reading_siemens_.end());
+}
+
+InversionResult GroundedRows::invert(std::span<const double> ratio, std::span<double> siemens) noexcept {
+  std::swap(state_.estimate, last_estimate_);
+  load(ratio, siemens);
+  estimate_from_readings(state_);
+  if (has_last_) {
+    start_warm(state_, last_estimate_);
+  } else {
+    start_cold(state_);
+  }
+  double certificate = iterate();
+  if (!(certificate <= tolerance_)) certificate = iterate_with_mixing(certificate, 0);
+  if (!(certificate <= std::max(tolerance_, kRounded))) certificate = iterate_with_mixing(certificate, kDampedSteps);
+  const bool solved = certificate <= std::max(tolerance_, kRounded);
+  if (solved) budget_.learn();
+  if (!solved) start_anew();
+  has_last_ = solved;
+  for (std::size_t row = 0; row < state_.rows; ++row) {
+    std::copy_n(&state_.siemens[row * state_.stride], state_.cols, &siemens[row * state_.cols]);
+  }
+  for (const auto& [row, col, is_second] : state_.shorted) {
+    siemens[row * state_.cols + col] = (1.0 / state_.column_part[col] - 1.0) / state_.column_ohm[col];
+  }
+  if (!solved) {
+    std::replace_if(
+        siemens.begin(), siemens.end(), [](double value) { return !std::isfinite(value); }, 0.0);
+  }
+  return {solved, certificate};
+}
+
+bool GroundedRows::set_shorted(std::span<const std::size_t> taxels) noexcept {
+  state_.shorted.clear();
+  joined_.pairs.clear();
+  state_.drive_ohm = joined_.drive_ohm;
+  const bool can = sources_.ratio.empty() && std::all_of(taxels.begin(), taxels.end(), [&](std::size_t taxel) {
+                     return add_shorted(taxel / state_.cols, taxel % state_.cols);
+                   });
+  if (can) return true;
+  state_.shorted.clear();
+  joined_.pairs.clear();
+  state_.drive_ohm = joined_.drive_ohm;
+  return taxels.empty();
+}
+
+/// false: it closes a chain of lines, or the driver holds the column at its voltage.
+bool GroundedRows::add_shorted(std::size_t row, std::size_t col) noexcept {
+  if (joined_.drive_ohm[row] == 0.0) return false;
+  const auto in_row = [&](const auto& crossing) { return crossing.row == row; };
+  const auto in_col = [&](const auto& crossing) { return crossing.col == col; };
+  const auto is_joined = [&](const JoinedRows::Pair& pair) { return pair.other == row; };
+  const bool row_is_shorted = std::any_of(state_.shorted.begin(), state_.shorted.end(), in_row);
+  const auto column = std::find_if(state_.shorted.begin(), state_.shorted.end(), in_col);
+  if (std::any_of(joined_.pairs.begin(), joined_.pairs.end(), is_joined)) return false;
+  if (column == state_.shorted.end()) {
+    state_.shorted.push_back({row, col, row_is_shorted});
+    return true;
+  }
+  double& first_ohm = state_.drive_ohm[column->row];
+  if (row_is_shorted) return false;
+  joined_.pairs.push_back({column->row, row});
+  first_ohm = 1.0 / (1.0 / first_ohm + 1.0 / joined_.drive_ohm[row]);
+  return true;
+}
+
+void GroundedRows::forget() noexcept {
+  start_anew();
+  budget_.forget();
+}
+
+void GroundedRows::start_anew() noexcept {
+  has_last_ = false;
+  first_precision_ = Precision::full;
+  std::fill(sources_.siemens.begin(), sources_.siemens.end(), 0.0);
+  std::fill(sources_.column_ratio.begin(), sources_.column_ratio.end(), 0.0);
+}
+
+/// y of the readings, with what the sources drove into the array in the last frame.
+void GroundedRows::load(std::span<const double> ratio, std::span<const double> siemens) noexcept {
+  load_readings(ratio);
+  state_.kept.clear();
+  if (any_is_missing(ratio)) keep_missing(ratio, siemens);
+  if (!state_.shorted.empty()) load_shorted();
+}
+
+DERMIS_PROCESSOR_CLONES void GroundedRows::load_readings(std::span<const double> ratio) noexcept {
+  const double* const siemens = reading_siemens_.data();
+  const double* const offset = offset_siemens_.data();
+  const double* const of_sources = sources_.siemens.data();
+  for (std::size_t row = 0; row < state_.rows; ++row) {
+    const double* const readings = &ratio[row * state_.cols];
+    double* const measured = &state_.measured[row * state_.stride];
+    for (std::size_t col = 0; col < state_.cols; ++col) {
+      measured[col] = siemens[col] * readings[col] + offset[col] + of_sources[col];
+    }
+  }
+}
+
+void GroundedRows::keep_missing(std::span<const double> ratio, std::span<const double> siemens) noexcept {
+  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
+    if (std::isnan(ratio[taxel])) state_.kept.push_back({taxel / state_.cols, taxel % state_.cols, siemens[taxel]});
+  }
+}
+
+/// Joined rows are driven together; of the second of them nothing is left. Where one has no reading, both are kept.
+void GroundedRows::load_shorted() noexcept {
+  const auto is_kept = [&](std::size_t row, std::size_t col) {
+    return std::any_of(state_.kept.begin(), state_.kept.end(),
+                       [&](const auto& taxel) { return taxel.row == row && taxel.col == col; });
+  };
+  for (const auto& [first, other] : joined_.pairs) {
+    for (auto& taxel : state_.kept) {
+      if (taxel.row == other && !is_kept(first, taxel.col)) taxel.row = first;
+    }
+    std::erase_if(state_.kept, [row = other](const auto& taxel) { return taxel.row == row; });
+    for (std::size_t col = 0; col < state_.cols; ++col) {
+      double& reading = state_.measured[other * state_.stride + col];
+      state_.measured[first * state_.stride + col] += reading;
+      reading = 0.0;
+    }
+  }
+  take_loads_away(state_);
+}
+
+double GroundedRows::certify(Precision precision) noexcept {
+  const bool settled = sources_.ratio.empty() || follow_sources();
+  const double certificate = assess(state_, precision);
+  return settled ? certificate : std::numeric_limits<double>::infinity();
+}
+
+/// Puts into y what the sources drive into the array at the present G, all rows grounded. Eliminating the rows as in
+/// (b) leaves v = diag(w) (e + RL G^T diag(Rd / a) G v) for the columns, a contraction. Whether it settled.
+bool GroundedRows::follow_sources() noexcept {
+  int pass = 0;
+  double change = std::numeric_limits<double>::infinity();
+  double last_change = change;
+  do {
+    last_change = change;
+    change = 0.0;
+    find_row_currents();
+    for (std::size_t col = 0; col < state_.cols; ++col) {
+      const double ratio =
+          (sources_.ratio[col] + state_.column_ohm[col] * sources_.column_return[col]) * state_.column_part[col];
+      change = std::max(change, std::abs(ratio - sources_.column_ratio[col]));
+      sources_.column_ratio[col] = ratio;
+    }
+  } while (change > kSourceShare * tolerance_ && change < last_change && ++pass < kSourcePasses);
+  find_row_currents();
+  for (std::size_t col = 0; col < state_.cols; ++col) {
+    const double current = sources_.column_ratio[col] * sources_.column_sum[col] - sources_.column_return[col];
+    for (std::size_t row = 0; row < state_.rows; ++row) {
+      const std::size_t k = row * state_.stride + col;
+      const bool held = state_.explained[k] > state_.measured[k];
+      state_.measured[k] += current - sources_.siemens[col];
+      state_.explained[k] = held ? std::max(state_.explained[k], state_.measured[k]) : state_.measured[k];
+      state_.dropped[k] = state_.drive_ohm[row] * state_.explained[k];
+    }
+    sources_.siemens[col] = current;
+  }
+  return pass < kSourcePasses;
+}
+
+/// G^T diag(Rd / a) G v and G^T 1.
+void GroundedRows::find_row_currents() noexcept {
+  std::fill(sources_.column_return.begin(), sources_.column_return.end(), 0.0);
+  std::fill(sources_.column_sum.begin(), sources_.column_sum.end(), 0.0);
+  for (std::size_t row = 0; row < state_.rows; ++row) {
+    const double* const siemens = &state_.siemens[row * state_.stride];
+    double current = 0.0;
+    for (std::size_t col = 0; col < state_.cols; ++col) current += siemens[col] * sources_.column_ratio[col];
+    const double line_ratio = current * state_.drive_ohm[row] / state_.line_gain[row];
+    for (std::size_t col = 0; col < state_.cols; ++col) {
+      sources_.column_return[col] += siemens[col] * line_ratio;
+      sources_.column_sum[col] += siemens[col];
+    }
+  }
+}
+
+/// Certificate of the iterate that it ends with.
+double GroundedRows::iterate() noexcept {
+  double last = std::numeric_limits<double>::infinity();
+  Precision precision = first_precision_;
+  for (int step = 0;; ++step) {
+    const double certificate = certify(precision);
+    const Precision next_precision = certificate > kRough ? Precision::single : Precision::full;
+    if (step == 0) first_precision_ = next_precision;
+    if (certificate <= tolerance_ && precision == Precision::full) return certificate;
+    if (step > 0 && !(certificate < last)) break;
+    if (step == kPlainSteps || certificate > kShrinks * last || !budget_.take(1.0)) {
+      keep();
+      return certificate;
+    }
+    last = certificate;
+    precision = next_precision;
+    std::swap(state_.siemens, best_siemens_);  // advance() writes both anew
+    std::swap(state_.explained, best_explained_);
+    advance(state_);
+  }
+  state_.siemens = best_siemens_;
+  state_.explained = best_explained_;
+  return last;
+}
+
+void GroundedRows::keep() noexcept {
+  best_siemens_ = state_.siemens;
+  best_explained_ = state_.explained;
+}
+
+/// From the start, the first steps halved (docs/derivations.md, below (4)), the others mixed.
+double GroundedRows::iterate_with_mixing(double best, int damped_steps) noexcept {
+  for (std::size_t k = 0; k < mixing_.log_siemens.size(); ++k) {
+    mixing_.log_siemens[k] = std::log(std::max(state_.estimate[k], kLeastSiemens));
+  }
+  mixing_.anderson.forget();
+  int without_gain = 0;
+  for (int step = 0; step < damped_steps + kMixedSteps && best > tolerance_ && budget_.take(kMixedWork); ++step) {
+    take_step();
+    const double certificate = certify(Precision::full);
+    if (certificate < best) {
+      best = certificate;
+      keep();
+      without_gain = 0;
+    }
+    if (step < damped_steps) {
+      mixing_.anderson.forget();
+      without_gain = 0;
+    }
+    if (++without_gain > (best <= kRounded ? kRoundedStepsWithoutGain : kStepsWithoutGain)) break;
+    choose_step();
+  }
+  state_.siemens = best_siemens_;
+  state_.explained = best_explained_;
+  return best;
+}
+
+/// G and y' of ln G.
+void GroundedRows::take_step() noexcept {
+  const double least = std::log(kLeastSiemens);
+  for (std::size_t row = 0; row < state_.rows; ++row) {
+    for (std::size_t col = 0; col < state_.stride; ++col) {
+      const std::size_t k = row * state_.stride + col;
+      const bool held = mixing_.log_siemens[k] <= least;
+      const double caused = state_.returned[k] / state_.line_gain[row];
+      state_.siemens[k] = held ? 0.0 : std::exp(mixing_.log_siemens[k]);
+      state_.explained[k] = held ? std::max(state_.measured[k], caused) : state_.measured[k];
+    }
+  }
+  refresh(state_);
+}
+
+/// The next ln G.
+void GroundedRows::choose_step() noexcept {
+  bool near = true;
+  for (std::size_t row = 0; row < state_.rows; ++row) {
+    for (std::size_t col = 0; col < state_.stride; ++col) {
+      const std::size_t k = row * state_.stride + col;
+      const double undriven = state_.line_gain[row] * state_.measured[k] - state_.returned[k];
+      const double next = std::max(state_.column_scale[col] * undriven, kLeastSiemens);
+      const double change = std::log(next / std::max(state_.siemens[k], kLeastSiemens));
+      mixing_.log_step[k] = std::clamp(change, -kMostLogResidual, kMostLogResidual);
+      near = near && std::abs(change) < kMostLogResidual;
+    }
+  }
+  if (!near) mixing_.anderson.forget();
+  mixing_.last_log_siemens = mixing_.log_siemens;
+  mixing_.anderson.advance(mixing_.log_siemens, mixing_.log_step);
+  for (std::size_t k = 0; k < mixing_.log_siemens.size(); ++k) {
+    const double last = mixing_.last_log_siemens[k];
+    mixing_.log_siemens[k] = std::clamp(mixing_.log_siemens[k], last - kMostLogStep, last + kMostLogStep);
+    mixing_.log_siemens[k] = std::max(mixing_.log_siemens[k], std::log(kLeastSiemens));
+  }
+}
+
+/// Takes the first order of the circuit's equations about the solution, d(S D^-1 y) = d(G diag(w)). The term that
+/// couples a taxel to those of other rows and columns at once is left out:
+///
+///   dG_ij = base_ij + Rd_i G_ij sum_j' base_ij' + RL_j G_ij sum_i' base_i'j,   base_ij = (S D^-1)_ii dy_ij / w_j
+///
+/// Compared with the exact Jacobian it is at most 5 % too large, with one load 8 %. That is for 16x16 taxels of 1-100
+/// kohm, drivers up to 50 ohm, and loads of 100 ohm to 1 kohm. Near a fold of the circuit (see the class) up to three
+/// times too small.
+void GroundedRows::propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept {
+  for (std::size_t col = 0; col < state_.cols; ++col) sigma_column_[col] = sigma_ratio * reading_siemens_[col];
+  spread_noise(state_, sigma_column_, sigma_siemens);
+  if (driver_error_) driver_error_->add(state_.siemens, state_.explained, state_.stride, sigma_siemens);
+}
+
+}  // namespace dermis::touch::compensation

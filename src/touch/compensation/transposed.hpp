@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "dermis/touch/compensation/crosstalk.hpp"
+
+namespace dermis::touch::compensation {
+
+/// The inversion of the same circuit with rows and columns exchanged.
+class Transposed final : public CrosstalkInversion {
+ public:
+  /// `inversion` is for [cols, rows].
+  Transposed(std::unique_ptr<CrosstalkInversion> inversion, std::size_t rows, std::size_t cols)
+      : inversion_(std::move(inversion)), rows_(rows), cols_(cols), ratio_(rows * cols), values_(rows * cols) {
+    shorted_.reserve(rows * cols);
+  }
+
+  [[nodiscard]] InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept override {
+    transpose(ratio, rows_, cols_, ratio_);
+    transpose(siemens, rows_, cols_, values_);
+    const InversionResult result = inversion_->invert(ratio_, values_);
+    transpose(values_, cols_, rows_, siemens);
+    return result;
+  }
+  [[nodiscard]] bool set_shorted(std::span<const std::size_t> taxels) noexcept override {
+    shorted_.clear();
+    for (const std::size_t taxel : taxels) shorted_.push_back(taxel % cols_ * rows_ + taxel / cols_);
+    return inversion_->set_shorted(shorted_);
+  }
+  void start_frame(double share) noexcept override { inversion_->start_frame(share); }
+  void forget() noexcept override { inversion_->forget(); }
+  void propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept override {
+    inversion_->propagate_noise(sigma_ratio, values_);
+    transpose(values_, cols_, rows_, sigma_siemens);
+  }
+  [[nodiscard]] double siemens_per_ratio() const noexcept override { return inversion_->siemens_per_ratio(); }
+
+ private:
+  static void transpose(std::span<const double> from, std::size_t rows, std::size_t cols,
+                        std::span<double> to) noexcept {
+    for (std::size_t row = 0; row < rows; ++row) {
+      for (std::size_t col = 0; col < cols; ++col) to[col * rows + row] = from[row * cols + col];
+    }
+  }
+
+  std::unique_ptr<CrosstalkInversion> inversion_;
+  std::size_t rows_;
+  std::size_t cols_;
+  std::vector<double> ratio_;   // [cols, rows]
+  std::vector<double> values_;  // [cols, rows]
+  std::vector<std::size_t> shorted_;
+};
+
+}  // namespace dermis::touch::compensation
