@@ -58,7 +58,8 @@ class Rules(unittest.TestCase):
         self.write("include/dermis/touch/fusion/force.hpp", HEADER + '#include "dermis/touch/frames/frames.hpp"\n')
         self.write(
             "src/touch/fusion/force.cpp",
-            SPDX + '#include "dermis/touch/frames/frames.hpp"\n#include "touch/fusion/table.hpp"\n#include <tbb/tbb.h>\n',
+            SPDX
+            + '#include "dermis/touch/frames/frames.hpp"\n#include "touch/fusion/table.hpp"\n#include <tbb/tbb.h>\n',
         )
         self.write("src/touch/fusion/table.hpp", HEADER)
         self.write("src/touch/fusion/fit/fit.cpp", FIT)
@@ -99,7 +100,9 @@ class Rules(unittest.TestCase):
         self.expect("the folder plots is not in the table")
 
     def test_a_room_includes_one_that_its_row_does_not_name(self):
-        self.write("src/learn/calibration/calibrate.cpp", CALIBRATION + '#include "dermis/learn/simulation/scene.hpp"\n')
+        self.write(
+            "src/learn/calibration/calibrate.cpp", CALIBRATION + '#include "dermis/learn/simulation/scene.hpp"\n'
+        )
         self.expect("calibration must not include simulation")
 
     def test_a_wing_includes_one_that_its_row_does_not_name(self):
@@ -121,7 +124,10 @@ class Rules(unittest.TestCase):
         self.expect("main.cpp: touch/fusion/table.hpp is private", "calibrate.cpp: touch/fusion/table.hpp is private")
 
     def test_a_plugin_that_knows_more_than_the_room_which_loads_it(self):
-        self.write("plugins/nats/broker.cpp", SPDX + '#include "dermis/touch/frames/frames.hpp"\n#include "live/fleet/broker.hpp"\n')
+        self.write(
+            "plugins/nats/broker.cpp",
+            SPDX + '#include "dermis/touch/frames/frames.hpp"\n#include "live/fleet/broker.hpp"\n',
+        )
         self.expect()
         self.write("plugins/nats/broker.cpp", SPDX + '#include "dermis/touch/fusion/force.hpp"\n')
         self.expect("plugins/nats/broker.cpp: a plugin of live/fleet must not include touch/fusion/force.hpp")

@@ -21,7 +21,19 @@ from source_folders import PRODUCTION
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = (ROOT / "include", ROOT / "src", ROOT / "apps/dermis")
 LIBRARIES = ("/usr/include/eigen3", "/usr/include/hdf5/serial", "/usr/include/cairo", sysconfig.get_path("include"))
-FLAGS = ["-fvisibility=hidden", "-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror", "-fsyntax-only", "-x", "c++", "-"]
+FLAGS = [
+    "-fvisibility=hidden",
+    "-std=c++20",
+    "-Wall",
+    "-Wextra",
+    "-Wpedantic",
+    "-Wconversion",
+    "-Werror",
+    "-fsyntax-only",
+    "-x",
+    "c++",
+    "-",
+]
 
 
 def git(*arguments):

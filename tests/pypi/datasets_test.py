@@ -12,6 +12,7 @@ import sys
 import unittest
 from pathlib import Path
 
+import datasets
 import h5py
 import numpy
 import pandas
@@ -20,8 +21,6 @@ import zarr
 from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
-
-import datasets
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "python"))
 from workspace import CalibratedArray, dermis, main

@@ -11,12 +11,11 @@ import sys
 import unittest.mock
 from pathlib import Path
 
+import datasets
 import numpy
 import pandas
 import pyarrow
 import pyarrow.parquet
-
-import datasets
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "python"))
 import workspace

@@ -159,7 +159,11 @@ class Fields(unittest.TestCase):
 
     def test_a_frame_of_forces(self):
         names = self.named(
-            {name: field for name, field in cpp_struct("touch/frames/frames.hpp", "ForceFrame").items() if name != "sums"}
+            {
+                name: field
+                for name, field in cpp_struct("touch/frames/frames.hpp", "ForceFrame").items()
+                if name != "sums"
+            }
         )
         self.assertEqual(len(names), 6)
         self.assertEqual(sorted(python_properties("ForceFrame")), sorted([*names, "total", "total_sigma"]))
@@ -193,12 +197,17 @@ class Defaults(unittest.TestCase):
         self.assertEqual(found, defaults)
 
     def test_of_contacts(self):
-        self.expect(python_defaults("__init__", "ContactTracker"), "touch/contacts/contact_tracker.hpp", "ContactOptions")
+        self.expect(
+            python_defaults("__init__", "ContactTracker"), "touch/contacts/contact_tracker.hpp", "ContactOptions"
+        )
 
     def test_of_a_server(self):
         found = {name: value for name, value in python_defaults("serve").items() if value is not None}
         self.expect(
-            {name: found[name] for name in ("host", "port")}, "out/websocket/server.hpp", "ServerOptions", ("host", "port")
+            {name: found[name] for name in ("host", "port")},
+            "out/websocket/server.hpp",
+            "ServerOptions",
+            ("host", "port"),
         )
         self.assertEqual(found["token"], "")
 
