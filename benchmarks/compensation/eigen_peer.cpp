@@ -5,7 +5,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
-#include "touch/compensation/peers.hpp"
+#include "compensation/peers.hpp"
 
 namespace dermis::benchmarks {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "touch/compensation/frames.hpp"
+#include "compensation/frames.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -14,13 +14,13 @@
 #include <string>
 #include <vector>
 
+#include "compensation/frames.hpp"
+#include "compensation/methods.hpp"
+#include "compensation/peers.hpp"
 #include "dermis/learn/simulation/readout_circuit.hpp"
 #include "dermis/touch/compensation/crosstalk.hpp"
 #include "rows.hpp"
 #include "support/reference_array.hpp"
-#include "touch/compensation/frames.hpp"
-#include "touch/compensation/methods.hpp"
-#include "touch/compensation/peers.hpp"
 
 namespace dermis::benchmarks {
 namespace {

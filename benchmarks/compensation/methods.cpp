@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "touch/compensation/methods.hpp"
+#include "compensation/methods.hpp"
 
 #include <fmt/core.h>
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "touch/compensation/peers.hpp"
+#include "compensation/peers.hpp"
 
 namespace dermis::benchmarks {
 namespace {

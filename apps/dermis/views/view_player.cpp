@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "dermis/live/sources/pacer.hpp"
+#include "dermis/out/report/frame_picture.hpp"
 
 namespace dermis::views {
 
