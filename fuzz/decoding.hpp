@@ -14,8 +14,8 @@
 
 namespace dermis::fuzz {
 
-using bytes::layouts::Decoder;
-using bytes::layouts::DecoderCounts;
+using dermis::bytes::layouts::Decoder;
+using dermis::bytes::layouts::DecoderCounts;
 using Bytes = std::span<const std::uint8_t>;
 
 inline void require(bool is_so) {

@@ -16,7 +16,7 @@ namespace dermis::fuzz {
 
 /// Reads all frames that an importer finds in the bytes.
 template <typename Open>
-int import_frames(Open open, std::span<const std::uint8_t> data, bytes::formats::ImportOptions options = {}) {
+int import_frames(Open open, std::span<const std::uint8_t> data, dermis::bytes::formats::ImportOptions options = {}) {
   options.notice = options.loss = [](const std::string& line) {
     if (line.find('\n') != std::string::npos) std::abort();
   };

@@ -11,17 +11,17 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace dermis;
   if (size < 2) return 0;
-  bytes::proposals::Known known;
+  dermis::bytes::proposals::Known known;
   if (data[0] > 0) known.rows = data[0];
   if (data[1] > 0) known.cols = data[1];
-  const auto proposals = bytes::proposals::propose({data + 2, size - 2}, known);
-  fuzz::require(proposals.size() <= bytes::proposals::kMostProposals);
-  for (const bytes::proposals::Proposal& proposal : proposals) {
-    const auto layout = bytes::layouts::layout_from_toml(proposal.toml, "fuzz");
+  const auto proposals = dermis::bytes::proposals::propose({data + 2, size - 2}, known);
+  fuzz::require(proposals.size() <= dermis::bytes::proposals::kMostProposals);
+  for (const dermis::bytes::proposals::Proposal& proposal : proposals) {
+    const auto layout = dermis::bytes::layouts::layout_from_toml(proposal.toml, "fuzz");
     fuzz::require(layout.has_value() && layout->arrays.front().shape == proposal.shape);
     fuzz::require(proposal.frames > 0 && proposal.example.size() == proposal.shape.taxel_count());
     fuzz::require(proposal.left_share >= 0.0 && proposal.left_share <= 1.0);
-    for (const bytes::proposals::Part& part : proposal.parts)
+    for (const dermis::bytes::proposals::Part& part : proposal.parts)
       fuzz::require(part.begin <= part.end && part.end <= size - 2);
   }
   return 0;

@@ -10,9 +10,9 @@
 #include "dermis/live/buses/register_map.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  namespace buses = dermis::buses;
+  namespace buses = dermis::live::buses;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  const auto map = live::buses::register_map_from_toml(text, "map.toml");
+  const auto map = buses::register_map_from_toml(text, "map.toml");
   if (!map) {
     dermis::fuzz::check_line(map.error());
     return 0;
@@ -20,11 +20,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::vector<std::size_t> all(map->arrays.size());
   std::iota(all.begin(), all.end(), 0U);
   std::size_t words = 0;
-  for (const live::buses::RegisterRead& read : live::buses::plan_reads(*map, all)) {
+  for (const buses::RegisterRead& read : buses::plan_reads(*map, all)) {
     if (read.words < 1 || read.words > 125) std::abort();
     words += read.words;
   }
-  for (const live::buses::RegisterArray& array : map->arrays) words -= array.words();
+  for (const buses::RegisterArray& array : map->arrays) words -= array.words();
   if (words != 0) std::abort();
   return 0;
 }

@@ -13,9 +13,9 @@
 namespace dermis::fuzz {
 
 /// The bytes as a table; empty where they are none.
-inline std::optional<bytes::files::CsvTable> table_of(const std::uint8_t* data, std::size_t size) {
+inline std::optional<dermis::bytes::files::CsvTable> table_of(const std::uint8_t* data, std::size_t size) {
   std::istringstream bytes(std::string(reinterpret_cast<const char*>(data), size));
-  Result<bytes::files::CsvTable> table = bytes::files::CsvTable::read(bytes, "fuzz");
+  Result<dermis::bytes::files::CsvTable> table = dermis::bytes::files::CsvTable::read(bytes, "fuzz");
   if (table) return *std::move(table);
   check_error(table.error());
   return std::nullopt;

@@ -30,9 +30,9 @@ namespace dermis::touch::compensation {
 ///                             that too; a row of which 3 presses, likewise, show in most rows, while others do not;
 ///                             2 presses where taxels scatter, or 2 frames that show the row at many places then
 /// impossible readings         what the driver's current, with all readings of its line, cannot give; 10 frames
-/// shorted crossings           a reading that leaves less than 10 ohm, or 1.5 % of the load, for its taxel, in 10
-/// frames,
-///                             and changes as noise does; at virtual ground a saturated reading on a row that else
+/// shorted crossings           a reading that leaves less than 10 ohm, or 1.5 % of the load, for its taxel, in
+///                             10 frames, and changes as noise does;
+///                             at virtual ground a saturated reading on a row that else
 ///                             reads nothing
 /// drifting drivers            unloaded taxels that fall from one frame to the next when the current of their line
 ///                             rises, and rise when it falls; reported, but neither masked nor corrected

@@ -78,8 +78,8 @@ struct RawFrame {
   std::optional<double> supply_v;             ///< Measured supply [V], > 0; empty where the source has none.
   std::vector<float> counts;  ///< ADC readings [counts], 0 ... 2^adc_bits - 1; fractional where a source averages.
   Acquisition acquisition{};
-  /// Temperatures of ArrayDescription::temperature_sensors [C]; NaN: no reading. Empty where the source has one for
-  /// all.
+  /// Temperatures of ArrayDescription::temperature_sensors [C]; NaN: no reading.
+  /// Empty where the source has one for all.
   std::vector<float> sensor_celsius{};
 };
 
