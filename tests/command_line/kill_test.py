@@ -21,7 +21,7 @@ from devices.emulators import DEVICES
 RATE_HZ = 1000
 PROMISE_S = 0.100
 SOURCE = f"sim:multitouch?rows=64&cols=160&rate={RATE_HZ}"
-NPM_READER = Path(__file__).parent.parent / "recordings" / "npm_count.mjs"
+NPM_READER = Path(__file__).parent.parent / "bytes" / "recordings" / "npm_count.mjs"
 
 BINARY = None
 MCAP_SAMPLE = None
