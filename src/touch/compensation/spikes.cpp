@@ -63,8 +63,8 @@ Spikes::Spikes(const ArrayDescription& array)
   for (const double ohm : line_ohm) load_siemens_.push_back(ohm > 0.0 ? 1.0 / ohm : 0.0);
   for (std::size_t taxel = 0; taxel < array.taxel_count(); ++taxel) {
     const SensedLine sensed = sensed_line(readout, line_of(array, crossing(driven_axis(array)), taxel));
-    share_.push_back(line_ohm[line_at(taxel)] / sensed.gain);
-    crossing_ohm_.push_back(crossing_ohm[axis_ == Axis::row ? taxel % cols_ : taxel / cols_]);
+    share_.push_back(line_ohm[line_of(array, axis_, taxel)] / sensed.gain);
+    crossing_ohm_.push_back(crossing_ohm[line_of(array, crossing(axis_), taxel)]);
   }
   behind_.now.resize(array.taxel_count());
   behind_.before.resize(array.taxel_count());
@@ -82,7 +82,7 @@ bool Spikes::take(const ConditionedFrame& frame, bool is_solved, ConductanceFram
   changed_ = changed_share(frame.ratio, frame.sigma_ratio);
   if (changed_ > kOtherTouch) return false;
   find_behind(conductance);
-  find_loads(frame, is_solved);
+  find_loads(frame, conductance.taxels, is_solved);
   bool any = false;
   for (std::size_t line = 0; line < lines_; ++line) any = take_line(line, frame, is_solved, conductance) || any;
   any_taken_ = any_taken_ || any;
@@ -135,10 +135,10 @@ DERMIS_PROCESSOR_CLONES void Spikes::find_behind(const ConductanceFrame& conduct
 }
 
 /// Where there is no solution, the conductances are those of a circuit that has no other crosstalk.
-void Spikes::find_loads(const ConditionedFrame& frame, bool is_solved) noexcept {
+void Spikes::find_loads(const ConditionedFrame& frame, std::span<const TaxelStatus> taxels, bool is_solved) noexcept {
   loads_.now = load_siemens_;
   loads_.before = load_siemens_;
-  if (!is_solved) return find_loads_by_readings(frame);
+  if (!is_solved) return find_loads_by_readings(frame, taxels);
   for (std::size_t row = 0; row < rows_; ++row) {
     for (std::size_t col = 0; col < cols_; ++col) {
       const std::size_t line = axis_ == Axis::row ? row : col;
@@ -148,13 +148,13 @@ void Spikes::find_loads(const ConditionedFrame& frame, bool is_solved) noexcept 
   }
 }
 
-void Spikes::find_loads_by_readings(const ConditionedFrame& frame) noexcept {
+void Spikes::find_loads_by_readings(const ConditionedFrame& frame, std::span<const TaxelStatus> taxels) noexcept {
   for (std::size_t line = 0; line < lines_; ++line) {
     double left = 1.0;
     double last_left = 1.0;
     for (std::size_t place = 0; place < places_; ++place) {
       const std::size_t taxel = taxel_of(line, place);
-      if (behind_.now[taxel] == 0.0) continue;
+      if (!is_known(taxel, taxels)) continue;
       left -= share_[taxel] * frame.ratio[taxel];
       last_left -= share_[taxel] * last_[taxel];
     }
@@ -194,8 +194,7 @@ double Spikes::probability(std::size_t line, const ConditionedFrame& frame, std:
   if (rise < kLeastRise) return 0.0;
   for (std::size_t place = 0; place < places_ && odds > kHopeless; ++place) {
     const std::size_t taxel = taxel_of(line, place);
-    const bool is_known = taxels[taxel] != TaxelStatus::invalid && !std::isnan(last_[taxel]);
-    if (!is_known || is_jump(taxel, frame.ratio)) continue;
+    if (!is_known(taxel, taxels) || is_jump(taxel, frame.ratio)) continue;
     odds = std::min(odds * evidence(witness(taxel, frame, is_solved), rise), kCertain);
   }
   return odds / (1.0 + odds);

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -76,12 +77,16 @@ class Spikes {
   [[nodiscard]] bool is_jump(std::size_t taxel, std::span<const double> ratio) const noexcept {
     return ratio[taxel] - last_[taxel] > kLeastJump;
   }
+  /// The taxel has a reading in this frame and had one before.
+  [[nodiscard]] bool is_known(std::size_t taxel, std::span<const TaxelStatus> taxels) const noexcept {
+    return taxels[taxel] != TaxelStatus::invalid && !std::isnan(last_[taxel]);
+  }
   [[nodiscard]] bool is_touched(std::size_t taxel, std::span<const double> ratio, double sigma_ratio) const noexcept;
   [[nodiscard]] bool find_jumps(std::size_t line, const ConditionedFrame& frame,
                                 std::span<const TaxelStatus> taxels) noexcept;
   void find_behind(const ConductanceFrame& conductance) noexcept;
-  void find_loads(const ConditionedFrame& frame, bool is_solved) noexcept;
-  void find_loads_by_readings(const ConditionedFrame& frame) noexcept;
+  void find_loads(const ConditionedFrame& frame, std::span<const TaxelStatus> taxels, bool is_solved) noexcept;
+  void find_loads_by_readings(const ConditionedFrame& frame, std::span<const TaxelStatus> taxels) noexcept;
   [[nodiscard]] Witness witness(std::size_t taxel, const ConditionedFrame& frame, bool is_solved) const noexcept;
   [[nodiscard]] double probability(std::size_t line, const ConditionedFrame& frame, std::span<const TaxelStatus> taxels,
                                    bool is_solved) const noexcept;
@@ -111,7 +116,7 @@ class Spikes {
   std::vector<std::uint8_t> frames_;  // for which a jump has not been believed [taxels]
   bool any_taken_ = false;            // of the last frame or this one
   double changed_ = 0.0;              // share of the loads of this frame
-  NowAndBefore behind_;               // the crossing line: x; 0: unknown [taxels]
+  NowAndBefore behind_;               // the crossing line: x; 0 where it is not known [taxels]
   NowAndBefore loads_;                // g and all x [lines]
   std::vector<std::size_t> jumps_;    // of the line
   std::vector<Doubt> doubts_;
