@@ -24,7 +24,7 @@ class RegisterDevice {
     place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     auto* const address = reinterpret_cast<sockaddr*>(&place);
     static_cast<void>(::bind(listener_, address, sizeof(place)));
-    ::listen(listener_, 1);
+    ::listen(listener_, 16);  // clients of before that it has not closed yet wait in this queue, too
     socklen_t size = sizeof(place);
     ::getsockname(listener_, address, &size);
     port_ = ntohs(place.sin_port);
