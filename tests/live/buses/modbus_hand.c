@@ -70,7 +70,7 @@ int main(int argc, char** argv) {
   modbus_set_slave(context, unit);
   int listener = -1;
   if (is_tcp) {
-    listener = modbus_tcp_listen(context, 1);
+    listener = modbus_tcp_listen(context, 16);
     print_port(listener);
     if (modbus_tcp_accept(context, &listener) < 0) fail("nobody came");
   } else {
