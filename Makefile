@@ -32,6 +32,7 @@ test: setup
 	cmake --preset release
 	cmake --build --preset release
 	ctest --preset release
+	@grep -h -A1 ': Skipped$$' build/release/Testing/Temporary/LastTest.log || true
 
 # What the tree of the sanitizers takes from the release.
 numerics: setup
