@@ -32,7 +32,7 @@ test: setup
 	cmake --preset release
 	cmake --build --preset release
 	ctest --preset release
-	@grep -h -A1 ': Skipped$$' build/release/Testing/Temporary/LastTest.log || true
+	-@grep -h -A1 ': Skipped$$' build/release/Testing/Temporary/LastTest.log
 
 # What the tree of the sanitizers takes from the release.
 numerics: setup
@@ -84,11 +84,10 @@ package: setup
 	scripts/setup package
 	scripts/package
 
-# The README's commands where nothing is installed: make demo whole, the others until they would compile.
+# The README's first command where nothing is installed. .ci/all does all of them, as root too.
 bare: setup
 	scripts/setup bare
-	scripts/bare_machine 'make demo' --configure 'make live' 'make python' 'make test' 'make bench' 'make package' 'make site' \
-	  'scripts/setup build && scripts/setup python && python3 -m venv venv && venv/bin/pip install .'
+	scripts/bare_machine --as robin 'make demo'
 
 # As root: it makes a bare Debian in build/package/debian.
 package-test: package

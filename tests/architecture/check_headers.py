@@ -21,6 +21,9 @@ from source_folders import PRODUCTION
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = (ROOT / "include", ROOT / "src", ROOT / "apps/dermis")
 LIBRARIES = ("/usr/include/eigen3", "/usr/include/hdf5/serial", "/usr/include/cairo", sysconfig.get_path("include"))
+ALONE = ROOT / "build/headers"
+# What has compiled before is found by ccache, in every clone.
+ENVIRONMENT = {**os.environ, "CCACHE_BASEDIR": str(ROOT), "CCACHE_NOHASHDIR": "1"}
 FLAGS = [
     "-fvisibility=hidden",
     "-std=c++20",
@@ -29,10 +32,7 @@ FLAGS = [
     "-Wpedantic",
     "-Wconversion",
     "-Werror",
-    "-fsyntax-only",
-    "-x",
-    "c++",
-    "-",
+    "-c",
 ]
 
 
@@ -48,9 +48,12 @@ def changed_since_base():
 
 def errors_of(header, compiler, folders):
     """Asio 1.74 needs <utility> before it."""
-    source = "#include <utility>\n" + f'#include "{header}"\n' * 2
+    source = ALONE / header.relative_to(ROOT).with_suffix(".cpp")
+    source.parent.mkdir(parents=True, exist_ok=True)
+    source.write_text("#include <utility>\n" + f'#include "{os.path.relpath(header, source.parent)}"\n' * 2)
     options = [*(f"-I{folder}" for folder in folders), *(f"-isystem{folder}" for folder in LIBRARIES)]
-    result = subprocess.run([compiler, *options, *FLAGS], input=source, capture_output=True, text=True)
+    command = ["ccache", compiler, *options, *FLAGS, source, "-o", source.with_suffix(".o")]
+    result = subprocess.run(command, capture_output=True, text=True, env=ENVIRONMENT)
     return result.stderr if result.returncode else ""
 
 

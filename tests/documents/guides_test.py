@@ -20,19 +20,7 @@ WRITTEN = {
     "first-suit.md": {"suit.toml": ("toml", 0)},
     "connect-a-robot.md": {"robot.py": ("python", 0), "move.py": ("python", 1)},
 }
-# The device is the simulator, ports are free ones, and after some seconds somebody presses Ctrl-C. The threat of a
-# watch ends it.
-DERMIS = r"""#!/bin/bash
-arguments=("${@//serial:\/\/\/dev\/ttyACM0/sim:contacts?rate=100}")
-arguments=("${arguments[@]/tcp:\/\/192.168.1.20:7000/sim:contacts?rate=100}")
-arguments=("${arguments[@]/#8080/0}")
-case "$1 $*" in
-  serve*) [[ "$*" == *--port* ]] || arguments+=(--port 0) ;;&
-  watch*) BINARY "${arguments[@]}"; [ $? = 3 ] ;;
-  serve*|*" sim:"*|*ttyACM0*) exec timeout --foreground --preserve-status --signal=INT 8 BINARY "${arguments[@]}" ;;
-  *) exec BINARY "${arguments[@]}" ;;
-esac
-"""
+FOR_A_MOMENT = Path(__file__).with_name("for_a_moment.py")
 
 
 def blocks(page, language):
@@ -59,7 +47,7 @@ class Guides(unittest.TestCase):
         cls.home = Path(folder.name)
         (cls.home / "examples").symlink_to(ROOT / "examples")
         (cls.home / "bin").mkdir()
-        (cls.home / "bin/dermis").write_text(DERMIS.replace("BINARY", shlex.quote(BINARY)))
+        (cls.home / "bin/dermis").write_text(f'#!/bin/sh\nexec {FOR_A_MOMENT} {shlex.quote(BINARY)} "$@"\n')
         (cls.home / "bin/dermis").chmod(0o755)
         cls.work = cls.home / "first"
 
