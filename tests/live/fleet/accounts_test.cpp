@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/live/fleet/server_files.hpp"
-
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -13,7 +11,6 @@
 #include <thread>
 
 #include "dermis/live/fleet/hub.hpp"
-#include "dermis/live/fleet/job_queue.hpp"
 #include "fleet_servers.hpp"
 #include "live/fleet/broker.hpp"
 #include "support/places.hpp"
@@ -33,86 +30,55 @@ std::map<std::string, std::string> files_in(const std::string& folder) {
   return files;
 }
 
-class ServerFiles : public testing::Test {
+class MakeFleet : public testing::Test {
  public:
-  void SetUp() override {
-    const auto written = write_server_files({.hub = "hub.local", .robots = {"anna", "bob"}}, folder.file("fleet"));
-    if (!written) GTEST_SKIP() << "skipped: " << written.error().message;
-  }
-  [[nodiscard]] std::string error_of(const FleetPlan& plan, const std::string& name = "other") const {
-    const auto written = write_server_files(plan, folder.file(name));
-    return written ? "" : written.error().message;
-  }
+  void SetUp() override { ASSERT_EQ(support::make_fleet(fleet, "anna bob", "hub.local"), 0) << said(); }
+  [[nodiscard]] std::string said() const { return support::read_bytes(fleet + ".said"); }
 
   support::TemporaryFolder folder;
+  const std::string fleet = folder.file("fleet");
 };
 
-TEST_F(ServerFiles, are_readable_by_their_owner_alone) {
-  ASSERT_EQ(files_in(folder.file("fleet")).size(), 19U);
-  for (const auto& entry : fs::recursive_directory_iterator(folder.file("fleet"))) {
+TEST_F(MakeFleet, writes_files_for_their_owner_alone) {
+  ASSERT_EQ(files_in(fleet).size(), 13U);
+  for (const auto& entry : fs::recursive_directory_iterator(fleet)) {
     EXPECT_EQ(entry.status().permissions() & (fs::perms::group_all | fs::perms::others_all), fs::perms::none)
         << entry.path();
   }
 }
 
-TEST_F(ServerFiles, stay_as_they_are_when_a_robot_comes) {
-  const auto before = files_in(folder.file("fleet"));
-  const auto written = write_server_files({.robots = {"carl", "anna"}}, folder.file("fleet"));
-  ASSERT_TRUE(written) << written.error().message;
-  EXPECT_EQ(written->size(), 2U + 5U);
-  for (auto [name, text] : before) {
-    if (name == "fleet.toml" || name == "hub/nats.conf") continue;
-    EXPECT_EQ(files_in(folder.file("fleet"))[name], text) << name;
-  }
-  const std::string hub = support::read_bytes(folder.file("fleet/hub/nats.conf"));
+TEST_F(MakeFleet, keeps_what_is_there_when_a_robot_comes) {
+  auto before = files_in(fleet);
+  ASSERT_EQ(support::make_fleet(fleet, "anna bob carl", "hub.local"), 0) << said();
+  auto after = files_in(fleet);
+  EXPECT_EQ(after.size(), before.size() + 3);
+  const std::string hub = after["hub/nats.conf"];
   for (const char* robot : {"anna@robots", "bob@robots", "carl@robots"}) {
     EXPECT_NE(hub.find(robot), std::string::npos) << robot;
   }
-  EXPECT_TRUE(write_server_files({}, folder.file("fleet"))->empty());
+  before.erase("hub/nats.conf");
+  for (const auto& [name, text] : before) EXPECT_EQ(after[name], text) << name;
 }
 
-TEST_F(ServerFiles, are_made_where_one_is_missing) {
-  fs::remove(folder.file("fleet/robots/bob/bob.pem"));
-  EXPECT_EQ(*write_server_files({}, folder.file("fleet")),
-            std::vector<std::string>{folder.file("fleet/robots/bob/bob.pem")});
+TEST_F(MakeFleet, makes_what_is_missing) {
+  auto before = files_in(fleet);
+  fs::remove(fleet + "/robots/bob/bob.pem");
+  ASSERT_EQ(support::make_fleet(fleet, "anna bob", "hub.local"), 0) << said();
+  auto after = files_in(fleet);
+  EXPECT_NE(after["robots/bob/bob.pem"], before["robots/bob/bob.pem"]);
+  after["robots/bob/bob.pem"] = before["robots/bob/bob.pem"];
+  EXPECT_EQ(after, before);
 }
 
-TEST_F(ServerFiles, refuse_what_cannot_be) {
-  EXPECT_EQ(error_of({}), "robot: a fleet needs the name of one");
-  EXPECT_EQ(error_of({.robots = {"a b"}}), "robot: 'a b' must be 1 to 64 letters, digits, '_' or '-'");
-  EXPECT_EQ(error_of({.robots = {"hub"}}), "robot: 'hub' is the name of the hub; a robot needs another");
-  EXPECT_EQ(error_of({.hub = "a,DNS:b", .robots = {"a"}}),
-            "hub: 'a,DNS:b' must be the name or the IPv4 address of a machine");
-  EXPECT_EQ(error_of({.port = 5, .robots_port = 5, .robots = {"a"}}), "hub: its two ports must differ");
-  EXPECT_EQ(error_of({.hub = "b"}, "fleet"), folder.file("fleet/fleet.toml") +
-                                                 ": the hub and its ports stay as they are; another fleet needs "
-                                                 "another folder");
-}
-
-// A seed and its user from https://docs.nats.io/using-nats/developer/connecting/creds
-TEST_F(ServerFiles, name_the_user_of_a_seed) {
-  const std::string seed = "SUAOY5JZ2WJKVR4UO2KJ2P3SW6FZFNWEOIMAXF4WZEUNVQXXUOKGM55CYE";
-  support::write_bytes(folder.file("fleet/operator.seed"), seed);
-  ASSERT_TRUE(write_server_files({}, folder.file("fleet")));
-  EXPECT_NE(support::read_bytes(folder.file("fleet/hub/nats.conf"))
-                .find("\"UDXB2VMLXPASAJ7ZDTKYNQ7QOCFWSGB4FOMYQQ25HQWSAF7ZQJEBSQSW\""),
-            std::string::npos);
-  support::write_bytes(folder.file("fleet/operator.seed"),
-                       "SUAOY5JZ2WJKVR4UO2KJ2P3SW6FZFNWEOIMAXF4WZEUNVQXXUOKGM55CYF");
-  EXPECT_EQ(error_of({}, "fleet"),
-            folder.file("fleet/operator.seed") + ": holds a key with a mistake: its checksum is another");
-  for (const std::string& wrong : {seed.substr(1), seed + "A", "S" + seed, std::string("x"), std::string()}) {
-    support::write_bytes(folder.file("fleet/operator.seed"), wrong);
-    EXPECT_NE(error_of({}, "fleet").find("holds no key of a user of NATS"), std::string::npos) << wrong;
-  }
-}
-
-TEST_F(ServerFiles, are_those_of_deploy) {
-  for (const char* name : {"fleet.toml", "hub/nats.conf", "robots/anna/nats.conf"}) {
-    const std::string made =
-        std::regex_replace(support::read_bytes(folder.file("fleet") + "/" + name), std::regex("U[A-Z2-7]{55}"), "U...");
-    EXPECT_EQ(made, support::read_bytes(support::project_folder() / "deploy/nats" / name)) << name;
-  }
+TEST_F(MakeFleet, refuses_what_cannot_be) {
+  EXPECT_EQ(support::make_fleet(fleet, ""), 2);
+  EXPECT_EQ(said(), "make_fleet: give FOLDER HUB ROBOT...\n");
+  EXPECT_EQ(support::make_fleet(fleet, "'a b'"), 2);
+  EXPECT_EQ(said(), "make_fleet: robot 'a b' must be 1 to 64 letters, digits, '_' or '-'\n");
+  EXPECT_EQ(support::make_fleet(fleet, "hub"), 2);
+  EXPECT_EQ(said(), "make_fleet: 'hub' is the name of the hub; a robot needs another\n");
+  EXPECT_EQ(support::make_fleet(fleet, "a", "a,DNS:b"), 2);
+  EXPECT_EQ(said(), "make_fleet: 'a,DNS:b' must be the name or the IPv4 address of a machine\n");
 }
 
 /// Two robots, a hub that has their frames, and a model for each.
@@ -202,7 +168,7 @@ TEST_F(Accounts, a_robot_reads_no_frames_of_another) {
 
 TEST_F(Accounts, a_robot_neither_publishes_as_another_nor_takes_away) {
   for (const std::string subject : {"dermis.bob.chest.frames", "dermis-mirror.bob.M.x", "dermis-models.anna.chest.hash",
-                                    "dermis-jobs.job", "dermis-outcomes.done.1"}) {
+                                    "dermis-models.bob.chest.hash"}) {
     ASSERT_TRUE(anna->send(subject, "forged"));
   }
   for (const std::string request :
@@ -228,15 +194,13 @@ TEST_F(Accounts, the_operator_takes_nothing_away_from_a_robot) {
 }
 
 TEST_F(Accounts, a_robot_comes_and_another_is_taken_out_while_the_hub_works) {
-  ASSERT_TRUE(write_server_files({.robots = {"carl"}}, servers->file("")));
+  ASSERT_TRUE(servers->write({"anna", "bob", "carl"}));
   servers->hub().reload();
   servers->start_robot("carl");
   publish("carl");
   add("carl");
   EXPECT_TRUE(hub_has("carl", 1));
-  const std::string plan = servers->file("fleet.toml");
-  support::write_bytes(plan, std::regex_replace(support::read_bytes(plan), std::regex("  \"anna\",\n"), ""));
-  ASSERT_EQ(*write_server_files({}, servers->file("")), std::vector<std::string>{servers->file("hub/nats.conf")});
+  ASSERT_TRUE(servers->write({"bob", "carl"}));
   servers->hub().reload();
   servers->robot("anna").kill();
   servers->robot("anna").start();
@@ -246,71 +210,65 @@ TEST_F(Accounts, a_robot_comes_and_another_is_taken_out_while_the_hub_works) {
 }
 
 TEST_F(Accounts, the_key_of_a_robot_does_not_open_the_hub) {
-  const auto direct = connect_broker(servers->hub_address("robots/anna/anna.seed"));
+  const auto direct = connect_broker(servers->hub_address("robots/anna/anna.pem"));
   ASSERT_FALSE(direct);
   EXPECT_EQ(direct.error().message,
             servers->hub().url() + ": the server does not know this user; give key=FILE of one that it knows");
 }
 
 TEST_F(Accounts, nobody_enters_without_a_key) {
-  EXPECT_FALSE(connect_broker(servers->hub_address("")));
-  const auto robot = connect_broker({servers->robot("anna").url()});
-  ASSERT_FALSE(robot);
-  EXPECT_EQ(robot.error().message,
-            servers->robot("anna").url() + ": the server does not know this user; give key=FILE of one that it knows");
-}
-
-TEST_F(Accounts, every_connection_signs_what_the_server_asks) {
-  for (int k = 0; k < 400; ++k) {  // one signature in 256 begins with 0
-    const auto robot = connect_broker(servers->robot_address("anna"));
-    ASSERT_TRUE(robot) << robot.error().message << ", connection " << k;
+  for (const BrokerAddress& address :
+       {servers->hub_address(""), BrokerAddress{servers->robot("anna").url(), servers->file("ca.pem")}}) {
+    const auto refused = connect_broker(address);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().message, address.url + ": the server wants the certificate of a user; give key=FILE");
   }
 }
 
-TEST_F(Accounts, a_worker_does_jobs_and_reads_frames_alone) {
-  const Job job{"a", {"convert", "a.mcap", "a.csv"}};
-  auto operators = JobQueue::connect(servers->operator_address());
-  ASSERT_TRUE(operators && (*operators)->submit(job));
-  auto queue = JobQueue::connect(servers->hub_address("worker.seed"));
-  ASSERT_TRUE(queue) << queue.error().message;
-  const auto taken = (*queue)->take();
-  ASSERT_TRUE(taken && *taken);
-  EXPECT_TRUE((*queue)->finish(**taken, {"a", "w", 0.1, ""}));
-  EXPECT_EQ((*queue)->counts()->done, 1U);
-  EXPECT_FALSE((*queue)->submit(job));
-  const auto worker = connected(servers->hub_address("worker.seed"));
-  EXPECT_TRUE(*worker->last("dermis_bob", "dermis.bob.chest.frames"));
-  const auto deleted = worker->ask("$JS.API.STREAM.DELETE.dermis_bob", "");
+TEST_F(Accounts, a_reader_reads_frames_alone) {
+  const auto reader = connected(servers->hub_address("reader.pem"));
+  EXPECT_TRUE(*reader->last("dermis_bob", "dermis.bob.chest.frames"));
+  const auto deleted = reader->ask("$JS.API.STREAM.DELETE.dermis_bob", "");
   ASSERT_FALSE(deleted);
   EXPECT_EQ(deleted.error().message, servers->hub().url() + ": the user of this key may not do that");
   EXPECT_TRUE(hub_has("bob", 1));
 }
 
-/// Another fleet has the same ports.
+TEST_F(Accounts, a_key_that_is_none_is_named) {
+  const auto refused = connect_broker(servers->hub_address("hub/nats.conf"));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message,
+            servers->file("hub/nats.conf") + ": cannot be read; it must hold the certificate and the key of a user");
+}
+
+/// Another fleet, whose robot goes to this hub.
 class Strangers : public Accounts {
  public:
   void SetUp() override {
     Accounts::SetUp();
     if (IsSkipped() || HasFatalFailure()) return;
-    ASSERT_TRUE(write_server_files(servers->plan(), others.file("")));
+    ASSERT_EQ(support::make_fleet(others, "anna"), 0);
+    const std::string remote = support::read_bytes(servers->file("robots/anna/nats.conf"));
+    support::write_bytes(others + "/robots/anna/nats.conf", remote);
   }
-  support::TemporaryFolder others;
+  support::TemporaryFolder folder;
+  const std::string others = folder.file("others");
 };
 
 TEST_F(Strangers, a_hub_with_a_wrong_certificate_is_refused) {
-  const auto refused = connect_broker({servers->hub().url(), others.file("ca.pem"), servers->file("operator.seed")});
+  const auto refused = connect_broker({servers->hub().url(), others + "/ca.pem", servers->file("operator.pem")});
   ASSERT_FALSE(refused);
   EXPECT_EQ(
       refused.error().message,
-      servers->hub().url() + ": the server has no certificate of this name that is signed by " + others.file("ca.pem"));
-  const auto unknown = connect_broker({servers->hub().url(), "", servers->file("operator.seed")});
+      servers->hub().url() + ": the server has no certificate of this name that is signed by " + others + "/ca.pem");
+  const auto unknown = connect_broker({servers->hub().url(), "", servers->file("operator.pem")});
   ASSERT_FALSE(unknown);
   EXPECT_NE(unknown.error().message.find("give ca=FILE"), std::string::npos) << unknown.error().message;
 }
 
 TEST_F(Strangers, a_robot_with_a_wrong_certificate_is_refused) {
-  fs::copy_file(servers->file("ca.pem"), others.file("robots/anna/ca.pem"), fs::copy_options::overwrite_existing);
-  const support::NatsServer robot(others.file("robots/anna"), support::free_port());
+  fs::copy_file(servers->file("ca.pem"), others + "/robots/anna/ca.pem", fs::copy_options::overwrite_existing);
+  const support::NatsServer robot(others + "/robots/anna", support::free_port());
   EXPECT_TRUE(hub_says("TLS leafnode handshake error")) << servers->hub().log();
 }
 
