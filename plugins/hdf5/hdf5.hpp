@@ -108,18 +108,20 @@ class Hdf5Input {
   hsize_t max_elements_;
 };
 
+enum class Hdf5Packing { plain, deflated };
+
 /// A file that is written; it takes its place at commit() (AtomicFile). Errors of the disk never reach HDF5, which
 /// would not survive them at the end of the process (seen with 1.10.8): they are kept here.
 class Hdf5Output {
  public:
   [[nodiscard]] static Result<Hdf5Output> create(const std::string& path);
 
-  /// An empty dataset whose first dimension grows; chunks of `frames_per_chunk` along it, shuffled and deflated.
+  /// An empty dataset whose first dimension grows; chunks of `frames_per_chunk` along it, shuffled and deflated where packed.
   [[nodiscard]] Hdf5Id create_dataset(const char* name, hid_t file_type, const Hdf5Sizes& other_sizes,
-                                      hsize_t frames_per_chunk) const;
-  /// A text attribute of the root group, or of a dataset.
-  void add_text(const char* name, const std::string& text) const { add_text(file_.get(), name, text); }
-  static void add_text(hid_t object, const char* name, const std::string& text);
+                                      hsize_t frames_per_chunk, Hdf5Packing packing = Hdf5Packing::deflated) const;
+  /// An attribute of the file ("/"), a group or a dataset.
+  [[nodiscard]] Status set(const char* object, const char* name, hid_t type, const void* value) const;
+  [[nodiscard]] Status set_text(const char* object, const char* name, const std::string& text) const;
 
   /// Appends `count` elements along the first dimension, which has `first`.
   [[nodiscard]] Status append(const Hdf5Id& dataset, hsize_t first, hsize_t count, hid_t memory_type,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "bytes/recordings/hdf5_driver.hpp"
+#include "driver.hpp"
 
 #include <algorithm>
 #include <limits>

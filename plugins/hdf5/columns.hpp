@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "bytes/recordings/hdf5.hpp"
 #include "dermis/touch/frames/frame_source.hpp"
+#include "hdf5.hpp"
 
 /// Datasets whose first dimension are the frames, read from the first to the last, block by block.
 namespace dermis::bytes::recordings {

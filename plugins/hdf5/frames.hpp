@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "bytes/recordings/hdf5_plugin.hpp"
 #include "dermis/bytes/recordings/frame_notes.hpp"
 #include "dermis/touch/frames/frame_sink.hpp"
 #include "dermis/touch/frames/frame_source.hpp"
@@ -19,7 +20,7 @@ namespace dermis::bytes::recordings {
 /// Reads a file of Hdf5FramesWriter: every RawFrame has the bits that were written. Also reads files that hold only
 /// counts (N, rows, cols) of any numbers, and time_s or time_ns. The memory is that of some chunks, at most 200 MiB.
 /// Errors name the dataset and the frame. Not thread-safe.
-class Hdf5FramesReader final : public FrameSource {
+class Hdf5FramesReader final : public NotedFrames {
  public:
   /// Fails if the frames do not have the given shape.
   [[nodiscard]] static Result<std::unique_ptr<Hdf5FramesReader>> open(const std::string& path,
@@ -29,7 +30,7 @@ class Hdf5FramesReader final : public FrameSource {
   [[nodiscard]] Result<bool> next(RawFrame& frame) override;
   [[nodiscard]] std::optional<FrameShape> shape() const override;
   [[nodiscard]] SourceStatistics statistics() const override;
-  [[nodiscard]] const FrameNotes& notes() const noexcept;
+  [[nodiscard]] const FrameNotes& notes() const noexcept override;
 
  private:
   struct State;

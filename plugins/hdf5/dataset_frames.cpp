@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "bytes/recordings/hdf5_dataset_frames.hpp"
+#include "dataset_frames.hpp"
 
 #include <cstdint>
 #include <utility>
 
-#include "bytes/recordings/hdf5_columns.hpp"
+#include "columns.hpp"
 #include "dermis/bytes/files/text.hpp"
 
 namespace dermis::bytes::recordings {

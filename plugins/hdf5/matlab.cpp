@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "bytes/recordings/matlab_hdf5.hpp"
+#include "matlab.hpp"
 
-#include <algorithm>
+#include <functional>
+#include <numeric>
 #include <utility>
 #include <vector>
 
-#include "bytes/recordings/hdf5_columns.hpp"
-#include "dermis/bytes/files/input.hpp"
-#include "dermis/bytes/formats/matlab.hpp"
+#include "columns.hpp"
 
 namespace dermis::bytes::recordings {
 namespace {
@@ -24,16 +23,21 @@ class MatlabHdf5 final : public formats::MatlabFile {
     }
   }
 
+  ~MatlabHdf5() override {
+    const QuietHdf5 quiet;
+    [[maybe_unused]] const Hdf5Input closed = std::move(file_);
+  }
+
   Status read(std::size_t index, std::vector<float>& values) override { return read_all(index, values); }
   Status read(std::size_t index, std::vector<double>& values) override { return read_all(index, values); }
 
  private:
   template <typename Value>
   Status read_all(std::size_t index, std::vector<Value>& values) {
-    const formats::MatlabVariable& variable = variables_[index];
-    const Result<Hdf5Dataset> dataset = file_.dataset(("/" + variable.name).c_str());
+    const QuietHdf5 quiet;
+    const Result<Hdf5Dataset> dataset = file_.dataset(("/" + variables_[index].name).c_str());
     if (!dataset) return dataset.error();
-    values.resize(variable.value_count());
+    values.resize(std::accumulate(dataset->sizes.begin(), dataset->sizes.end(), hsize_t{1}, std::multiplies<>()));
     return dataset->read(0, dataset->sizes[0], hdf5_type<Value>(), values.data());
   }
 
@@ -42,17 +46,11 @@ class MatlabHdf5 final : public formats::MatlabFile {
 
 }  // namespace
 
-bool is_matlab_hdf5(const std::string& path) {
-  constexpr std::string_view kBeginning = "MATLAB 7.3";
-  return files::first_bytes_of(path, kBeginning.size()) == kBeginning;
-}
-
-Result<std::unique_ptr<FrameSource>> open_matlab_hdf5(const std::string& path, const formats::ImportOptions& options) {
+Result<std::unique_ptr<formats::MatlabFile>> open_matlab(const std::string& path) {
   const QuietHdf5 quiet;
   Result<Hdf5Input> file = Hdf5Input::open(path);
   if (!file) return file.error();
-  MatlabHdf5 matlab(*std::move(file));
-  return formats::open_matlab(matlab, path, options);
+  return std::unique_ptr<formats::MatlabFile>(std::make_unique<MatlabHdf5>(*std::move(file)));
 }
 
 }  // namespace dermis::bytes::recordings

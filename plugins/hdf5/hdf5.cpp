@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "bytes/recordings/hdf5.hpp"
+#include "hdf5.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -8,9 +8,9 @@
 #include <string_view>
 #include <system_error>
 
-#include "bytes/recordings/hdf5_driver.hpp"
 #include "dermis/bytes/files/input.hpp"
 #include "dermis/bytes/files/text.hpp"
+#include "driver.hpp"
 
 namespace dermis::bytes::recordings {
 namespace {
@@ -272,7 +272,7 @@ Result<Hdf5Output> Hdf5Output::create(const std::string& path) {
 }
 
 Hdf5Id Hdf5Output::create_dataset(const char* name, hid_t file_type, const Hdf5Sizes& other_sizes,
-                                  hsize_t frames_per_chunk) const {
+                                  hsize_t frames_per_chunk, Hdf5Packing packing) const {
   Hdf5Sizes sizes{0};
   Hdf5Sizes limits{H5S_UNLIMITED};
   Hdf5Sizes chunk{frames_per_chunk};
@@ -281,20 +281,30 @@ Hdf5Id Hdf5Output::create_dataset(const char* name, hid_t file_type, const Hdf5S
   }
   const Hdf5Id space(H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), limits.data()), H5Sclose);
   const Hdf5Id plan(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  const Hdf5Id way(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_chunk(plan.get(), static_cast<int>(chunk.size()), chunk.data());
-  H5Pset_shuffle(plan.get());
-  H5Pset_deflate(plan.get(), kDeflateLevel);
-  return {H5Dcreate2(file_.get(), name, file_type, space.get(), H5P_DEFAULT, plan.get(), H5P_DEFAULT), H5Dclose};
+  if (packing == Hdf5Packing::deflated) {
+    H5Pset_shuffle(plan.get());
+    H5Pset_deflate(plan.get(), kDeflateLevel);
+  }
+  H5Pset_create_intermediate_group(way.get(), 1);
+  return {H5Dcreate2(file_.get(), name, file_type, space.get(), way.get(), plan.get(), H5P_DEFAULT), H5Dclose};
 }
 
-void Hdf5Output::add_text(hid_t object, const char* name, const std::string& text) {
+Status Hdf5Output::set(const char* object, const char* name, hid_t type, const void* value) const {
+  const Hdf5Id space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Hdf5Id attribute(
+      H5Acreate_by_name(file_.get(), object, name, type, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  if (!attribute || H5Awrite(attribute.get(), type, value) < 0) return failure();
+  return status();
+}
+
+Status Hdf5Output::set_text(const char* object, const char* name, const std::string& text) const {
   const Hdf5Id type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type.get(), H5T_VARIABLE);
   H5Tset_cset(type.get(), H5T_CSET_UTF8);
-  const Hdf5Id space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Hdf5Id attribute(H5Acreate2(object, name, type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
   const char* const bytes = text.c_str();
-  if (attribute) H5Awrite(attribute.get(), type.get(), static_cast<const void*>(&bytes));
+  return set(object, name, type.get(), static_cast<const void*>(&bytes));
 }
 
 Error Hdf5Output::failure() const {

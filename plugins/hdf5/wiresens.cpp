@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "bytes/recordings/wiresens_hdf5.hpp"
+#include "wiresens.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "bytes/recordings/hdf5_columns.hpp"
+#include "columns.hpp"
 #include "dermis/bytes/files/text.hpp"
 #include "dermis/touch/frames/array_description.hpp"
 
