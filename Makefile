@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # CI runs these targets (.ci/run). Each installs what it needs.
 
-.PHONY: build setup demo live python wheels test lint numerics sanitize fuzz check-all bench profile docs bare package package-test site clean
+.PHONY: build setup demo live python wheels test lint numerics sanitize fuzz check-all bench profile docs bare package package-test site campaigns clean
 
 build: setup
 	cmake --preset release
@@ -99,6 +99,15 @@ site: setup
 	scripts/setup site
 	$(MAKE) build
 	scripts/site
+
+# The same work on many recordings, by Ray, GNU parallel and Slurm (docs/campaigns.md).
+campaigns: python build
+	scripts/setup campaigns
+	cmp -s tests/live/fleet/requirements.txt build/campaigns/requirements.txt || { \
+	  python3 -m venv --clear build/campaigns && \
+	  build/campaigns/bin/pip install --quiet --requirement tests/live/fleet/requirements.txt && \
+	  cp tests/live/fleet/requirements.txt build/campaigns; }
+	PYTHONPATH=$(CURDIR)/build/release/python build/campaigns/bin/python tests/live/fleet/campaigns_test.py build/release/bin/dermis
 
 clean:
 	rm -rf build demo

@@ -68,9 +68,8 @@ def expect_less(tools):
 
 
 def licenses_of(package):
-    """The copyright files of Debian for the libraries that the module loads."""
-    (module,) = package.glob("_dermis*.so")
-    loaded = subprocess.run(["ldd", module], check=True, capture_output=True, text=True).stdout
+    """The copyright files of Debian for the libraries that the module and its plugin load."""
+    loaded = subprocess.run(["ldd", *package.glob("*.so")], check=True, capture_output=True, text=True).stdout
     paths = {os.path.realpath(path) for path in LIBRARY.findall(loaded)}
     owners = subprocess.run(["dpkg-query", "-S", *paths], capture_output=True, text=True).stdout
     names = sorted({line.split(":")[0] for line in owners.splitlines()} - {"libc6"})

@@ -31,6 +31,5 @@ void add_top(Command& command);
 void add_watch(Command& command);
 void add_serve(Command& command);
 void add_fleet(Command& command);
-void add_work(Command& command);
 
 }  // namespace dermis::app

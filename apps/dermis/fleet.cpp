@@ -15,9 +15,7 @@
 #include "dermis/bytes/files/input.hpp"
 #include "dermis/bytes/models/model_file.hpp"
 #include "dermis/live/fleet/hub.hpp"
-#include "dermis/live/fleet/job_queue.hpp"
 #include "dermis/live/fleet/model_store.hpp"
-#include "dermis/live/fleet/server_files.hpp"
 #include "dermis/touch/pipeline/model.hpp"
 #include "fleet_connection.hpp"
 #include "fleet_robots.hpp"
@@ -28,23 +26,10 @@ namespace {
 
 constexpr std::size_t kShownDigits = 8;  // of a SHA-256
 
-struct InitOptions {
-  live::fleet::FleetPlan plan;
-  std::string out;
-};
-
 struct AddOptions {
   std::string hub;
   std::vector<std::string> robots;
 };
-
-Status init(const InitOptions& options) {
-  const Result<std::vector<std::string>> written = live::fleet::write_server_files(options.plan, options.out);
-  if (!written) return written.error();
-  for (const std::string& path : *written) print_notice("wrote " + path);
-  if (written->empty()) print_notice(options.out + ": has all already");
-  return Done{};
-}
 
 Status add(const AddOptions& options) {
   const Result<std::unique_ptr<live::fleet::Hub>> hub = connect_fleet<live::fleet::Hub>(options.hub);
@@ -53,39 +38,6 @@ Status add(const AddOptions& options) {
     if (Status added = (*hub)->add_robot(robot); !added) return added;
     print_notice(fmt::format("{}: the hub keeps its frames", robot));
   }
-  return Done{};
-}
-
-struct SubmitOptions {
-  std::string hub;
-  std::string jobs;
-};
-
-Status submit(const SubmitOptions& options) {
-  const Result<std::vector<live::fleet::Job>> jobs = live::fleet::read_jobs(options.jobs);
-  if (!jobs) return jobs.error();
-  const Result<std::unique_ptr<live::fleet::JobQueue>> queue = connect_fleet<live::fleet::JobQueue>(options.hub);
-  if (!queue) return queue.error();
-  for (std::size_t i = 0; i < jobs->size(); ++i) {
-    const Status submitted = (*queue)->submit((*jobs)[i]);
-    if (submitted) continue;
-    return failed(fmt::format("{} ({} of {} jobs were submitted)", submitted.error().message, i, jobs->size()));
-  }
-  print_notice(fmt::format("submitted {} jobs", jobs->size()));
-  return Done{};
-}
-
-Status show_jobs(const std::string& text) {
-  const Result<std::unique_ptr<live::fleet::JobQueue>> queue = connect_fleet<live::fleet::JobQueue>(text);
-  if (!queue) return queue.error();
-  const Result<live::fleet::JobCounts> counts = (*queue)->counts();
-  if (!counts) return counts.error();
-  fmt::print("waiting {}, taken {}, done {}, given up {}\n", counts->waiting, counts->taken, counts->done,
-             counts->given_up);
-  const Result<std::vector<live::fleet::JobOutcome>> given_up = (*queue)->given_up();
-  if (!given_up) return given_up.error();
-  for (const live::fleet::JobOutcome& outcome : *given_up)
-    fmt::print("given up: {}: {}\n", outcome.name, outcome.error);
   return Done{};
 }
 
@@ -182,16 +134,6 @@ void add_model_commands(Command& command) {
 }  // namespace
 
 void add_fleet(Command& command) {
-  auto made = std::make_shared<InitOptions>();
-  Command init_command =
-      command.subcommand("init", "Write files and keys for the servers of a fleet (nats-server), or for more robots");
-  init_command.option("--robot", made->plan.robots, "Its name; for each robot that is new");
-  init_command.option("--hub", made->plan.hub, "Name or address of the hub, as robots reach it (127.0.0.1)");
-  init_command.option("--port", made->plan.port, "Of each server, for its clients (4222)");
-  init_command.option("--robots-port", made->plan.robots_port, "Of the hub, for the servers of robots (7422)");
-  init_command.option("--out", made->out, "Folder for the files; what is there stays").required();
-  init_command.action([made] { return init(*made); });
-
   auto added = std::make_shared<AddOptions>();
   Command add_command = command.subcommand("add", "Have the hub keep the frames of robots");
   require_hub(add_command, added->hub);
@@ -200,17 +142,6 @@ void add_fleet(Command& command) {
 
   add_fleet_list(command);
   add_fleet_page(command);
-
-  auto submitted = std::make_shared<SubmitOptions>();
-  Command submit_command = command.subcommand("submit", "Give jobs to the workers of a hub ('dermis work')");
-  require_hub(submit_command, submitted->hub);
-  submit_command.input_file("jobs", submitted->jobs, "jobs.toml (docs/fleet.md)").required();
-  submit_command.action([submitted] { return submit(*submitted); });
-
-  auto jobs_hub = std::make_shared<std::string>();
-  Command jobs_command = command.subcommand("jobs", "How the jobs of a hub do");
-  require_hub(jobs_command, *jobs_hub);
-  jobs_command.action([jobs_hub] { return show_jobs(*jobs_hub); });
 
   add_model_commands(command);
 }

@@ -10,7 +10,7 @@
 
 namespace dermis::app {
 
-/// Connects a Hub, a JobQueue or a ModelStore to the server of an address that the user gave.
+/// Connects a Hub or a ModelStore to the server of an address that the user gave.
 template <typename Served>
 Result<std::unique_ptr<Served>> connect_fleet(const std::string& text) {
   const Result<live::fleet::BrokerAddress> address = live::fleet::parse_broker_address(text);

@@ -47,8 +47,7 @@ constexpr std::array kCommands{
     CommandEntry{"top", "Show a live heat map in the terminal, until q or Ctrl-C", add_top},
     CommandEntry{"watch", "Compare forces with limits, and stop a program if one is crossed", add_watch},
     CommandEntry{"serve", "Show an array or a suit live in the browser and stream it", add_serve},
-    CommandEntry{"fleet", "Set up the servers that keep the frames of many robots, and see how they do", add_fleet},
-    CommandEntry{"work", "Do jobs of a fleet, one after the other", add_work},
+    CommandEntry{"fleet", "Keep the frames of many robots on a hub, and see how they do", add_fleet},
 };
 
 /// A file that is opened must not become the standard error of a process that was started without one.

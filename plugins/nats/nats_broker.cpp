@@ -3,11 +3,8 @@
 #include <nats/nats.h>
 #include <openssl/sha.h>
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstdlib>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -15,7 +12,6 @@
 
 #include "destroyer.hpp"
 #include "live/fleet/broker.hpp"
-#include "nkeys.hpp"
 
 /// The plugin that dermis::fleet loads.
 namespace dermis::live::fleet {
@@ -25,8 +21,6 @@ constexpr std::int64_t kConnectMs = 2000;
 constexpr std::int64_t kReconnectMs = 200;
 constexpr std::int64_t kAnswerMs = 2000;
 constexpr int kForEver = -1;
-constexpr natsStatus kAskAgain = NATS_ILLEGAL_STATE;
-constexpr int kMostQuestions = 8;  // all of them end in vain once in 10^19 times
 constexpr const char* kIdHeader = "Nats-Msg-Id";
 
 using Options = std::unique_ptr<natsOptions, Destroyer<natsOptions_Destroy>>;
@@ -53,14 +47,10 @@ StoredMessage stored_message(natsMsg* message) {
 
 class NatsBroker final : public Broker {
  public:
-  NatsBroker(std::string url, std::unique_ptr<std::string> seed, Connection connection, JetStream jet_stream)
-      : url_(std::move(url)),
-        seed_(std::move(seed)),
-        connection_(std::move(connection)),
-        jet_stream_(std::move(jet_stream)) {}
+  NatsBroker(std::string url, Connection connection, JetStream jet_stream)
+      : url_(std::move(url)), connection_(std::move(connection)), jet_stream_(std::move(jet_stream)) {}
 
   [[nodiscard]] Result<std::string> ask(const std::string& subject, const std::string& request) override;
-  [[nodiscard]] Result<std::optional<Delivery>> take(const std::string& subject, const std::string& request) override;
   void stop() override { natsConnection_Close(connection_.get()); }
   [[nodiscard]] Status send(const std::string& subject, const std::string& text) override;
   [[nodiscard]] Result<std::uint64_t> store(const std::string& subject, const std::string& id,
@@ -75,7 +65,6 @@ class NatsBroker final : public Broker {
   [[nodiscard]] Error why_not(natsStatus status) const;
 
   const std::string url_;
-  const std::unique_ptr<std::string> seed_;  // the connection signs with it
   const Connection connection_;
   const JetStream jet_stream_;
 };
@@ -95,19 +84,6 @@ Result<std::string> NatsBroker::ask(const std::string& subject, const std::strin
   const Message answer(got);
   if (asked != NATS_OK) return why_not(asked);
   return std::string(natsMsg_GetData(answer.get()), static_cast<std::size_t>(natsMsg_GetDataLength(answer.get())));
-}
-
-Result<std::optional<Delivery>> NatsBroker::take(const std::string& subject, const std::string& request) {
-  natsMsg* got = nullptr;
-  const natsStatus asked =
-      natsConnection_RequestString(&got, connection_.get(), subject.c_str(), request.c_str(), kAnswerMs);
-  const Message message(got);
-  if (asked == NATS_TIMEOUT) return std::optional<Delivery>();
-  if (asked != NATS_OK) return error_of(url_, asked);
-  const char* lease = natsMsg_GetReply(message.get());
-  if (lease == nullptr) return std::optional<Delivery>();  // the server says that there is none
-  const auto length = static_cast<std::size_t>(natsMsg_GetDataLength(message.get()));
-  return std::optional(Delivery{std::string(natsMsg_GetData(message.get()), length), lease});
 }
 
 Status NatsBroker::send(const std::string& subject, const std::string& text) {
@@ -171,40 +147,7 @@ std::string host_of(const std::string& url) {
 }
 
 bool is_encrypted(const BrokerAddress& address) {
-  return address.url.starts_with("tls:") || !address.ca.empty();
-}
-
-/// The seed in the file. No error shows it.
-Result<std::string> read_seed(const std::string& path) {
-  std::ifstream file(path);
-  std::string seed;
-  if (!(file >> seed)) return bad_input(path + ": cannot be read; it must hold the key of a user of NATS");
-  return seed;
-}
-
-/// Signs what the server asks. libnats 3.4 leaves a signature out that begins with 0, as one in 256 does. Such a
-/// connection ends here; the next one is asked something else.
-natsStatus sign_nonce(char** /*error*/, unsigned char** signature, int* length, const char* nonce, void* seed) {
-  const Result<Signature> made = sign(*static_cast<const std::string*>(seed), nonce);
-  if (!made) return NATS_ERR;
-  if (made->front() == 0) return kAskAgain;
-  *signature = static_cast<unsigned char*>(std::malloc(made->size()));  // which the library frees
-  if (*signature == nullptr) return NATS_NO_MEMORY;
-  std::copy(made->begin(), made->end(), *signature);
-  *length = static_cast<int>(made->size());
-  return NATS_OK;
-}
-
-/// The seed must live as long as the connection.
-Status set_key(natsOptions* options, const std::string& path, std::string& seed) {
-  Result<std::string> read = read_seed(path);
-  if (!read) return read.error();
-  seed = *std::move(read);
-  const Result<std::string> user = user_of_seed(seed);
-  if (!user) return bad_input(path + ": " + user.error().message);
-  const natsStatus status = natsOptions_SetNKey(options, user->c_str(), sign_nonce, &seed);
-  if (status != NATS_OK) return error_of(path, status);
-  return Done{};
+  return address.url.starts_with("tls:") || !address.ca.empty() || !address.key.empty();
 }
 
 natsStatus set_options(natsOptions* options, const BrokerAddress& address) {
@@ -220,7 +163,7 @@ natsStatus set_options(natsOptions* options, const BrokerAddress& address) {
   return both(status, natsOptions_SetExpectedHostname(options, host_of(address.url).c_str()));
 }
 
-Result<Options> make_options(const BrokerAddress& address, std::string& seed) {
+Result<Options> make_options(const BrokerAddress& address) {
   natsOptions* made = nullptr;
   natsStatus status = natsOptions_Create(&made);
   Options options(made);
@@ -229,8 +172,10 @@ Result<Options> make_options(const BrokerAddress& address, std::string& seed) {
   if (!address.ca.empty() && natsOptions_LoadCATrustedCertificates(options.get(), address.ca.c_str()) != NATS_OK) {
     return bad_input(address.ca + ": cannot be read; it must hold the certificates that sign that of the server");
   }
-  if (address.key.empty()) return options;
-  if (const Status set = set_key(options.get(), address.key, seed); !set) return set.error();
+  const char* const key = address.key.c_str();
+  if (!address.key.empty() && natsOptions_LoadCertificatesChain(options.get(), key, key) != NATS_OK) {
+    return bad_input(address.key + ": cannot be read; it must hold the certificate and the key of a user");
+  }
   return options;
 }
 
@@ -245,27 +190,26 @@ Error refusal(const BrokerAddress& address, natsStatus status) {
                        (address.ca.empty() ? "those of the machine; give ca=FILE" : address.ca));
     case NATS_SECURE_CONNECTION_WANTED:
       return bad_input(place + ": the server does not encrypt; leave out ca=FILE and write nats://");
+    case NATS_PROTOCOL_ERROR:  // the handshake was well for us, not for the server
+      if (!is_encrypted(address) || !address.key.empty()) return error_of(place, status);
+      return bad_input(place + ": the server wants the certificate of a user; give key=FILE");
     default: return error_of(place, status);
   }
 }
 
 Result<std::unique_ptr<Broker>> connect(const BrokerAddress& address) {
-  auto seed = std::make_unique<std::string>();
-  Result<Options> options = make_options(address, *seed);
+  Result<Options> options = make_options(address);
   if (!options) return options.error();
   natsConnection* made_connection = nullptr;
   natsStatus status = natsConnection_Connect(&made_connection, options->get());
-  for (int question = 1; status == kAskAgain && question < kMostQuestions; ++question) {
-    status = natsConnection_Connect(&made_connection, options->get());
-  }
   Connection connection(made_connection);
   if (status != NATS_OK) return refusal(address, status);
   jsCtx* made_context = nullptr;
   status = natsConnection_JetStream(&made_context, connection.get(), nullptr);
   JetStream jet_stream(made_context);
   if (status != NATS_OK) return error_of(without_password(address.url), status);
-  return std::unique_ptr<Broker>(std::make_unique<NatsBroker>(without_password(address.url), std::move(seed),
-                                                              std::move(connection), std::move(jet_stream)));
+  return std::unique_ptr<Broker>(
+      std::make_unique<NatsBroker>(without_password(address.url), std::move(connection), std::move(jet_stream)));
 }
 
 }  // namespace

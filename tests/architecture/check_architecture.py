@@ -96,11 +96,13 @@ def app_violations(root, rules):
 
 
 def plugin_violations(root, rules):
-    """A plugin knows its own headers, those of the room that loads it, and what all may know."""
+    """A plugin knows its own headers, those of the room that loads it and of its rooms, and what all may know."""
     for plugin, home in PLUGINS.items():
+        wing, _, room = home.partition("/")
+        known = (*KNOWN_TO_PLUGINS, *(f"{wing}/{other}/" for other in rules.rooms_of.get(wing, {}).get(room, ())))
         for path in sorted((root / "plugins" / plugin).rglob("*.[ch]pp")):
             for name, is_public in included(path):
-                is_its_own = name.startswith(f"{home}/") or (is_public and name.startswith(KNOWN_TO_PLUGINS))
+                is_its_own = name.startswith(f"{home}/") or (is_public and name.startswith(known))
                 if rules.place(name) and not is_its_own:
                     yield f"{path.relative_to(root)}: a plugin of {home} must not include {name}"
 

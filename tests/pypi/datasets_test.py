@@ -7,6 +7,7 @@ of the packages that it is made of, `datasets` and `pyarrow`."""
 
 import importlib.util
 import json
+import os
 import subprocess
 import sys
 import unittest
@@ -25,6 +26,7 @@ from rosbags.typesys import Stores, get_typestore
 sys.path.append(str(Path(__file__).resolve().parents[1] / "python"))
 from workspace import CalibratedArray, dermis, main
 
+os.environ["PATH"] = f"{Path(sys.executable).parent}:{os.environ['PATH']}"  # the python3 with pyarrow
 EPISODES = 3
 FRAMES = 151
 RATE_HZ = 150

@@ -95,6 +95,7 @@ class Dataset {
 
   void write(const py::object& folder, const std::string& layout, const std::string& task) {
     out::datasets::DatasetOptions how{.fps = options_.fps, .task = task};
+    how.python = py::module_::import("sys").attr("executable").cast<std::string>();
     how.format = value_or_raise(out::datasets::dataset_format(layout));
     const auto sink = value_or_raise(out::datasets::create_dataset(path_of(folder), how));
     make(*sink);

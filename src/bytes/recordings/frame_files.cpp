@@ -5,9 +5,7 @@
 #include <utility>
 
 #include "bytes/recordings/described_sensors.hpp"
-#include "bytes/recordings/hdf5_dataset_frames.hpp"
-#include "bytes/recordings/matlab_hdf5.hpp"
-#include "bytes/recordings/wiresens_hdf5.hpp"
+#include "bytes/recordings/hdf5_plugin.hpp"
 #include "dermis/bytes/files/frames_csv.hpp"
 #include "dermis/bytes/files/input.hpp"
 #include "dermis/bytes/files/npy.hpp"
@@ -92,7 +90,19 @@ Result<std::unique_ptr<FrameSource>> open_recording(const std::string& path, con
 
 Result<std::unique_ptr<FrameSource>> open_hdf5_dataset(const std::string& path, const FrameFileInput& input) {
   const RecordingPlace place = recording_place(path);
-  return as<FrameSource>(Hdf5DatasetReader::open(place.path, place.array, input.shape, input.rate_hz));
+  return by_hdf5(&Hdf5Plugin::open_dataset, place.path, place.array, input.shape, input.rate_hz);
+}
+
+/// A file of MATLAB 7.3, which is HDF5.
+bool is_matlab_hdf5(const std::string& path) {
+  constexpr std::string_view kBeginning = "MATLAB 7.3";
+  return files::first_bytes_of(path, kBeginning.size()) == kBeginning;
+}
+
+Result<std::unique_ptr<FrameSource>> open_matlab_hdf5(const std::string& path, const formats::ImportOptions& options) {
+  const Result<std::unique_ptr<formats::MatlabFile>> file = by_hdf5(&Hdf5Plugin::open_matlab, path);
+  if (!file) return file.error();
+  return formats::open_matlab(**file, path, options);
 }
 
 /// Files of other systems.
@@ -138,9 +148,9 @@ Result<std::unique_ptr<FrameSink>> create_recording(const std::string& path, Fra
 Result<std::unique_ptr<FrameSource>> open_format(const std::string& path, FrameFormat format,
                                                  const FrameFileInput& input) {
   switch (format) {
-    case FrameFormat::hdf5: return as<FrameSource>(Hdf5FramesReader::open(path, input.shape));
+    case FrameFormat::hdf5: return as<FrameSource>(by_hdf5(&Hdf5Plugin::open_frames, path, input.shape));
     case FrameFormat::hdf5_dataset: return open_hdf5_dataset(path, input);
-    case FrameFormat::wiresens: return as<FrameSource>(WiresensHdf5Reader::open(path, input.shape));
+    case FrameFormat::wiresens: return by_hdf5(&Hdf5Plugin::open_wiresens, path, input.shape);
     case FrameFormat::npy: return as<FrameSource>(files::NpyReader::open(path, {*input.rate_hz, input.shape}));
     case FrameFormat::csv: return as<FrameSource>(files::FramesCsvReader::open(path, input.shape, input.loss));
     default: return open_import(path, format, input);
@@ -169,7 +179,7 @@ Result<FrameNotes> read_frame_notes(const std::string& path) {
     return (*reader)->notes();
   }
   if (*format == FrameFormat::hdf5) {
-    const auto reader = Hdf5FramesReader::open(path);
+    const auto reader = by_hdf5(&Hdf5Plugin::open_frames, path, std::optional<FrameShape>());
     if (!reader) return reader.error();
     return (*reader)->notes();
   }
@@ -181,8 +191,8 @@ Result<std::unique_ptr<FrameSink>> create_frames(const std::string& path, FrameS
   if (!format) return format.error();
   switch (*format) {
     case FrameFormat::mcap: return create_recording(path, shape, notes);
-    case FrameFormat::hdf5: return as<FrameSink>(Hdf5FramesWriter::create(path, shape, notes));
-    case FrameFormat::wiresens: return as<FrameSink>(WiresensHdf5Writer::create(path, shape));
+    case FrameFormat::hdf5: return by_hdf5(&Hdf5Plugin::create_frames, path, shape, notes);
+    case FrameFormat::wiresens: return by_hdf5(&Hdf5Plugin::create_wiresens, path, shape);
     case FrameFormat::npy: return as<FrameSink>(files::NpyWriter::create(path, shape));
     default: return as<FrameSink>(files::FramesCsvWriter::create(path, shape, {.sensors = described_sensors(notes)}));
   }

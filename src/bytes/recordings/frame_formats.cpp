@@ -6,7 +6,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "bytes/recordings/hdf5.hpp"
+#include "bytes/recordings/hdf5_plugin.hpp"
 #include "dermis/bytes/files/file_kind.hpp"
 #include "dermis/bytes/files/input.hpp"
 #include "dermis/bytes/files/text.hpp"
@@ -51,13 +51,12 @@ bool is_stream(const std::string& path) {
 
 /// Which of the HDF5 formats a file has, by its datasets.
 Result<FrameFormat> hdf5_format(const std::string& path) {
-  const QuietHdf5 quiet;
-  const Result<Hdf5Input> file = Hdf5Input::open(path);
-  if (!file) return file.error();
-  if (file->contains("counts")) return FrameFormat::hdf5;
-  if (file->contains("pressure") && file->contains("frame_count")) return FrameFormat::wiresens;
+  const Result<Hdf5Contents> found = by_hdf5(&Hdf5Plugin::contents, path);
+  if (!found) return found.error();
+  if (found->has_frames) return FrameFormat::hdf5;
+  if (found->has_wiresens) return FrameFormat::wiresens;
   return bad_input(path + ": has neither the dataset 'counts' (dermis) nor 'pressure' and 'frame_count' (WiReSens): " +
-                   "name one, as " + files::in_quotes(path + "#/observations/tactile") + file->datasets_text());
+                   "name one, as " + files::in_quotes(path + "#/observations/tactile") + found->datasets);
 }
 
 /// A folder that 'dermis simulate' has written.

@@ -4,7 +4,6 @@
 
 #include "dermis/bytes/system/plugin.hpp"
 #include "dermis/live/fleet/model_store.hpp"
-#include "live/fleet/fleet_keys.hpp"
 
 namespace dermis::live::fleet {
 namespace {
@@ -22,14 +21,6 @@ Result<std::unique_ptr<Broker>> connect_broker(const BrokerAddress& address) {
   Result<std::unique_ptr<Broker>> connected{std::unique_ptr<Broker>()};
   reinterpret_cast<ConnectBroker>(*function)(address, connected);
   return connected;
-}
-
-Result<std::unique_ptr<FleetKeys>> load_fleet_keys() {
-  const Result<void*> function = find_function(kMakeFleetKeys);
-  if (!function) return function.error();
-  std::unique_ptr<FleetKeys> made;
-  reinterpret_cast<MakeFleetKeys>(*function)(made);
-  return made;
 }
 
 Result<std::string> sha256(std::string_view bytes) {

@@ -26,12 +26,6 @@ struct StoredMessage {
   std::vector<std::uint8_t> bytes;
 };
 
-/// A message that is ours until its lease ends.
-struct Delivery {
-  std::string text;
-  std::string lease;  ///< The subject to which its receiver answers.
-};
-
 /// A connection to a server. It connects again by itself; meanwhile all fail. Thread-safe.
 class Broker {
  public:
@@ -42,9 +36,6 @@ class Broker {
 
   /// The answer to a request, such as those of the API of JetStream in JSON.
   [[nodiscard]] virtual Result<std::string> ask(const std::string& subject, const std::string& request) = 0;
-  /// The message that a request to a consumer brings; empty where the server has none.
-  [[nodiscard]] virtual Result<std::optional<Delivery>> take(const std::string& subject,
-                                                             const std::string& request) = 0;
   /// All that waits for an answer, or asks from now on, fails at once.
   virtual void stop() = 0;
   /// Does not wait for an answer.

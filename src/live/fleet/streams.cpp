@@ -8,23 +8,8 @@ namespace dermis::live::fleet {
 namespace {
 
 constexpr std::int64_t kDuplicatesNanos = 120'000'000'000;
-constexpr int kMostDeliveries = 1000;  // to have leases, a server wants a limit; workers give up a job long before
 constexpr std::uint64_t kStreamNameInUse = 10058;  // one of the name is there, with other settings
 constexpr std::uint64_t kNoStream = 10059;
-constexpr std::uint64_t kConsumerNameInUse = 10013;  // the same
-
-/// Asks for something of a name to be made. One that is there stays as it is.
-Status create(Broker& broker, const std::string& what, const std::string& subject, const Json& settings) {
-  const Result<std::string> answer = broker.ask(subject, settings.dump());
-  if (!answer) return answer.error();
-  const Json made = Json::parse(*answer, nullptr, false);
-  if (!made.is_object()) return failed(what + ": the server's answer is no JSON");
-  if (!made.contains("error")) return Done{};
-  const Json error = object_at(made, "error");
-  const std::uint64_t code = number_at(error, "err_code");
-  if (code == kStreamNameInUse || code == kConsumerNameInUse) return Done{};
-  return failed(what + ": the server refuses it: " + text_at(error, "description"));
-}
 
 Result<Json> stream_info(Broker& broker, const std::string& name) {
   const Result<std::string> answer = broker.ask("$JS.API.STREAM.INFO." + name, "");
@@ -34,13 +19,19 @@ Result<Json> stream_info(Broker& broker, const std::string& name) {
   return info;
 }
 
-/// With `settings` besides the usual ones.
+/// With `settings` besides the usual ones. One that is there stays as it is.
 Status create_stream(Broker& broker, const std::string& name, const Json& settings) {
   Json all = {{"name", name},      {"storage", "file"},   {"retention", "limits"},
               {"discard", "old"},  {"max_consumers", -1}, {"max_msgs", -1},
               {"num_replicas", 1}, {"max_bytes", -1},     {"allow_direct", true}};
   all.update(settings);
-  return create(broker, "stream " + name, "$JS.API.STREAM.CREATE." + name, all);
+  const Result<std::string> answer = broker.ask("$JS.API.STREAM.CREATE." + name, all.dump());
+  if (!answer) return answer.error();
+  const Json made = Json::parse(*answer, nullptr, false);
+  if (!made.is_object()) return failed("stream " + name + ": the server's answer is no JSON");
+  const Json error = object_at(made, "error");
+  if (error.empty() || number_at(error, "err_code") == kStreamNameInUse) return Done{};
+  return failed("stream " + name + ": the server refuses it: " + text_at(error, "description"));
 }
 
 }  // namespace
@@ -69,18 +60,6 @@ Result<bool> has_stream(Broker& broker, const std::string& name) {
   if (error.empty()) return true;
   if (number_at(error, "err_code") == kNoStream) return false;
   return failed("stream " + name + ": " + text_at(error, "description"));
-}
-
-Status make_work_queue(Broker& broker, const std::string& name, const std::string& subject,
-                       std::span<const std::chrono::seconds> leases) {
-  Json stream = {{"retention", "workqueue"}};
-  stream["subjects"] = Json::array({subject});
-  if (Status made = create_stream(broker, name, stream); !made) return made;
-  Json config = {{"durable_name", name},       {"ack_policy", "explicit"},       {"deliver_policy", "all"},
-                 {"replay_policy", "instant"}, {"max_deliver", kMostDeliveries}, {"max_ack_pending", -1}};
-  for (const std::chrono::nanoseconds lease : leases) config["backoff"].push_back(lease.count());
-  return create(broker, "consumer " + name, "$JS.API.CONSUMER.DURABLE.CREATE." + name + "." + name,
-                {{"stream_name", name}, {"config", config}});
 }
 
 Status make_log(Broker& broker, const std::string& name, const std::string& subjects) {

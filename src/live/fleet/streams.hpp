@@ -2,9 +2,6 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
-#include <chrono>
-#include <cstdint>
-#include <span>
 #include <string>
 
 #include "dermis/touch/frames/result.hpp"
@@ -22,11 +19,6 @@ namespace dermis::live::fleet {
 
 /// Whether the server has a stream of this name.
 [[nodiscard]] Result<bool> has_stream(Broker& broker, const std::string& name);
-
-/// A stream from which a message is away when a worker has acknowledged it, and its consumer of the same name. Another
-/// worker gets a message that is not acknowledged within the lease of its try; later tries have the last one.
-[[nodiscard]] Status make_work_queue(Broker& broker, const std::string& name, const std::string& subject,
-                                     std::span<const std::chrono::seconds> leases);
 
 /// A stream that keeps the last message of each subject.
 [[nodiscard]] Status make_log(Broker& broker, const std::string& name, const std::string& subjects);

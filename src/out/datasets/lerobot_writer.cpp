@@ -12,9 +12,8 @@
 
 #include "out/datasets/column_statistics.hpp"
 #include "out/datasets/dataset_writers.hpp"
-#include "out/datasets/episode_table.hpp"
 #include "out/datasets/in_parallel.hpp"
-#include "out/datasets/parquet_file.hpp"
+#include "out/datasets/lerobot_tables.hpp"
 
 // The layout of LeRobot 0.4: "v3.0".
 namespace dermis::out::datasets {
@@ -22,18 +21,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMostWaitingBytes = std::size_t{16} << 20U;
 constexpr std::uint64_t kBytesOfFile = std::uint64_t{100} << 20U;  // a new file then begins with the next episode
 constexpr std::size_t kFilesOfChunk = 1000;
-
-ParquetType parquet_type(ColumnType type) {
-  switch (type) {
-    case ColumnType::float32: return ParquetType::float32;
-    case ColumnType::int64: return ParquetType::int64;
-    case ColumnType::boolean: break;
-  }
-  return ParquetType::boolean;
-}
 
 const char* dtype(ColumnType type) {
   switch (type) {
@@ -74,10 +63,6 @@ void append(T value, std::vector<std::byte>& bytes) {
   bytes.insert(bytes.end(), first, first + sizeof value);
 }
 
-std::span<const std::byte> bytes_of_text(const std::string& text) {
-  return std::as_bytes(std::span(text));
-}
-
 class LeRobotWriter final : public EpisodeSink {
  public:
   LeRobotWriter(std::unique_ptr<OutputFolder> folder, DatasetOptions options)
@@ -87,78 +72,67 @@ class LeRobotWriter final : public EpisodeSink {
     columns_ = columns;
     const std::vector<Column> own = own_columns();
     columns_.insert(columns_.end(), own.begin(), own.end());
-    std::vector<EpisodeTable::Feature> features;
+    Json plan = {{"columns", Json::array()},
+                 {"task", options_.task},
+                 {"bytes_of_file", kBytesOfFile},
+                 {"files_of_chunk", kFilesOfChunk}};
     for (const Column& column : columns_) {
       statistics_.emplace_back(column);
-      features.push_back({feature_of(column), column.shape});
+      const bool is_number = column.shape == std::vector<std::size_t>{1};
+      plan["columns"].push_back({{"name", feature_of(column)},
+                                 {"type", dtype(column.type)},
+                                 {"shape", is_number ? Json::array() : Json(column.shape)}});
     }
     of_episode_ = statistics_;
-    auto episodes = EpisodeTable::create(folder_->place("meta/episodes/chunk-000/file-000.parquet"), features);
-    if (!episodes) return episodes.error();
-    episodes_ = *std::move(episodes);
-    return Done{};
+    auto tables = LeRobotTables::start(options_.python, folder_->place(""));
+    if (!tables) return tables.error();
+    tables_ = *std::move(tables);
+    return tables_->send_line(plan.dump());
   }
 
   Status write(const StepBlock& block) override {
-    if (file_ == nullptr) {
-      if (Status opened = open_file(); !opened) return opened;
-    }
     const std::vector<std::vector<std::byte>> own = own_values(block.steps);
     std::vector<std::span<const std::byte>> values(block.values.begin(), block.values.end());
     values.insert(values.end(), own.begin(), own.end());
-    file_->write(block.steps, values);
+    if (Status told = tables_->send_line(Json({{"steps", block.steps}}).dump()); !told) return told;
+    for (const std::span<const std::byte> column : values) {
+      if (Status sent = tables_->send(column); !sent) return sent;
+    }
     in_parallel(columns_.size(), [&](std::size_t k) { of_episode_[k].add(values[k]); });
     steps_of_episode_ += block.steps;
-    return file_->waiting_bytes() > kMostWaitingBytes ? file_->end_row_group() : Status(Done{});
+    return Done{};
   }
 
   Status end_episode() override {
-    const auto from = static_cast<std::int64_t>(steps_);
-    steps_ += steps_of_episode_;
-    const auto length = static_cast<std::int64_t>(std::exchange(steps_of_episode_, 0));
-    Status added = episodes_->add(
-        {static_cast<std::int64_t>(episode_++), length, static_cast<std::int64_t>(file_index_ / kFilesOfChunk),
-         static_cast<std::int64_t>(file_index_ % kFilesOfChunk), from, static_cast<std::int64_t>(steps_), 0, 0},
-        options_.task, of_episode_);
-    if (!added) return added;
+    Json statistics = Json::array();
+    for (const ColumnStatistics& of : of_episode_) statistics.push_back(statistics_of(of));
+    const Json episode = {
+        {"index", episode_++}, {"length", steps_of_episode_}, {"from", steps_}, {"statistics", statistics}};
+    steps_ += std::exchange(steps_of_episode_, 0);
     for (std::size_t k = 0; k < columns_.size(); ++k) {
       statistics_[k].add(of_episode_[k]);
       of_episode_[k] = ColumnStatistics(columns_[k]);
     }
-    if (Status ended = file_->end_row_group(); !ended) return ended;
-    return file_->bytes() > kBytesOfFile ? close_file() : Status(Done{});
+    return tables_->send_line(Json({{"episode", episode}}).dump());
   }
 
   Status commit() override {
-    Status done = file_ == nullptr ? Status(Done{}) : close_file();
-    if (done) done = write_tasks();
-    if (done) done = episodes_->finish();
+    Status done = tables_->finish();
     if (done) done = folder_->write("meta/stats.json", stats().dump(1));
     if (done) done = folder_->write("meta/info.json", info().dump(4));
     return done ? folder_->commit() : done;
   }
 
  private:
-  Status open_file() {
-    std::vector<ParquetColumn> columns;
-    for (const Column& column : columns_) {
-      const bool is_number = column.shape == std::vector<std::size_t>{1};
-      columns.push_back(
-          {feature_of(column), parquet_type(column.type), is_number ? std::vector<std::size_t>() : column.shape});
+  [[nodiscard]] static Json statistics_of(const ColumnStatistics& of) {
+    Json all = Json::object();
+    for (std::size_t k = 0; k < of.elements(); ++k) {
+      all["min"].push_back(of.lowest(k));
+      all["max"].push_back(of.highest(k));
+      all["mean"].push_back(of.mean(k));
+      all["std"].push_back(of.deviation(k));
     }
-    const std::string name =
-        fmt::format("data/chunk-{:03}/file-{:03}.parquet", file_index_ / kFilesOfChunk, file_index_ % kFilesOfChunk);
-    auto file = ParquetFile::create(folder_->place(name), std::move(columns));
-    if (!file) return file.error();
-    file_ = *std::move(file);
-    return Done{};
-  }
-
-  Status close_file() {
-    Status finished = file_->finish();
-    file_.reset();
-    ++file_index_;
-    return finished;
+    return all;
   }
 
   [[nodiscard]] std::vector<std::vector<std::byte>> own_values(std::size_t steps) const {
@@ -172,27 +146,6 @@ class LeRobotWriter final : public EpisodeSink {
       append(std::int64_t{0}, values[4]);
     }
     return values;
-  }
-
-  /// A table of pandas whose index are the sentences.
-  Status write_tasks() const {
-    auto file = ParquetFile::create(folder_->place("meta/tasks.parquet"),
-                                    {{"task_index", ParquetType::int64}, {"task", ParquetType::text}});
-    if (!file) return file.error();
-    const std::int64_t index = 0;
-    const std::string task = plain_text(options_.task);
-    const std::vector<std::span<const std::byte>> values = {std::as_bytes(std::span(&index, 1)), bytes_of_text(task)};
-    (*file)->write(1, values);
-    const auto column = [](const char* name, const char* pandas, const char* numpy) {
-      return Json{
-          {"name", name}, {"field_name", name}, {"pandas_type", pandas}, {"numpy_type", numpy}, {"metadata", nullptr}};
-    };
-    const Json pandas = {
-        {"index_columns", Json::array({"task"})},
-        {"column_indexes", Json::array()},
-        {"columns", Json::array({column("task_index", "int64", "int64"), column("task", "unicode", "object")})},
-        {"pandas_version", "2.0.0"}};
-    return (*file)->finish({{"pandas", pandas.dump()}});
   }
 
   [[nodiscard]] Json stats() const {
@@ -239,9 +192,7 @@ class LeRobotWriter final : public EpisodeSink {
   std::vector<Column> columns_;               ///< Those of LeRobot at the end.
   std::vector<ColumnStatistics> statistics_;  ///< Of the episodes that have ended.
   std::vector<ColumnStatistics> of_episode_;
-  std::unique_ptr<ParquetFile> file_;
-  std::size_t file_index_ = 0;
-  std::unique_ptr<EpisodeTable> episodes_;
+  std::unique_ptr<LeRobotTables> tables_;
   std::size_t episode_ = 0;
   std::size_t steps_ = 0;  ///< Of the episodes that have ended.
   std::size_t steps_of_episode_ = 0;

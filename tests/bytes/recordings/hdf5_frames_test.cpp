@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/bytes/recordings/hdf5_frames.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
+#include "bytes/recordings/hdf5_plugin.hpp"
 #include "support/full_disk.hpp"
 #include "support/mutations.hpp"
 #include "support/random_frames.hpp"
@@ -15,15 +14,17 @@
 namespace dermis::bytes::recordings {
 namespace {
 
+const std::optional<FrameShape> kAnyShape;
+
 Status write_file(const std::string& path, FrameShape shape, const std::vector<RawFrame>& frames,
                   const FrameNotes& notes = {}) {
-  const auto writer = Hdf5FramesWriter::create(path, shape, notes);
+  const auto writer = by_hdf5(&Hdf5Plugin::create_frames, path, shape, notes);
   if (!writer) return writer.error();
   return support::write_all(**writer, frames);
 }
 
 Result<std::vector<RawFrame>> read_file(const std::string& path) {
-  const auto reader = Hdf5FramesReader::open(path);
+  const auto reader = by_hdf5(&Hdf5Plugin::open_frames, path, kAnyShape);
   if (!reader) return reader.error();
   return support::read_all(**reader);
 }
@@ -32,7 +33,7 @@ void expect_round_trip(FrameShape shape, const std::vector<RawFrame>& frames) {
   const support::TemporaryFolder folder;
   const Status written = write_file(folder.file("f.h5"), shape, frames);
   ASSERT_TRUE(written) << written.error().message;
-  const auto reader = Hdf5FramesReader::open(folder.file("f.h5"));
+  const auto reader = by_hdf5(&Hdf5Plugin::open_frames, folder.file("f.h5"), kAnyShape);
   ASSERT_TRUE(reader) << reader.error().message;
   EXPECT_EQ((*reader)->shape(), shape);
   support::expect_same_frames(**reader, frames);
@@ -102,7 +103,7 @@ TEST(Hdf5Frames, keep_what_is_said_of_all_frames) {
   const support::TemporaryFolder folder;
   const FrameNotes notes{"chest", "[array]\nname = \"chest\"\n# \xC2\xB5\n", "00ff", "sim:multitouch"};
   ASSERT_TRUE(write_file(folder.file("f.h5"), {1, 2}, {}, notes));
-  const auto reader = Hdf5FramesReader::open(folder.file("f.h5"));
+  const auto reader = by_hdf5(&Hdf5Plugin::open_frames, folder.file("f.h5"), kAnyShape);
   ASSERT_TRUE(reader);
   EXPECT_EQ((*reader)->notes(), notes);
 }
@@ -112,7 +113,7 @@ TEST(Hdf5Frames, count_the_lost_frames) {
   std::vector<RawFrame> frames = support::random_frames(5, 3, 2);
   for (RawFrame& frame : frames) frame.acquisition.lost_before = 2;
   ASSERT_TRUE(write_file(folder.file("f.h5"), {1, 2}, frames));
-  const auto reader = Hdf5FramesReader::open(folder.file("f.h5"));
+  const auto reader = by_hdf5(&Hdf5Plugin::open_frames, folder.file("f.h5"), kAnyShape);
   ASSERT_TRUE(reader);
   ASSERT_TRUE(support::read_all(**reader));
   EXPECT_EQ((*reader)->statistics().frames, 3U);
@@ -123,7 +124,7 @@ TEST(Hdf5Frames, of_another_shape_are_refused) {
   const support::TemporaryFolder folder;
   const std::string path = folder.file("f.h5");
   ASSERT_TRUE(write_file(path, {3, 4}, {}));
-  const auto reader = Hdf5FramesReader::open(path, FrameShape{12, 32});
+  const auto reader = by_hdf5(&Hdf5Plugin::open_frames, path, FrameShape{12, 32});
   ASSERT_FALSE(reader);
   EXPECT_EQ(reader.error().message, path + ": has 3x4 taxels, the array is 12x32");
 }
@@ -131,7 +132,7 @@ TEST(Hdf5Frames, of_another_shape_are_refused) {
 TEST(Hdf5Frames, leave_nothing_behind_without_commit) {
   const support::TemporaryFolder folder;
   {
-    const auto writer = Hdf5FramesWriter::create(folder.file("f.h5"), {1, 2});
+    const auto writer = by_hdf5(&Hdf5Plugin::create_frames, folder.file("f.h5"), FrameShape{1, 2}, FrameNotes());
     ASSERT_TRUE(writer);
     for (const RawFrame& frame : support::random_frames(6, 3000, 2)) ASSERT_TRUE((*writer)->write(frame));
   }
@@ -139,10 +140,10 @@ TEST(Hdf5Frames, leave_nothing_behind_without_commit) {
 }
 
 TEST(Hdf5Frames, need_a_regular_file) {
-  const auto writer = Hdf5FramesWriter::create("/dev/full", {1, 2});
+  const auto writer = by_hdf5(&Hdf5Plugin::create_frames, "/dev/full", FrameShape{1, 2}, FrameNotes());
   ASSERT_FALSE(writer);
   EXPECT_EQ(writer.error().message, "cannot write '/dev/full': this format needs a regular file");
-  const auto reader = Hdf5FramesReader::open("/dev/null");
+  const auto reader = by_hdf5(&Hdf5Plugin::open_frames, "/dev/null", kAnyShape);
   ASSERT_FALSE(reader);
   EXPECT_EQ(reader.error().message, "/dev/null: HDF5 needs a regular file");
 }
@@ -167,11 +168,11 @@ TEST(Hdf5Frames, end_with_one_error_wherever_the_disk_is_full) {
 TEST(Hdf5Frames, name_what_is_no_hdf5_file) {
   const support::TemporaryFolder folder;
   const std::string path = folder.file("f.h5");
-  const auto missing = Hdf5FramesReader::open(path);
+  const auto missing = by_hdf5(&Hdf5Plugin::open_frames, path, kAnyShape);
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().message, "cannot open '" + path + "': No such file or directory");
   support::write_bytes(path, "time_s,r0c0\n");
-  const auto text = Hdf5FramesReader::open(path);
+  const auto text = by_hdf5(&Hdf5Plugin::open_frames, path, kAnyShape);
   ASSERT_FALSE(text);
   EXPECT_EQ(text.error().kind, ErrorKind::bad_input);
   EXPECT_TRUE(text.error().message.starts_with(path + ": is no HDF5 file")) << text.error().message;

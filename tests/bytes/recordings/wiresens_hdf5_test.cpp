@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "bytes/recordings/wiresens_hdf5.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "bytes/recordings/hdf5_plugin.hpp"
 #include "support/full_disk.hpp"
 #include "support/random_frames.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace dermis::bytes::recordings {
 namespace {
+
+const std::optional<FrameShape> kAnyShape;
 
 // Files as WiReSens itself writes them are made with h5py in tests/command_line/convert_test.py.
 
@@ -23,7 +24,7 @@ RawFrame frame_at(Nanos time, std::vector<float> counts) {
 }
 
 Status write_file(const std::string& path, FrameShape shape, const std::vector<RawFrame>& frames) {
-  const auto writer = WiresensHdf5Writer::create(path, shape);
+  const auto writer = by_hdf5(&Hdf5Plugin::create_wiresens, path, shape);
   if (!writer) return writer.error();
   return support::write_all(**writer, frames);
 }
@@ -31,7 +32,7 @@ Status write_file(const std::string& path, FrameShape shape, const std::vector<R
 void expect_round_trip(const std::vector<RawFrame>& frames, FrameShape shape) {
   const support::TemporaryFolder folder;
   ASSERT_TRUE(write_file(folder.file("f.hdf5"), shape, frames));
-  const auto reader = WiresensHdf5Reader::open(folder.file("f.hdf5"));
+  const auto reader = by_hdf5(&Hdf5Plugin::open_wiresens, folder.file("f.hdf5"), kAnyShape);
   ASSERT_TRUE(reader) << reader.error().message;
   EXPECT_EQ((*reader)->shape(), shape);
   support::expect_same_frames(**reader, frames);

@@ -16,11 +16,11 @@ std::string error_of(const std::string& text) {
 
 TEST(StreamAddress, names_the_frames_of_an_array) {
   const Result<StreamAddress> parsed =
-      parse_stream_address("tls://hub:4222?robot=r-1&array=left_hand&ca=hub.pem&key=a.seed");
+      parse_stream_address("tls://hub:4222?robot=r-1&array=left_hand&ca=hub.pem&key=a.pem");
   ASSERT_TRUE(parsed) << parsed.error().message;
   EXPECT_EQ(parsed->broker.url, "tls://hub:4222");
   EXPECT_EQ(parsed->broker.ca, "hub.pem");
-  EXPECT_EQ(parsed->broker.key, "a.seed");
+  EXPECT_EQ(parsed->broker.key, "a.pem");
   EXPECT_EQ(parsed->robot, "r-1");
   EXPECT_EQ(parsed->array, "left_hand");
   EXPECT_TRUE(std::holds_alternative<Newest>(parsed->from));

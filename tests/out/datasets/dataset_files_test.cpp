@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 
 #include "support/temporary_folder.hpp"
@@ -25,6 +26,12 @@ Status write_dataset(EpisodeSink& sink) {
 }
 
 class DatasetFiles : public testing::TestWithParam<std::string> {
+ public:
+  void SetUp() override {
+    const bool has_writer = GetParam() != "lerobot" || std::system("python3 -c 'import pyarrow' 2>/dev/null") == 0;
+    if (!has_writer) GTEST_SKIP() << "skipped: python3 has no pyarrow (tests/pypi has)";
+  }
+
  protected:
   [[nodiscard]] DatasetOptions options() const { return {.format = *dataset_format(GetParam())}; }
 
@@ -67,6 +74,27 @@ TEST_P(DatasetFiles, replace_nothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(formats, DatasetFiles, testing::ValuesIn(dataset_formats()));
+
+TEST(LeRobotFiles, say_that_there_is_no_python_to_write_them) {
+  support::TemporaryFolder folder;
+  const auto sink = create_dataset(folder.file("set"), {.python = "no-python"});
+  ASSERT_TRUE(sink);
+  const Status begun = (*sink)->begin({});
+  ASSERT_FALSE(begun);
+  EXPECT_EQ(begun.error().message,
+            "LeRobot datasets are written by Python and pyarrow: no-python: No such file or directory");
+}
+
+TEST(LeRobotFiles, say_what_the_python_lacks) {
+  support::TemporaryFolder folder;
+  const std::string bare = folder.file("bare");
+  support::write_bytes(bare, "#!/bin/sh\nexec /usr/bin/python3 -S -E \"$@\"\n");  // without any package
+  std::filesystem::permissions(bare, std::filesystem::perms::owner_all);
+  const auto sink = create_dataset(folder.file("set"), {.python = bare});
+  const Status begun = (*sink)->begin({});
+  ASSERT_FALSE(begun);
+  EXPECT_NE(begun.error().message.find("pip install pyarrow"), std::string::npos) << begun.error().message;
+}
 
 TEST(DatasetFormats, are_known_by_their_names) {
   EXPECT_EQ(*dataset_format("zarr"), DatasetFormat::zarr);

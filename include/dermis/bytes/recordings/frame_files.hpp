@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "dermis/bytes/recordings/hdf5_frames.hpp"
+#include "dermis/bytes/recordings/frame_notes.hpp"
 #include "dermis/touch/frames/frame_sink.hpp"
 #include "dermis/touch/frames/frame_source.hpp"
 #include "dermis/touch/frames/frames.hpp"

@@ -18,30 +18,27 @@ class Hdf5Tables {
  public:
   enum class Number { float32, int64, uint8 };
 
+  /// Also fails where the plugin of HDF5 is not there.
   [[nodiscard]] static Result<std::unique_ptr<Hdf5Tables>> create(const std::string& path);
-  ~Hdf5Tables();
+  Hdf5Tables() = default;
+  virtual ~Hdf5Tables() = default;
   Hdf5Tables(const Hdf5Tables&) = delete;
   Hdf5Tables& operator=(const Hdf5Tables&) = delete;
 
   /// "/observations/tactile/chest", with the groups on the way to it. `row_shape`: of one row; empty: a number. Returns
   /// the index of the table.
-  [[nodiscard]] Result<std::size_t> add(const std::string& name, Number number,
-                                        const std::vector<std::size_t>& row_shape);
+  [[nodiscard]] virtual Result<std::size_t> add(const std::string& name, Number number,
+                                                const std::vector<std::size_t>& row_shape) = 0;
   /// Rows of C order behind those that the table has.
-  [[nodiscard]] Status append(std::size_t table, std::size_t rows, const void* values);
+  [[nodiscard]] virtual Status append(std::size_t table, std::size_t rows, const void* values) = 0;
 
   /// Attributes of the file ("/"), a group or a table, which must exist.
-  [[nodiscard]] Status set_text(const std::string& object, const char* name, const std::string& text);
-  [[nodiscard]] Status set_number(const std::string& object, const char* name, std::int64_t number);
+  [[nodiscard]] virtual Status set_text(const std::string& object, const char* name, const std::string& text) = 0;
+  [[nodiscard]] virtual Status set_number(const std::string& object, const char* name, std::int64_t number) = 0;
   /// Its type is that of the booleans of h5py.
-  [[nodiscard]] Status set_flag(const std::string& object, const char* name, bool flag);
+  [[nodiscard]] virtual Status set_flag(const std::string& object, const char* name, bool flag) = 0;
 
-  [[nodiscard]] Status commit();
-
- private:
-  struct State;
-  explicit Hdf5Tables(std::unique_ptr<State> state);
-  std::unique_ptr<State> state_;
+  [[nodiscard]] virtual Status commit() = 0;
 };
 
 }  // namespace dermis::bytes::recordings

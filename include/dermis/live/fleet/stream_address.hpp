@@ -17,7 +17,8 @@ namespace dermis::live::fleet {
 struct BrokerAddress {
   std::string url{};  ///< "nats://hub:4222", "tls://hub:4222", also with "user:password@".
   std::string ca{};  ///< Path of the certificates that sign that of the server; empty: those of the machine, with tls:.
-  std::string key{};  ///< Path of the seed of the user (nkey); empty: none.
+  std::string
+      key{};  ///< Path of the certificate and the key of the user, in PEM; the server must encrypt. Empty: none.
 };
 
 /// A place in a stream: after all that is there, at a number of the stream, or at a time by UTC.

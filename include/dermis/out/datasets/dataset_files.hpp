@@ -28,7 +28,8 @@ enum class DatasetFormat {
 struct DatasetOptions {
   DatasetFormat format = DatasetFormat::lerobot;
   double fps = 30.0;
-  std::string task = "touch";  ///< LeRobot has one sentence for each episode.
+  std::string task = "touch";      ///< LeRobot has one sentence for each episode.
+  std::string python = "python3";  ///< The interpreter that has pyarrow, which writes those of LeRobot.
 };
 
 /// A dataset in the new folder `folder`, which appears complete or not at all. Fails where it exists and is not empty.
