@@ -11,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "bytes/devices/protocols.hpp"
 #include "dermis/touch/frames/array_description.hpp"
 #include "dermis/touch/frames/nearest_name.hpp"
 
@@ -140,12 +141,9 @@ std::string quoted_list(std::string_view text) {
   return list + "]";
 }
 
-/// The usual baud of a protocol (PyFlexiTac, MatrixArray.ino, WiSensToolkit.cpp, TouchStreamer).
 unsigned usual_baud(const std::string& protocol) {
-  if (protocol == "flexitac" || protocol == "3dvitac") return 2'000'000;
-  if (protocol == "stag") return 1'000'000;
-  if (protocol == "wiresens") return 250'000;
-  return 115'200;
+  const ProtocolEntry* const entry = find_protocol(protocol);
+  return entry != nullptr ? entry->baud : kUsualBaud;
 }
 
 /// A URI on its way into a SourceUri; the first error is kept.
