@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -15,6 +14,7 @@
 
 #include "bytes/files/config_text.hpp"
 #include "dermis/bytes/files/file_kind.hpp"
+#include "dermis/bytes/files/numbers.hpp"
 #include "dermis/touch/frames/nearest_name.hpp"
 
 namespace dermis::bytes::files {
@@ -62,8 +62,8 @@ const toml::node* part_of(const toml::table& table, std::string_view part) {
   if (bracket == std::string_view::npos || node == nullptr) return node;
   const toml::array* list = node->as_array();
   std::size_t place = 0;
-  std::from_chars(part.data() + bracket + 1, part.data() + part.size(), place);
-  return list != nullptr && place < list->size() ? list->get(place) : nullptr;
+  const bool has_place = number_at(part.substr(bracket + 1), place) > 0;
+  return list != nullptr && has_place && place < list->size() ? list->get(place) : nullptr;
 }
 
 std::string place_in(const std::string& list, std::size_t place) {
