@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "bytes/devices/described_protocols.hpp"
-
 #include <algorithm>
 #include <iterator>
 #include <memory>
@@ -10,6 +8,7 @@
 #include <utility>
 
 #include "bytes/devices/layout_encoder.hpp"
+#include "bytes/devices/protocols.hpp"
 #include "dermis/bytes/layouts/layout.hpp"
 #include "dermis/bytes/layouts/shipped_layouts.hpp"
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "bytes/devices/described_protocols.hpp"
 #include "bytes/devices/protocols.hpp"
 #include "dermis/bytes/layouts/layout.hpp"
 #include "dermis/touch/frames/array_description.hpp"

@@ -34,6 +34,8 @@ struct ProtocolEntry {
   unsigned baud = kUsualBaud;
 };
 
+/// Those that layouts describe: a file of layouts/shipped each.
+[[nodiscard]] const std::vector<ProtocolEntry>& described_protocols();
 /// All, by name, and "auto" at the end.
 [[nodiscard]] const std::vector<ProtocolEntry>& protocol_entries();
 [[nodiscard]] const ProtocolEntry* find_protocol(std::string_view name);

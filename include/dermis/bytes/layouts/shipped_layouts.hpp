@@ -22,7 +22,10 @@ struct ShippedLayout {
   [[nodiscard]] std::shared_ptr<const Layout> of(const FrameShape& shape) const;
 };
 
-/// All, by name. Thread-safe.
+/// From the text of such a file.
+[[nodiscard]] ShippedLayout read_shipped(std::string_view name, std::string_view toml);
+
+/// All, by name; its source is made by CMake. Thread-safe.
 [[nodiscard]] const std::vector<ShippedLayout>& shipped_layouts();
 
 }  // namespace dermis::bytes::layouts
