@@ -15,13 +15,10 @@
 namespace dermis::bytes::devices {
 namespace {
 
-constexpr std::array kProtocols = {"dermis",   "flexitac", "m1616",        "pressure-mat", "wuji", "3dvitac",
-                                   "wiresens", "stag",     "tactileglove", "csv",          "auto", "json"};
-
 ProtocolOptions options_of(std::uint8_t choice) {
   ProtocolOptions options;
   static const char* const named = std::getenv("DERMIS_FUZZ_PROTOCOL");
-  options.name = named != nullptr ? named : kProtocols[(choice & 0x0FU) % kProtocols.size()];
+  options.name = named != nullptr ? named : protocol_names()[(choice & 0x0FU) % protocol_names().size()];
   if ((choice & 0x10U) != 0) options.shape = (choice & 0x20U) != 0 ? FrameShape{2, 3} : FrameShape{16, 16};
   options.nodes_per_packet = (choice & 0x20U) != 0 ? 4 : 120;
   options.delimited = (choice & 0x40U) == 0;

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "check_error.hpp"
-#include "dermis/bytes/formats/png_stack.hpp"
+#include "dermis/bytes/formats/imports.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto picture = dermis::bytes::formats::read_grey_png({reinterpret_cast<const char*>(data), size}, "fuzz");

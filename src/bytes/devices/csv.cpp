@@ -9,10 +9,10 @@
 #include <string_view>
 #include <utility>
 
-#include "bytes/devices/decimal.hpp"
 #include "bytes/devices/protocols.hpp"
 #include "bytes/devices/row_decoder.hpp"
-#include "bytes/devices/wire_values.hpp"
+#include "bytes/devices/text_encoder.hpp"
+#include "dermis/bytes/files/numbers.hpp"
 #include "dermis/touch/frames/array_description.hpp"
 
 namespace dermis::bytes::devices {
@@ -20,7 +20,6 @@ namespace {
 
 constexpr std::ptrdiff_t kMaxDigits = 8;
 constexpr std::ptrdiff_t kMaxClockDigits = 15;
-constexpr std::string_view kRule = "-----\r\n";
 
 constexpr bool is_blank(std::uint8_t byte) noexcept {
   return byte == ' ' || byte == '\t';
@@ -38,28 +37,28 @@ const std::uint8_t* after_blanks(const std::uint8_t* at) noexcept {
 /// Past what divides two values: blanks, one comma or semicolon, blanks.
 const std::uint8_t* after_divider(const std::uint8_t* at) noexcept {
   const auto is_mark = [](std::uint8_t byte) { return byte == ',' || byte == ';'; };
-  if ((is_mark(*at) || is_blank(*at)) && digit(at[1]) <= 9) return at + 1;
+  if ((is_mark(*at) || is_blank(*at)) && files::digit(at[1]) <= 9) return at + 1;
   at = after_blanks(at);
   return is_mark(*at) ? after_blanks(at + 1) : at;
 }
 
 /// A line that does not begin with a number.
 LineKind kind_without_numbers(std::span<const std::uint8_t> line) noexcept {
-  const bool has_words =
-      std::any_of(line.begin(), line.end(), [](std::uint8_t byte) { return is_letter(byte) || digit(byte) <= 9; });
+  const bool has_words = std::any_of(line.begin(), line.end(),
+                                     [](std::uint8_t byte) { return is_letter(byte) || files::digit(byte) <= 9; });
   return has_words ? LineKind::text : LineKind::separator;
 }
 
 /// A reading, or the time that the first number of a line may be.
 bool read_value(const std::uint8_t*& at, bool is_first, double& value) noexcept {
-  if (is_first) return read_decimal(at, kMaxClockDigits, value);
-  return read_decimal(at, kMaxDigits, value) && std::floor(value) <= kMaxTextReading;
+  if (is_first) return files::take_decimal(at, kMaxClockDigits, value);
+  return files::take_decimal(at, kMaxDigits, value) && std::floor(value) <= kMaxTextReading;
 }
 
 ParsedLine parse(std::span<const std::uint8_t> line, std::span<float> values) {
   if (line.back() != '\n') return {};
   const std::uint8_t* at = after_blanks(line.data());
-  if (digit(*at) > 9) return {kind_without_numbers(line)};
+  if (files::digit(*at) > 9) return {kind_without_numbers(line)};
   ParsedLine row{LineKind::row};
   while (true) {
     double value = 0.0;
@@ -83,7 +82,7 @@ std::optional<FrameShape> announced_shape(std::span<const std::uint8_t> line) {
   std::array<float, 2> numbers{};
   const std::uint8_t* const rest = after_divider(line.data() + kWord.size());
   const auto offset = static_cast<std::size_t>(rest - line.data());
-  if (offset >= line.size() || digit(*rest) > 9) return std::nullopt;
+  if (offset >= line.size() || files::digit(*rest) > 9) return std::nullopt;
   const ParsedLine parsed = parse(line.subspan(offset), numbers);
   const auto is_valid = [](float lines) { return lines >= 1 && lines <= kMaxLines && lines == std::floor(lines); };
   if (parsed.kind != LineKind::row || parsed.values != 2 || !is_valid(numbers[0]) || !is_valid(numbers[1])) {
@@ -91,26 +90,6 @@ std::optional<FrameShape> announced_shape(std::span<const std::uint8_t> line) {
   }
   return FrameShape{static_cast<std::size_t>(numbers[0]), static_cast<std::size_t>(numbers[1])};
 }
-
-class CsvEncoder final : public Encoder {
- public:
-  explicit CsvEncoder(FrameShape shape) : shape_(shape) {}
-
-  void encode(const RawFrame& frame, std::vector<std::uint8_t>& bytes) override {
-    for (std::size_t row = 0; row < shape_.rows; ++row) {
-      for (std::size_t col = 0; col < shape_.cols; ++col) {
-        if (col > 0) bytes.push_back(',');
-        append_decimal(static_cast<std::uint32_t>(to_wire(frame.counts[row * shape_.cols + col], 0, kMaxTextReading)),
-                       bytes);
-      }
-      bytes.insert(bytes.end(), {'\r', '\n'});
-    }
-    bytes.insert(bytes.end(), kRule.begin(), kRule.end());
-  }
-
- private:
-  FrameShape shape_;
-};
 
 }  // namespace
 
@@ -121,7 +100,7 @@ std::unique_ptr<Decoder> make_csv_decoder(const ProtocolOptions& options, bool a
 }
 
 Result<std::unique_ptr<Encoder>> make_csv_encoder(const ProtocolOptions& options) {
-  return std::unique_ptr<Encoder>(std::make_unique<CsvEncoder>(*options.shape));
+  return make_text_encoder({.between = ",", .row_end = "\r\n", .frame_end = "-----\r\n"}, options);
 }
 
 }  // namespace dermis::bytes::devices

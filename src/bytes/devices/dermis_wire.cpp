@@ -12,6 +12,7 @@
 #include "bytes/devices/frame_numbers.hpp"
 #include "bytes/devices/protocols.hpp"
 #include "bytes/devices/wire_values.hpp"
+#include "dermis/bytes/layouts/escapes.hpp"
 #include "dermis/bytes/layouts/window_decoder.hpp"
 #include "dermis/touch/frames/array_description.hpp"
 
@@ -45,30 +46,6 @@ std::size_t packet_size(const FrameShape& shape) {
 /// The longest that so many bytes can become by stuffing.
 std::size_t max_stuffed(std::size_t size) {
   return size + size / kMaxBlock + 1;
-}
-
-constexpr std::size_t kShortBlock = 8;  ///< Bytes that are copied at once, also where fewer are meant.
-
-/// Undoes the stuffing of bytes without a zero into `packet`, which has room for them and a short block. The length; 0
-/// where the codes lead beyond the end.
-std::size_t unstuff(Bytes stuffed, std::vector<std::uint8_t>& packet) {
-  std::size_t length = 0;
-  std::size_t at = 0;
-  while (at < stuffed.size()) {
-    const std::size_t block = stuffed[at] - std::size_t{1};
-    const std::size_t rest = stuffed.size() - at - 1;
-    if (block > rest) return 0;
-    const bool is_short = block <= kShortBlock && rest >= kShortBlock;
-    if (is_short) {
-      std::memcpy(&packet[length], stuffed.data() + at + 1, kShortBlock);
-    } else {
-      std::memcpy(&packet[length], stuffed.data() + at + 1, block);
-    }
-    at += block + 1;
-    length += block;
-    if (block < kMaxBlock && at < stuffed.size()) packet[length++] = 0;
-  }
-  return length;
 }
 
 class DermisDecoder final : public WindowDecoder {
@@ -110,8 +87,8 @@ class DermisDecoder final : public WindowDecoder {
 
   /// Into packet_; false where it is none.
   bool unpack(Bytes stuffed) {
-    if (packet_.size() < stuffed.size() + kShortBlock) packet_.resize(2 * (stuffed.size() + kShortBlock));
-    const Bytes packet = Bytes(packet_).first(unstuff(stuffed, packet_));
+    const std::optional<std::size_t> size = layouts::undo_cobs(stuffed, packet_);
+    const Bytes packet = Bytes(packet_).first(size.value_or(0));
     if (packet.size() <= kHeaderSize + kCrcSize) return false;
     const std::size_t crc_at = packet.size() - kCrcSize;
     if (crc_of(packet.first(crc_at)) != read_little<std::uint32_t>(&packet[crc_at])) return false;

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <string_view>
 
-#include "bytes/devices/decimal.hpp"
 #include "bytes/devices/protocols.hpp"
 #include "bytes/devices/row_decoder.hpp"
-#include "bytes/devices/wire_values.hpp"
+#include "bytes/devices/text_encoder.hpp"
+#include "dermis/bytes/files/numbers.hpp"
 #include "dermis/touch/frames/array_description.hpp"
 
 namespace dermis::bytes::devices {
@@ -73,7 +73,7 @@ class JsonLine {
   bool skip_word() {
     const std::uint8_t* const first = at_;
     const auto is_part = [](std::uint8_t byte) {
-      return (byte >= 'a' && byte <= 'z') || digit(byte) <= 9 || byte == '-' || byte == '+' || byte == '.' ||
+      return (byte >= 'a' && byte <= 'z') || files::digit(byte) <= 9 || byte == '-' || byte == '+' || byte == '.' ||
              byte == 'E';
     };
     while (is_part(*at_)) ++at_;
@@ -98,7 +98,7 @@ class JsonLine {
     do {
       skip_blanks();
       double value = 0.0;
-      if (!read_decimal(at_, kMaxDigits, value)) return false;
+      if (!files::take_decimal(at_, kMaxDigits, value)) return false;
       if (row_.values > 0 && std::floor(value) > kMaxTextReading) return false;
       if (row_.values == 0) row_.first = value;
       if (row_.values < values_.size()) values_[row_.values] = static_cast<float>(value);
@@ -117,33 +117,6 @@ ParsedLine parse(std::span<const std::uint8_t> line, std::span<float> values) {
   return line.back() == '\n' ? JsonLine(line, values).parse() : ParsedLine{};
 }
 
-/// {"data":[[1,2],[3,4]]}
-class JsonEncoder final : public Encoder {
- public:
-  explicit JsonEncoder(FrameShape shape) : shape_(shape) {}
-
-  void encode(const RawFrame& frame, std::vector<std::uint8_t>& bytes) override {
-    append("{\"data\":[", bytes);
-    for (std::size_t row = 0; row < shape_.rows; ++row) {
-      append(row == 0 ? "[" : ",[", bytes);
-      for (std::size_t col = 0; col < shape_.cols; ++col) {
-        if (col > 0) bytes.push_back(',');
-        const float count = frame.counts[row * shape_.cols + col];
-        append_decimal(static_cast<std::uint32_t>(to_wire(count, 0, kMaxTextReading)), bytes);
-      }
-      bytes.push_back(']');
-    }
-    append("]}\n", bytes);
-  }
-
- private:
-  static void append(std::string_view text, std::vector<std::uint8_t>& bytes) {
-    bytes.insert(bytes.end(), text.begin(), text.end());
-  }
-
-  FrameShape shape_;
-};
-
 }  // namespace
 
 std::unique_ptr<Decoder> make_json_decoder(const ProtocolOptions& options, bool any_size) {
@@ -153,7 +126,13 @@ std::unique_ptr<Decoder> make_json_decoder(const ProtocolOptions& options, bool 
 }
 
 Result<std::unique_ptr<Encoder>> make_json_encoder(const ProtocolOptions& options) {
-  return std::unique_ptr<Encoder>(std::make_unique<JsonEncoder>(*options.shape));
+  return make_text_encoder({.frame_begin = R"({"data":[)",
+                            .row_begin = "[",
+                            .between = ",",
+                            .row_end = "]",
+                            .between_rows = ",",
+                            .frame_end = "]}\n"},
+                           options);
 }
 
 }  // namespace dermis::bytes::devices

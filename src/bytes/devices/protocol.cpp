@@ -3,7 +3,6 @@
 #include "dermis/bytes/devices/protocol.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "bytes/devices/protocols.hpp"
 #include "dermis/bytes/layouts/layout.hpp"
@@ -18,25 +17,20 @@ Result<std::unique_ptr<Decoder>> make_text_decoder(const ProtocolOptions& option
   return Make(options, false);
 }
 
-constexpr std::array kProtocols = {
-    ProtocolEntry{"3dvitac", std::nullopt, make_3dvitac_decoder, make_3dvitac_encoder},
-    ProtocolEntry{"csv", std::nullopt, make_text_decoder<make_csv_decoder>, make_csv_encoder},
-    ProtocolEntry{"dermis", std::nullopt, make_dermis_decoder, make_dermis_encoder},
-    ProtocolEntry{"flexitac", std::nullopt, make_described_decoder, make_described_encoder},
-    ProtocolEntry{"json", std::nullopt, make_text_decoder<make_json_decoder>, make_json_encoder},
-    ProtocolEntry{"m1616", FrameShape{16, 16}, make_described_decoder, make_described_encoder},
-    ProtocolEntry{"pressure-mat", FrameShape{56, 28}, make_described_decoder, make_described_encoder},
-    ProtocolEntry{"stag", std::nullopt, make_stag_decoder, make_stag_encoder},
-    ProtocolEntry{"tactileglove", std::nullopt, make_tactileglove_decoder, make_tactileglove_encoder},
-    ProtocolEntry{"wiresens", std::nullopt, make_wiresens_decoder, make_wiresens_encoder},
-    ProtocolEntry{"wuji", FrameShape{24, 32}, make_wuji_decoder, make_wuji_encoder},
-    ProtocolEntry{"auto", std::nullopt, make_auto_decoder, nullptr},
-};
-
-const ProtocolEntry* find(const std::string& name) {
-  const auto* found = std::find_if(kProtocols.begin(), kProtocols.end(),
-                                   [&](const ProtocolEntry& entry) { return entry.name == name; });
-  return found == kProtocols.end() ? nullptr : found;
+/// Bauds are those of MatrixArray.ino, TouchStreamer and WiSensToolkit.cpp.
+std::vector<ProtocolEntry> all_protocols() {
+  std::vector<ProtocolEntry> all = described_protocols();
+  all.insert(all.end(),
+             {{"3dvitac", std::nullopt, make_3dvitac_decoder, make_3dvitac_encoder, kIsText + 2, 2'000'000},
+              {"csv", std::nullopt, make_text_decoder<make_csv_decoder>, make_csv_encoder, kIsText + 1},
+              {"dermis", std::nullopt, make_dermis_decoder, make_dermis_encoder, kHasChecksum + 1},
+              {"json", std::nullopt, make_text_decoder<make_json_decoder>, make_json_encoder, kIsText},
+              {"stag", std::nullopt, make_stag_decoder, make_stag_encoder, kIsBinary + 1, 1'000'000},
+              {"tactileglove", std::nullopt, make_tactileglove_decoder, make_tactileglove_encoder, kIsBinary},
+              {"wiresens", std::nullopt, make_wiresens_decoder, make_wiresens_encoder, std::nullopt, 250'000}});
+  std::ranges::sort(all, {}, &ProtocolEntry::name);
+  all.push_back({"auto", std::nullopt, make_auto_decoder, nullptr});
+  return all;
 }
 
 std::string to_string(const FrameShape& shape) {
@@ -54,7 +48,7 @@ Error unknown(const std::string& name) {
 
 /// The protocol, with options that it can have.
 Result<const ProtocolEntry*> find_for(const ProtocolOptions& options) {
-  const ProtocolEntry* protocol = find(options.name);
+  const ProtocolEntry* protocol = find_protocol(options.name);
   if (protocol == nullptr) return unknown(options.name);
   if (!options.shape) return protocol;
   const FrameShape& shape = *options.shape;
@@ -83,10 +77,20 @@ Result<std::unique_ptr<Decoder>> make_layout_decoder(const ProtocolOptions& opti
 
 }  // namespace
 
+const std::vector<ProtocolEntry>& protocol_entries() {
+  static const std::vector<ProtocolEntry> kEntries = all_protocols();
+  return kEntries;
+}
+
+const ProtocolEntry* find_protocol(std::string_view name) {
+  const auto found = std::ranges::find(protocol_entries(), name, &ProtocolEntry::name);
+  return found == protocol_entries().end() ? nullptr : &*found;
+}
+
 const std::vector<std::string>& protocol_names() {
   static const std::vector<std::string> kNames = [] {
     std::vector<std::string> all;
-    for (const ProtocolEntry& entry : kProtocols) all.emplace_back(entry.name);
+    for (const ProtocolEntry& entry : protocol_entries()) all.emplace_back(entry.name);
     return all;
   }();
   return kNames;

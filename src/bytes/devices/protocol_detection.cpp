@@ -3,7 +3,7 @@
 
 // protocol=auto: all protocols try to decode the first bytes of a stream; the one that finds frames is chosen.
 #include <algorithm>
-#include <array>
+#include <functional>
 #include <utility>
 
 #include "bytes/devices/protocols.hpp"
@@ -18,17 +18,15 @@ constexpr std::size_t kStep = 256;                          // bytes between two
 constexpr std::size_t kFirstWiresensTrial = 16 * kStep;  // bytes; the next ones after twice as many, as it is not cheap
 constexpr std::uint64_t kFramesWithoutChecksum = 4;
 
-/// The order is protocols with a checksum, then text, then binary forms, with the least checked last. Where several
-/// decode the same bytes, the first one is right.
-struct Trait {
-  std::string_view name;
-  bool has_checksum;
-};
-constexpr std::array kByStrictness = {
-    Trait{"dermis", true}, Trait{"wuji", true},      Trait{"3dvitac", false},      Trait{"csv", false},
-    Trait{"json", false},  Trait{"stag", false},     Trait{"tactileglove", false}, Trait{"pressure-mat", false},
-    Trait{"m1616", false}, Trait{"flexitac", false},
-};
+/// Those that are tried, the strictest first.
+std::vector<const ProtocolEntry*> by_strictness() {
+  std::vector<const ProtocolEntry*> entries;
+  for (const ProtocolEntry& entry : protocol_entries()) {
+    if (entry.strictness) entries.push_back(&entry);
+  }
+  std::ranges::stable_sort(entries, std::ranges::greater(), [](const auto* entry) { return *entry->strictness; });
+  return entries;
+}
 
 struct Candidate {
   std::string_view name;
@@ -52,11 +50,11 @@ class ProtocolDetector {
  public:
   /// Known options are taken as they are. `name_only`: protocols whose frames need further options count, too.
   ProtocolDetector(const ProtocolOptions& known, bool name_only) : known_(known), name_only_(name_only) {
-    for (const Trait& trait : kByStrictness) add(trait, known_);
+    for (const ProtocolEntry* entry : by_strictness()) add(*entry, known_);
     if (name_only) {
       ProtocolOptions other_shift = known_;
       other_shift.bit_shift = 6;
-      add({"stag", false}, other_shift);
+      add(*find_protocol("stag"), other_shift);
       candidates_.push_back({"csv", kFramesWithoutChecksum, known_, make_csv_decoder(known_, true)});
       candidates_.push_back({"json", kFramesWithoutChecksum, known_, make_json_decoder(known_, true)});
     }
@@ -111,12 +109,13 @@ class ProtocolDetector {
     return proposals::tell_otherwise(bytes, *shape, {});
   }
 
-  void add(const Trait& trait, ProtocolOptions options) {
-    options.name = trait.name;
+  void add(const ProtocolEntry& entry, ProtocolOptions options) {
+    options.name = entry.name;
     Result<std::unique_ptr<Decoder>> decoder = make_decoder(options);
     if (!decoder) return;  // it cannot have the shape that is known
+    const bool has_checksum = entry.strictness >= kHasChecksum;
     candidates_.push_back(
-        {trait.name, trait.has_checksum ? 1 : kFramesWithoutChecksum, std::move(options), std::move(decoder).value()});
+        {entry.name, has_checksum ? 1 : kFramesWithoutChecksum, std::move(options), std::move(decoder).value()});
   }
 
   /// Packets of WiReSens contain neither their size nor that of a frame: these are learnt first.
@@ -124,7 +123,7 @@ class ProtocolDetector {
     std::optional<ProtocolOptions> learnt = learn_wiresens(bytes.subspan(from), known_, name_only_);
     if (!learnt) return;
     const std::size_t before = candidates_.size();
-    add({"wiresens", false}, *learnt);
+    add(*find_protocol("wiresens"), *learnt);
     if (candidates_.size() == before) return;
     Decoder& decoder = *candidates_.back().decoder;
     for (std::size_t at = 0; at < bytes.size(); at += Decoder::kMaxPush) {

@@ -4,31 +4,44 @@
 
 #include <memory>
 #include <optional>
+#include <string_view>
+#include <vector>
 
 #include "dermis/bytes/devices/encoder.hpp"
 #include "dermis/bytes/devices/protocol.hpp"
 #include "dermis/bytes/layouts/decoder.hpp"
 #include "dermis/touch/frames/result.hpp"
 
-/// One pair of factories a protocol, listed in protocol.cpp; each in the file of its name, or in
-/// described_protocols.cpp. Shapes that are given are valid and those of the protocol where it has but one; encoders
+/// One pair of factories a protocol that no layout describes, listed in protocol.cpp; each in the file of its name.
+/// Shapes that are given are valid and those of the protocol where it has but one; encoders
 /// are given one.
 namespace dermis::bytes::devices {
 
+constexpr unsigned kUsualBaud = 115'200;
+
+/// Strictness of a checksum, of text, and of binary forms; that of others is the size of their mark.
+constexpr int kHasChecksum = 100;
+constexpr int kIsText = 50;
+constexpr int kIsBinary = 20;
+
 struct ProtocolEntry {
-  const char* name = nullptr;
+  std::string_view name{};
   std::optional<FrameShape> only_shape{};  ///< Empty where devices of the protocol differ.
   Result<std::unique_ptr<Decoder>> (*make_decoder)(const ProtocolOptions&) = nullptr;
   Result<std::unique_ptr<Encoder>> (*make_encoder)(const ProtocolOptions&) = nullptr;
+  /// Where several decode the same bytes, the strictest is right. Without one, "auto" does not try it as it is.
+  std::optional<int> strictness{};
+  unsigned baud = kUsualBaud;
 };
+
+/// Those that layouts describe: a file of layouts/shipped each.
+[[nodiscard]] const std::vector<ProtocolEntry>& described_protocols();
+/// All, by name, and "auto" at the end.
+[[nodiscard]] const std::vector<ProtocolEntry>& protocol_entries();
+[[nodiscard]] const ProtocolEntry* find_protocol(std::string_view name);
 
 Result<std::unique_ptr<Decoder>> make_dermis_decoder(const ProtocolOptions& options);
 Result<std::unique_ptr<Encoder>> make_dermis_encoder(const ProtocolOptions& options);
-Result<std::unique_ptr<Decoder>> make_described_decoder(const ProtocolOptions& options);
-Result<std::unique_ptr<Encoder>> make_described_encoder(const ProtocolOptions& options);
-Result<std::unique_ptr<Decoder>> make_wuji_decoder(const ProtocolOptions& options);
-Result<std::unique_ptr<Encoder>> make_wuji_encoder(const ProtocolOptions& options);
-
 Result<std::unique_ptr<Decoder>> make_3dvitac_decoder(const ProtocolOptions& options);
 Result<std::unique_ptr<Encoder>> make_3dvitac_encoder(const ProtocolOptions& options);
 /// `any_size` takes lines of any number of values for frames, as one row each: to detect them.

@@ -4,18 +4,21 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <map>
 #include <set>
 #include <utility>
 
+#include "bytes/devices/protocols.hpp"
+#include "dermis/bytes/files/text.hpp"
 #include "dermis/touch/frames/array_description.hpp"
 #include "dermis/touch/frames/nearest_name.hpp"
 
 namespace dermis::bytes::devices {
 namespace {
+
+using files::number_within;
 
 constexpr std::size_t kMaxLength = 4096;
 constexpr unsigned kLeastBaud = 50;
@@ -108,44 +111,20 @@ std::optional<std::string> percent_decoded(std::string_view text) {
   return decoded;
 }
 
-template <typename Number>
-std::optional<Number> number(const std::string& text, Number least, Number most) {
-  Number value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  if (!(value >= least && value <= most)) return std::nullopt;
-  return value;
-}
-
-/// A text in TOML.
-std::string quoted(std::string_view text) {
-  constexpr std::string_view kHex = "0123456789ABCDEF";
-  std::string quoted = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool is_plain = byte >= 0x20 && byte != 0x7F && c != '"' && c != '\\';
-    quoted += is_plain ? std::string(1, c) : std::string("\\u00") + kHex[byte >> 4U] + kHex[byte & 15U];
-  }
-  return quoted + "\"";
-}
-
 /// "AA 55,values u8" -> ["AA 55", "values u8"]
 std::string quoted_list(std::string_view text) {
   std::string list = "[";
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
-    list += (begin == 0 ? "" : ", ") + quoted(text.substr(begin, end - begin));
+    list += (begin == 0 ? "" : ", ") + files::quoted_toml(text.substr(begin, end - begin));
     begin = end + 1;
   }
   return list + "]";
 }
 
-/// The usual baud of a protocol (PyFlexiTac, MatrixArray.ino, WiSensToolkit.cpp, TouchStreamer).
 unsigned usual_baud(const std::string& protocol) {
-  if (protocol == "flexitac" || protocol == "3dvitac") return 2'000'000;
-  if (protocol == "stag") return 1'000'000;
-  if (protocol == "wiresens") return 250'000;
-  return 115'200;
+  const ProtocolEntry* const entry = find_protocol(protocol);
+  return entry != nullptr ? entry->baud : kUsualBaud;
 }
 
 /// A URI on its way into a SourceUri; the first error is kept.
@@ -208,7 +187,7 @@ class Parser {
     }
     if (host.empty() || host.find_first_of("[]/@ ") != std::string_view::npos) return fail(mend);
     const bool may_choose = uri_.transport == Transport::tcp_listen || uri_.transport == Transport::udp;
-    const auto port = number<std::uint16_t>(std::string(place.substr(colon + 1)), may_choose ? 0 : 1, 65535);
+    const auto port = number_within<std::uint16_t>(place.substr(colon + 1), may_choose ? 0 : 1, 65535);
     if (!port) return fail("the port must be 1 to 65535: " + mend);
     uri_.host = std::string(host);
     uri_.port = *port;
@@ -246,7 +225,7 @@ class Parser {
   std::optional<Number> read(const char* name, Number least, Number most, const char* range) {
     const auto found = parameters_.find(name);
     if (found == parameters_.end()) return std::nullopt;
-    const std::optional<Number> value = number<Number>(found->second, least, most);
+    const std::optional<Number> value = number_within<Number>(found->second, least, most);
     if (!value) fail(std::string(name) + ": must be " + range + ", not '" + found->second + "'");
     return value;
   }
@@ -267,7 +246,7 @@ class Parser {
     if (found == parameters_.end()) return;
     for (std::size_t begin = 0; begin <= found->second.size();) {
       const std::size_t end = std::min(found->second.find(',', begin), found->second.size());
-      const auto line = number<std::size_t>(found->second.substr(begin, end - begin), 0, kMaxLines - 1);
+      const auto line = number_within<std::size_t>(found->second.substr(begin, end - begin), 0, kMaxLines - 1);
       if (!line) return fail(std::string(name) + ": must be lines from 0 on, such as 0,2,1");
       list.push_back(*line);
       begin = end + 1;
@@ -301,10 +280,10 @@ class Parser {
   std::string layout_keys() {
     std::string keys;
     for (const auto& [name, value] : parameters_) {
-      if (kLayoutTexts.contains(name)) keys += name + " = " + quoted(value) + "\n";
+      if (kLayoutTexts.contains(name)) keys += name + " = " + files::quoted_toml(value) + "\n";
       if (name == "packet") keys += name + " = " + quoted_list(value) + "\n";
       if (!kLayoutNumbers.contains(name)) continue;
-      if (!number<double>(value, -1e300, 1e300))
+      if (!number_within<double>(value, -1e300, 1e300))
         fail(std::string(name).append(": must be a number, not ").append(value));
       keys.append(name).append(" = ").append(value).append("\n");
     }

@@ -13,6 +13,7 @@
 #include "dermis/bytes/files/atomic_file.hpp"
 #include "dermis/bytes/files/config_table.hpp"
 #include "dermis/bytes/files/taxel_text.hpp"
+#include "dermis/bytes/files/text.hpp"
 #include "dermis/touch/frames/millimetres.hpp"
 
 namespace dermis::bytes::files {
@@ -232,21 +233,6 @@ Result<ArrayDescription> read_array(ConfigFile& file) {
   if (const Status valid = array.validate(); !valid) fail_invalid(file, valid.error().message);
   if (const Status valid = file.finish(); !valid) return valid.error();
   return array;
-}
-
-std::string quoted_toml(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      quoted.append("\\").append(1, c);
-    } else if (code < 0x20U || code == 0x7FU) {
-      quoted += fmt::format("\\u{:04X}", code);
-    } else {
-      quoted += c;
-    }
-  }
-  return quoted + "\"";
 }
 
 std::string ohm_toml(double ohm) {

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -15,6 +14,7 @@
 
 #include "bytes/files/config_text.hpp"
 #include "dermis/bytes/files/file_kind.hpp"
+#include "dermis/bytes/files/numbers.hpp"
 #include "dermis/touch/frames/nearest_name.hpp"
 
 namespace dermis::bytes::files {
@@ -62,8 +62,8 @@ const toml::node* part_of(const toml::table& table, std::string_view part) {
   if (bracket == std::string_view::npos || node == nullptr) return node;
   const toml::array* list = node->as_array();
   std::size_t place = 0;
-  std::from_chars(part.data() + bracket + 1, part.data() + part.size(), place);
-  return list != nullptr && place < list->size() ? list->get(place) : nullptr;
+  const bool has_place = number_at(part.substr(bracket + 1), place) > 0;
+  return list != nullptr && has_place && place < list->size() ? list->get(place) : nullptr;
 }
 
 std::string place_in(const std::string& list, std::size_t place) {
@@ -139,13 +139,18 @@ struct ConfigFile::Parsed {
   template <typename Value, typename Read>
   void read_values(std::string_view key, const char* wanted, std::vector<Value>& values, const Read& read) {
     const toml::node* node = ask(key);
-    if (node == nullptr) return;
-    const toml::array* list = node->as_array();
-    if (list == nullptr) return keep(node, key, wanted);
+    if (node != nullptr) read_list_of(*node, key, wanted, values, read);
+  }
+
+  template <typename Value, typename Read>
+  void read_list_of(const toml::node& node, std::string_view key, const char* wanted, std::vector<Value>& values,
+                    const Read& read) {
+    const toml::array* list = node.as_array();
+    if (list == nullptr) return keep(&node, key, wanted);
     values.clear();
     for (const toml::node& element : *list) {
       std::optional<Value> found = read(element);
-      if (!found) return keep(node, key, wanted);
+      if (!found) return keep(&node, key, wanted);
       values.push_back(*std::move(found));
     }
   }
@@ -326,6 +331,17 @@ void ConfigFile::counts(std::string_view key, std::vector<std::size_t>& values) 
 
 void ConfigFile::texts(std::string_view key, std::vector<std::string>& values) {
   parsed_->read_values(key, "must be a list of texts in quotes", values, text_of);
+}
+
+void ConfigFile::text_rows(std::string_view key, std::vector<std::vector<std::string>>& rows) {
+  const toml::node* node = parsed_->ask(key);
+  const toml::array* list = node != nullptr ? node->as_array() : nullptr;
+  const bool is_flat = list == nullptr || list->empty() || !list->front().is_array();
+  if (is_flat) return texts(key, rows.emplace_back());
+  for (const toml::node& row : *list) {
+    parsed_->read_list_of(row, key, "must be a list of texts in quotes, or of such lists", rows.emplace_back(),
+                          text_of);
+  }
 }
 
 void ConfigFile::choice(std::string_view key, const std::vector<std::string>& names, std::size_t& index) {

@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <charconv>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
@@ -76,9 +75,8 @@ std::vector<std::string> temporary_names_in(const std::string& folder) {
 /// Takes the digits at the beginning of the text and what must follow them; empty if they are not there.
 std::optional<std::uint32_t> take_number(std::string_view& text, std::string_view then) {
   std::uint32_t number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  const auto digits = static_cast<std::size_t>(end - text.data());
-  if (error != std::errc{} || (digits > 1 && text.front() == '0')) return std::nullopt;
+  const std::size_t digits = number_at(text, number);
+  if (digits == 0 || (digits > 1 && text.front() == '0')) return std::nullopt;
   text.remove_prefix(digits);
   if (!text.starts_with(then)) return std::nullopt;
   text.remove_prefix(then.size());

@@ -8,6 +8,7 @@
 #include <cassert>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -97,20 +98,16 @@ class HeaderGuard {
       if (level >= kMaxDepth) return fail("its header is nested too deeply");
       names_[level].clear();
     }
-    if (event == json::parse_event_t::key && !mistake_ && !add_name(level - 1, value)) {
-      return fail("its header names " + in_quotes(value.get_ref<const std::string&>()) + " twice");
-    }
-    return !mistake_;
+    if (event != json::parse_event_t::key || mistake_) return !mistake_;
+    const auto& name = value.get_ref<const std::string&>();
+    const bool is_new = level <= kMaxDepth && names_[level - 1].insert(name).second;
+    return is_new || fail("its header names " + in_quotes(name) + " twice");
   }
 
   [[nodiscard]] const std::optional<std::string>& mistake() const { return mistake_; }
 
  private:
   static constexpr std::size_t kMaxDepth = 3;
-
-  bool add_name(std::size_t level, const json& name) {
-    return level < kMaxDepth && names_[level].insert(name.get_ref<const std::string&>()).second;
-  }
 
   bool fail(std::string mistake) {
     if (!mistake_) mistake_ = std::move(mistake);
@@ -132,12 +129,8 @@ struct Entry {
 std::optional<Shape> sizes_from_json(const json& object, const char* key) {
   const auto list = object.find(key);
   if (list == object.end() || !list->is_array()) return std::nullopt;
-  Shape sizes;
-  for (const json& item : *list) {
-    if (!item.is_number_unsigned()) return std::nullopt;
-    sizes.push_back(item.get<std::size_t>());
-  }
-  return sizes;
+  const auto is_size = [](const json& item) { return item.is_number_unsigned(); };
+  return std::all_of(list->begin(), list->end(), is_size) ? std::optional(list->get<Shape>()) : std::nullopt;
 }
 
 Result<Values> parse_type(const json& object, const std::string& who) {
@@ -184,8 +177,7 @@ Status parse_metadata(const json& object, std::map<std::string, std::string>& me
 
 /// The tensors must follow each other from the first byte of the data to the last.
 Status check_layout(std::vector<Entry>& entries, std::size_t data_bytes) {
-  std::sort(entries.begin(), entries.end(),
-            [](const Entry& a, const Entry& b) { return std::pair(a.begin, a.end) < std::pair(b.begin, b.end); });
+  std::ranges::sort(entries, {}, [](const Entry& entry) { return std::pair(entry.begin, entry.end); });
   std::size_t expected = 0;
   for (const Entry& entry : entries) {
     if (entry.begin != expected) {
@@ -256,30 +248,22 @@ Result<SafetensorsFile> parse_bytes(std::string_view bytes) {
   return file;
 }
 
-/// Large elements first, so that each tensor is aligned to its element; then by name.
-std::vector<std::pair<std::string, const Tensor*>> in_file_order(const SafetensorsFile& file) {
-  std::vector<std::pair<std::string, const Tensor*>> order;
-  for (const auto& [name, tensor] : file.tensors) order.emplace_back(name, &tensor);
-  std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) {
-    return element_bytes(a.second->values) > element_bytes(b.second->values);
-  });
-  return order;
-}
-
 /// A tensor as the header lists it.
 struct ListedTensor {
   std::string name;
-  const char* type;
+  const Values* values;
   Shape shape;
   std::size_t bytes;
 };
 
-std::vector<ListedTensor> list_tensors(const SafetensorsFile& file) {
+/// Large elements first, so that each tensor is aligned to its element; then by name.
+std::vector<ListedTensor> in_file_order(const SafetensorsFile& file) {
   std::vector<ListedTensor> listed;
-  for (const auto& [name, tensor] : in_file_order(file)) {
-    listed.push_back({name, type_name(tensor->values), tensor->shape, bytes_of(tensor->values).size()});
-    assert(listed.back().bytes == shape_product(tensor->shape).value() * element_bytes(tensor->values));
+  for (const auto& [name, tensor] : file.tensors) {
+    listed.push_back({name, &tensor.values, tensor.shape, bytes_of(tensor.values).size()});
+    assert(listed.back().bytes == shape_product(tensor.shape).value() * element_bytes(tensor.values));
   }
+  std::ranges::stable_sort(listed, std::greater(), [](const auto& tensor) { return element_bytes(*tensor.values); });
   return listed;
 }
 
@@ -290,7 +274,8 @@ std::string header_of(const std::vector<ListedTensor>& tensors, const std::map<s
   for (const ListedTensor& tensor : tensors) {
     assert(tensor.name != kMetadata);
     const std::size_t end = offset + tensor.bytes;
-    header[tensor.name] = {{"dtype", tensor.type}, {"shape", tensor.shape}, {"data_offsets", {offset, end}}};
+    header[tensor.name] = {
+        {"dtype", type_name(*tensor.values)}, {"shape", tensor.shape}, {"data_offsets", {offset, end}}};
     offset = end;
   }
   std::string text = header.dump(-1, ' ', false, json::error_handler_t::replace);
@@ -306,8 +291,8 @@ std::string length_of(const std::string& header) {
 /// Checksum of the file as it is written without one: a program that writes the same content otherwise keeps it.
 std::string checksum_of(const SafetensorsFile& file) {
   ContentHash hash;
-  hash.add(header_of(list_tensors(file), file.metadata));
-  for (const auto& [name, tensor] : in_file_order(file)) hash.add(bytes_of(tensor->values));
+  hash.add(header_of(in_file_order(file), file.metadata));
+  for (const ListedTensor& tensor : in_file_order(file)) hash.add(bytes_of(*tensor.values));
   return hash.text();
 }
 
@@ -378,22 +363,23 @@ std::optional<std::string> checksum_note(const std::string& path, const FileForm
 Status write_safetensors(const std::string& path, const SafetensorsFile& file) {
   std::map<std::string, std::string> metadata = file.metadata;
   metadata[kChecksum] = checksum_of(file);
-  const std::string header = header_of(list_tensors(file), metadata);
+  const std::string header = header_of(in_file_order(file), metadata);
   if (header.size() > kMaxHeaderBytes)
     return failed("cannot write " + in_quotes(path) + ": its header would be too long");
   Result<AtomicFile> out = AtomicFile::create(path);
   if (!out) return out.error();
   out->write(length_of(header));
   out->write(header);
-  for (const auto& [name, tensor] : in_file_order(file)) out->write(bytes_of(tensor->values));
+  for (const ListedTensor& tensor : in_file_order(file)) out->write(bytes_of(*tensor.values));
   return out->commit();
 }
 
 SafetensorsBeginning begin_safetensors(const SafetensorsFile& file, const std::vector<std::string>& names,
                                        const Shape& shape) {
-  std::vector<ListedTensor> tensors = list_tensors(file);
+  std::vector<ListedTensor> tensors = in_file_order(file);
+  const Values floats = std::vector<float>{};
   for (const std::string& name : names) {
-    tensors.push_back({name, kTypeNames[0], shape, shape_product(shape).value() * sizeof(float)});
+    tensors.push_back({name, &floats, shape, shape_product(shape).value() * sizeof(float)});
   }
   SafetensorsBeginning beginning;
   beginning.hash.add(header_of(tensors, file.metadata));
@@ -403,9 +389,9 @@ SafetensorsBeginning begin_safetensors(const SafetensorsFile& file, const std::v
   beginning.bytes = length_of(header) + header;
   beginning.header_bytes = beginning.bytes.size();
   beginning.checksum = beginning.bytes.find(metadata[kChecksum]);
-  for (const auto& [name, tensor] : in_file_order(file)) {
-    assert(element_bytes(tensor->values) == kAlignment);
-    beginning.bytes += bytes_of(tensor->values);
+  for (const ListedTensor& tensor : in_file_order(file)) {
+    assert(element_bytes(*tensor.values) == kAlignment);
+    beginning.bytes += bytes_of(*tensor.values);
   }
   return beginning;
 }

@@ -14,30 +14,6 @@ namespace {
 constexpr std::int64_t kNanosPerSecond = 1'000'000'000;
 constexpr double kMaxSeconds = 9e9;
 
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-
-template <typename Number>
-bool parse_all(std::string_view text, Number& value) {
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  return error == std::errc{} && stop == end;
-}
-
-/// Up to seven digits, which a float holds exactly: nearly all raw counts.
-bool parse_short_integer(std::string_view text, float& value) {
-  constexpr std::size_t kMaxDigits = 7;
-  if (text.empty() || text.size() > kMaxDigits) return false;
-  int whole = 0;
-  for (const char c : text) {
-    if (!is_digit(c)) return false;
-    whole = whole * 10 + (c - '0');
-  }
-  value = static_cast<float>(whole);
-  return true;
-}
-
 /// digits[.digits], with at most ten and nine digits.
 bool parse_plain_decimal(std::string_view text, std::int64_t& nanos) {
   const std::size_t dot = std::min(text.find('.'), text.size());
@@ -71,6 +47,26 @@ std::string in_quotes(std::string_view text) {
   return "'" + std::string(text.substr(0, kMaxShown)) + (text.size() > kMaxShown ? "...'" : "'");
 }
 
+std::string quoted_toml(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      result += {'\\', c};
+    } else if (c == '\t') {
+      result += "\\t";
+    } else if (c == '\r') {
+      result += "\\r";
+    } else if (byte < 0x20 || byte == 0x7F) {
+      constexpr std::string_view kDigits = "0123456789ABCDEF";
+      result.append("\\u00").append({kDigits[byte >> 4U], kDigits[byte & 15U]});
+    } else {
+      result += c;
+    }
+  }
+  return result + '"';
+}
+
 std::string_view trimmed(std::string_view text) noexcept {
   while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
   while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
@@ -83,18 +79,6 @@ std::string in_lower_case(std::string_view text) {
   return lower;
 }
 
-bool parse_number(std::string_view text, float& value) {
-  return parse_short_integer(text, value) || parse_all(text, value);
-}
-
-bool parse_number(std::string_view text, double& value) {
-  return parse_all(text, value);
-}
-
-bool parse_number(std::string_view text, std::size_t& value) {
-  return parse_all(text, value);
-}
-
 bool parse_seconds(std::string_view text, Nanos& time) {
   const bool is_negative = text.starts_with('-');
   std::int64_t nanos = 0;
@@ -103,7 +87,7 @@ bool parse_seconds(std::string_view text, Nanos& time) {
     return true;
   }
   double seconds = 0.0;
-  if (!parse_all(text, seconds)) return false;
+  if (!parse_number(text, seconds)) return false;
   const std::optional<Nanos> rounded = nanos_from_seconds(seconds);
   time = rounded.value_or(time);
   return rounded.has_value();

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/bytes/formats/dsa.hpp"
-
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -17,6 +14,7 @@
 #include "bytes/formats/imported_frame.hpp"
 #include "bytes/formats/text_lines.hpp"
 #include "dermis/bytes/files/text.hpp"
+#include "dermis/bytes/formats/imports.hpp"
 #include "dermis/touch/frames/array_description.hpp"
 
 namespace dermis::bytes::formats {
@@ -70,8 +68,7 @@ class Cursor {
   bool read(float& value) {
     std::uint32_t bits = 0;
     const std::string_view digits = code_.substr(0, kDigits);
-    const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), bits, 16);
-    if (error != std::errc{} || stop != digits.data() + kDigits) return false;
+    if (files::hexadecimal_at(digits, bits) != kDigits) return false;
     code_.remove_prefix(kDigits);
     value = std::bit_cast<float>(bits);
     if (!std::isfinite(value) || value < -static_cast<float>(kMaxLines * kMaxLines)) return false;

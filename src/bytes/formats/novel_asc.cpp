@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/bytes/formats/novel_asc.hpp"
-
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -9,6 +7,7 @@
 #include "bytes/formats/imported_frame.hpp"
 #include "bytes/formats/text_lines.hpp"
 #include "dermis/bytes/files/text.hpp"
+#include "dermis/bytes/formats/imports.hpp"
 
 namespace dermis::bytes::formats {
 namespace {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/bytes/formats/novel_lst.hpp"
-
 #include <algorithm>
 #include <optional>
 #include <string_view>
@@ -11,6 +9,7 @@
 #include "bytes/formats/imported_frame.hpp"
 #include "bytes/formats/text_lines.hpp"
 #include "dermis/bytes/files/text.hpp"
+#include "dermis/bytes/formats/imports.hpp"
 #include "dermis/touch/frames/array_description.hpp"
 
 namespace dermis::bytes::formats {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/bytes/formats/npz.hpp"
-
 #include <algorithm>
 #include <optional>
 #include <string_view>
@@ -12,6 +10,7 @@
 #include "dermis/bytes/files/input.hpp"
 #include "dermis/bytes/files/npy.hpp"
 #include "dermis/bytes/files/text.hpp"
+#include "dermis/bytes/formats/imports.hpp"
 
 namespace dermis::bytes::formats {
 namespace {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/bytes/formats/packed10.hpp"
-
 #include <utility>
 #include <vector>
 
 #include "bytes/formats/imported_frame.hpp"
 #include "dermis/bytes/files/input.hpp"
+#include "dermis/bytes/formats/imports.hpp"
 
 namespace dermis::bytes::formats {
 namespace {

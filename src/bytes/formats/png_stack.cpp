@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/bytes/formats/png_stack.hpp"
-
 #include <png.h>
 
 #include <algorithm>
@@ -15,6 +13,7 @@
 #include "bytes/formats/imported_frame.hpp"
 #include "dermis/bytes/files/input.hpp"
 #include "dermis/bytes/files/text.hpp"
+#include "dermis/bytes/formats/imports.hpp"
 #include "dermis/touch/frames/array_description.hpp"
 
 namespace dermis::bytes::formats {

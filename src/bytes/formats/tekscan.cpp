@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/bytes/formats/tekscan.hpp"
-
 #include <optional>
 #include <span>
 #include <string_view>
@@ -10,6 +8,7 @@
 #include "bytes/formats/imported_frame.hpp"
 #include "bytes/formats/text_lines.hpp"
 #include "dermis/bytes/files/text.hpp"
+#include "dermis/bytes/formats/imports.hpp"
 
 namespace dermis::bytes::formats {
 namespace {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/bytes/formats/text_matrix.hpp"
-
 #include <cmath>
 #include <optional>
 #include <span>
@@ -14,6 +12,7 @@
 #include "bytes/formats/text_lines.hpp"
 #include "dermis/bytes/files/taxel_text.hpp"
 #include "dermis/bytes/files/text.hpp"
+#include "dermis/bytes/formats/imports.hpp"
 #include "dermis/touch/frames/array_description.hpp"
 
 namespace dermis::bytes::formats {

@@ -3,42 +3,40 @@
 #include "bytes/layouts/constant_packets.hpp"
 
 #include <algorithm>
+#include <set>
+#include <utility>
 
 #include "bytes/layouts/has_role.hpp"
 
 namespace dermis::bytes::layouts {
 namespace {
 
-const PacketField& mark_of(const Layout& layout) {
-  const std::vector<PacketField>& fields = std::get<PacketLayout>(layout.form).packet;
-  return fields.front().role == Role::literal ? fields.front() : fields.back();
+using Packet = PacketLayout::Packet;
+
+const PacketField& mark_of(const Packet& packet) {
+  return packet.front().role == Role::literal ? packet.front() : packet.back();
 }
 
-bool is_at_begin(const Layout& layout) {
-  return &mark_of(layout) == &std::get<PacketLayout>(layout.form).packet.front();
+const Packet& first_packet(const Layout& layout) {
+  return std::get<PacketLayout>(layout.form).packets.front();
 }
 
-Layout without_mark(const Layout& layout) {
-  Layout other = layout;
-  std::vector<PacketField>& fields = std::get<PacketLayout>(other.form).packet;
-  PacketField& mark = is_at_begin(layout) ? fields.front() : fields.back();
+bool is_at_begin(const Packet& packet) {
+  return &mark_of(packet) == &packet.front();
+}
+
+Layout of_one_packet_without_mark(const Layout& layout, Packet packet) {
+  PacketField& mark = is_at_begin(packet) ? packet.front() : packet.back();
   mark = {.role = Role::skip, .count = mark.literal.size()};
+  Layout other = layout;
+  std::get<PacketLayout>(other.form).packets = {std::move(packet)};
   return other;
 }
 
-std::vector<std::size_t> sizes_of(const std::vector<std::shared_ptr<const Layout>>& layouts) {
-  std::vector<std::size_t> sizes;
-  for (const auto& layout : layouts) sizes.push_back(*constant_size(*layout));
-  return sizes;
-}
-
-}  // namespace
-
-std::optional<std::size_t> constant_size(const Layout& layout) {
-  const auto* const packet = std::get_if<PacketLayout>(&layout.form);
-  if (packet == nullptr || packet->escape != PacketLayout::Escape::none) return std::nullopt;
+/// The size of a packet that is a whole frame with a mark and without a checksum; else empty.
+std::optional<std::size_t> constant_size(const Layout& layout, const Packet& packet) {
   std::size_t size = 0;
-  for (const PacketField& field : packet->packet) {
+  for (const PacketField& field : packet) {
     switch (field.role) {
       case Role::row:
       case Role::col:
@@ -49,7 +47,7 @@ std::optional<std::size_t> constant_size(const Layout& layout) {
       case Role::checksum: return std::nullopt;
       case Role::values: {
         const std::size_t taxels = layout.arrays[field.array].shape.taxel_count();
-        const std::size_t shares = shares_of(packet->packet, field.array);
+        const std::size_t shares = shares_of(packet, field.array);
         if (field.count != 0 && field.count * shares != taxels) return std::nullopt;
         size += bytes_of(field.type, taxels / shares);
         break;
@@ -59,23 +57,54 @@ std::optional<std::size_t> constant_size(const Layout& layout) {
       default: size += bytes_of(field.type, 1);
     }
   }
-  const bool has_mark = mark_of(layout).role == Role::literal;
-  return has_mark ? std::optional(size) : std::nullopt;
+  return mark_of(packet).role == Role::literal ? std::optional(size) : std::nullopt;
 }
 
-ConstantPackets::Form::Form(const Layout& with_mark, std::size_t array)
-    : layout(without_mark(with_mark)),
-      size(*constant_size(with_mark)),
-      match(layout, array),
+std::vector<std::size_t> sizes_of(const std::vector<std::shared_ptr<const Layout>>& layouts) {
+  std::vector<std::size_t> sizes;
+  for (const auto& layout : layouts) {
+    for (const Packet& packet : std::get<PacketLayout>(layout->form).packets) {
+      sizes.push_back(*constant_size(*layout, packet));
+    }
+  }
+  return sizes;
+}
+
+}  // namespace
+
+bool has_constant_sizes(const Layout& layout) {
+  const auto* const form = std::get_if<PacketLayout>(&layout.form);
+  if (form == nullptr || form->escape != PacketLayout::Escape::none) return false;
+  const Packet& first = form->packets.front();
+  std::set<std::size_t> sizes;
+  for (const Packet& packet : form->packets) {
+    const std::optional<std::size_t> size = packet.empty() ? std::nullopt : constant_size(layout, packet);
+    const bool is_another = size && sizes.insert(*size).second;
+    if (!is_another || is_at_begin(packet) != is_at_begin(first) || mark_of(packet).literal != mark_of(first).literal) {
+      return false;
+    }
+  }
+  return true;
+}
+
+ConstantPackets::Form::Form(const Layout& of_packets, const Packet& packet, std::size_t array)
+    : layout(of_one_packet_without_mark(of_packets, packet)),
+      size(*constant_size(of_packets, packet)),
+      match(layout, first_packet(layout), array),
       fields(layout, moduli_of(std::get<PacketLayout>(layout.form))) {}
 
 ConstantPackets::ConstantPackets(const std::vector<std::shared_ptr<const Layout>>& layouts, std::size_t array,
                                  FirstMark first)
-    : MarkChainDecoder(mark_of(*layouts.front()).literal, is_at_begin(*layouts.front()) ? MarkAt::begin : MarkAt::end,
-                       sizes_of(layouts), first),
+    : MarkChainDecoder(mark_of(first_packet(*layouts.front())).literal,
+                       is_at_begin(first_packet(*layouts.front())) ? MarkAt::begin : MarkAt::end, sizes_of(layouts),
+                       first),
       first_(layouts.front()),
       array_(array) {
-  for (const auto& layout : layouts) forms_.push_back(std::make_unique<Form>(*layout, array));
+  for (const auto& layout : layouts) {
+    for (const Packet& packet : std::get<PacketLayout>(layout->form).packets) {
+      forms_.push_back(std::make_unique<Form>(*layout, packet, array));
+    }
+  }
 }
 
 std::optional<FrameShape> ConstantPackets::shape() const noexcept {
@@ -119,7 +148,8 @@ std::string ConstantPackets::advice() const {
   if (counts().frames > 0) return {};
   std::string sizes;
   for (const auto& form : forms_) sizes += (sizes.empty() ? "" : " or ") + std::to_string(form->size);
-  return "the mark " + hexadecimal(mark_of(*first_).literal) + " does not come again after " + sizes + " bytes";
+  return "the mark " + hexadecimal(mark_of(first_packet(*first_)).literal) + " does not come again after " + sizes +
+         " bytes";
 }
 
 }  // namespace dermis::bytes::layouts

@@ -18,11 +18,11 @@
 
 namespace dermis::bytes::layouts {
 
-/// The size of the packets of a layout, where all have the same, a whole frame, a mark, and no checksum; else empty.
-[[nodiscard]] std::optional<std::size_t> constant_size(const Layout& layout);
+/// Each packet of the layout is a whole frame without a checksum. They have the same mark, and sizes that differ.
+[[nodiscard]] bool has_constant_sizes(const Layout& layout);
 
-/// Packets of constant_size(). Where there are several layouts, they have the same mark and differ in size. The
-/// distance of the marks shows which one holds.
+/// Packets that has_constant_sizes(). Those of several layouts have the same mark and differ in size. The distance of
+/// the marks shows which one holds.
 class ConstantPackets final : public MarkChainDecoder {
  public:
   using MarkChainDecoder::FirstMark;
@@ -35,11 +35,11 @@ class ConstantPackets final : public MarkChainDecoder {
   [[nodiscard]] std::string advice() const override;
 
  private:
-  /// A layout, and how its packets are read.
+  /// A packet of a layout, and how it is read.
   struct Form {
-    Form(const Layout& with_mark, std::size_t array);
+    Form(const Layout& of_packets, const PacketLayout::Packet& packet, std::size_t array);
 
-    Layout layout;  ///< Without the mark, which may be damaged.
+    Layout layout;  ///< Of that packet without the mark, which may be damaged.
     std::size_t size;
     PacketMatch match;
     FrameFields fields;

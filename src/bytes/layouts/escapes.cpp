@@ -2,21 +2,10 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/bytes/layouts/escapes.hpp"
 
+#include <cstring>
+
 namespace dermis::bytes::layouts {
 namespace {
-
-/// A code of n stands before n - 1 bytes and, but for 255, a byte of 0. Cheshire, Baker, "Consistent Overhead Byte
-/// Stuffing", IEEE/ACM Transactions on Networking 7 (1999).
-bool undo_cobs(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& plain) {
-  while (!bytes.empty()) {
-    const std::size_t code = bytes.front();
-    if (code == 0 || code > bytes.size()) return false;
-    plain.insert(plain.end(), bytes.begin() + 1, bytes.begin() + static_cast<std::ptrdiff_t>(code));
-    bytes = bytes.subspan(code);
-    if (code < 0xFF && !bytes.empty()) plain.push_back(0);
-  }
-  return true;
-}
 
 bool undo_slip(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& plain) {
   for (std::size_t i = 0; i < bytes.size(); ++i) {
@@ -39,7 +28,31 @@ bool undo_stuffing(const PacketLayout& layout, std::span<const std::uint8_t> byt
   return true;
 }
 
+constexpr std::size_t kShortBlock = 8;  ///< Bytes that are copied at once, also where fewer are meant.
+
 }  // namespace
+
+/// A code of n stands before n - 1 bytes and, but for 255, a byte of 0. Cheshire, Baker, "Consistent Overhead Byte
+/// Stuffing", IEEE/ACM Transactions on Networking 7 (1999).
+std::optional<std::size_t> undo_cobs(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& plain) {
+  if (plain.size() < bytes.size() + kShortBlock) plain.resize(2 * (bytes.size() + kShortBlock));
+  std::size_t length = 0;
+  for (std::size_t at = 0; at < bytes.size();) {
+    const std::size_t code = bytes[at];
+    if (code == 0 || code > bytes.size() - at) return std::nullopt;
+    const std::size_t block = code - 1;
+    const bool is_short = block <= kShortBlock && bytes.size() - at > kShortBlock;
+    if (is_short) {
+      std::memcpy(&plain[length], &bytes[at] + 1, kShortBlock);
+    } else {
+      std::memcpy(&plain[length], &bytes[at] + 1, block);
+    }
+    at += code;
+    length += block;
+    if (code < 0xFF && at < bytes.size()) plain[length++] = 0;
+  }
+  return length;
+}
 
 std::uint8_t delimiter_of(const PacketLayout& layout) noexcept {
   if (layout.escape == PacketLayout::Escape::slip) return 0xC0;
@@ -49,7 +62,11 @@ std::uint8_t delimiter_of(const PacketLayout& layout) noexcept {
 bool undo_escapes(const PacketLayout& layout, std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& plain) {
   plain.clear();
   switch (layout.escape) {
-    case PacketLayout::Escape::cobs: return undo_cobs(bytes, plain);
+    case PacketLayout::Escape::cobs: {
+      const std::optional<std::size_t> size = undo_cobs(bytes, plain);
+      plain.resize(size.value_or(0));
+      return size.has_value();
+    }
     case PacketLayout::Escape::slip: return undo_slip(bytes, plain);
     case PacketLayout::Escape::stuffed: return undo_stuffing(layout, bytes, plain);
     case PacketLayout::Escape::none: break;

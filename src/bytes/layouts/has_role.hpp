@@ -24,12 +24,13 @@ template <typename Field>
   }));
 }
 
-/// The same of several lines.
-[[nodiscard]] inline bool has_role(const std::vector<TextLayout::Pattern>& lines, Role role) {
-  return std::any_of(lines.begin(), lines.end(), [&](const auto& line) { return has_role(line, role); });
+/// The same of several lines or packets.
+template <typename Field>
+[[nodiscard]] bool has_role(const std::vector<std::vector<Field>>& all, Role role) {
+  return std::any_of(all.begin(), all.end(), [&](const std::vector<Field>& fields) { return has_role(fields, role); });
 }
 
-/// Whether one of the fields of a line, of several lines, or of a packet is a time.
+/// Whether one of the fields of a line or packet, or of several, is a time.
 template <typename Fields>
 [[nodiscard]] bool has_time(const Fields& fields) {
   return has_role(fields, Role::time) || has_role(fields, Role::clock) || has_role(fields, Role::datetime);

@@ -17,13 +17,13 @@ namespace dermis::bytes::layouts {
 
 bool Layout::has_times() const {
   const auto* const text = std::get_if<TextLayout>(&form);
-  return text != nullptr ? has_time(text->lines) : has_time(std::get<PacketLayout>(form).packet);
+  return text != nullptr ? has_time(text->lines) : has_time(std::get<PacketLayout>(form).packets);
 }
 
 bool Layout::has_numbers() const {
   const auto* const text = std::get_if<TextLayout>(&form);
   return text != nullptr ? has_role(text->lines, Role::frame)
-                         : has_role(std::get<PacketLayout>(form).packet, Role::frame);
+                         : has_role(std::get<PacketLayout>(form).packets, Role::frame);
 }
 
 std::string_view Layout::request_after(bool is_sending) const noexcept {
@@ -53,6 +53,7 @@ std::string hexadecimal(std::span<const std::uint8_t> bytes) {
 }
 
 std::unique_ptr<Decoder> make_decoder(const std::vector<std::shared_ptr<const Layout>>& layouts) {
+  if (!has_constant_sizes(*layouts.front())) return make_decoder(layouts.front(), 0, false);
   return std::make_unique<ConstantPackets>(layouts, 0, ConstantPackets::FirstMark::may_be_readings);
 }
 
@@ -62,7 +63,7 @@ std::unique_ptr<Decoder> make_decoder(std::shared_ptr<const Layout> layout, std:
   std::unique_ptr<Decoder> decoder;
   if (std::holds_alternative<TextLayout>(layout->form)) {
     decoder = std::make_unique<TextDecoder>(std::move(layout), array, is_whole_file);
-  } else if (constant_size(*layout)) {
+  } else if (has_constant_sizes(*layout)) {
     decoder = std::make_unique<ConstantPackets>(std::vector{std::move(layout)}, array,
                                                 ConstantPackets::FirstMark::begins_frame);
   } else {

@@ -40,7 +40,7 @@ class LayoutReader {
       read_packet();
     }
     read_readings();
-    for (const char* const table : {"array", "readout"}) file_.ignore(table);
+    for (const char* const table : {"array", "readout", "device"}) file_.ignore(table);
     if (Status finished = file_.finish(); !finished) return finished.error();
     return std::move(layout_);
   }
@@ -149,21 +149,30 @@ class LayoutReader {
   }
 
   void read_packet() {
-    PacketLayout packet;
-    std::vector<std::string> entries;
-    file_.texts(key("packet"), entries);
-    if (entries.size() > kMostFields) {
-      fail("packet", "has more than 256 fields");
-      entries.clear();
+    PacketLayout layout;
+    std::vector<std::vector<std::string>> packets;
+    file_.text_rows(key("packet"), packets);
+    if (packets.size() > kMostPatterns) {
+      fail("packet", "has more than 64 packets");
+      packets.resize(1);
     }
+    for (std::size_t k = 0; k < packets.size(); ++k) {
+      read_fields(packets[k], packets.size() > 1 ? "packet " + std::to_string(k + 1) + ": " : "",
+                  layout.packets.emplace_back());
+    }
+    read_escape(layout);
+    for (const PacketLayout::Packet& packet : layout.packets) check(packet);
+    check_marks(layout);
+    layout_.form = std::move(layout);
+  }
+
+  void read_fields(const std::vector<std::string>& entries, const std::string& which, PacketLayout::Packet& packet) {
+    if (entries.size() > kMostFields) return fail("packet", which + "has more than 256 fields");
     for (std::size_t k = 0; k < entries.size(); ++k) {
       Result<PacketField> field = parse_packet_entry(entries[k], layout_.arrays);
-      if (!field) fail("packet", "field " + std::to_string(k + 1) + ": " + field.error().message);
-      if (field) packet.packet.push_back(*std::move(field));
+      if (!field) fail("packet", which + "field " + std::to_string(k + 1) + ": " + field.error().message);
+      if (field) packet.push_back(*std::move(field));
     }
-    read_escape(packet);
-    check(packet);
-    layout_.form = std::move(packet);
   }
 
   void read_escape(PacketLayout& packet) {
@@ -185,9 +194,7 @@ class LayoutReader {
     }
   }
 
-  void check(const PacketLayout& packet) {
-    const std::vector<PacketField>& fields = packet.packet;
-    check_mark(packet);
+  void check(const PacketLayout::Packet& fields) {
     const bool has_counts = has_role(fields, Role::count) || std::ranges::any_of(fields, [](const PacketField& field) {
                               return field.role == Role::values && field.count > 0;
                             });
@@ -203,13 +210,17 @@ class LayoutReader {
     if (has_role(fields, Role::array) && !has_ids) fail("array", "each array needs an id, which the field array holds");
   }
 
-  void check_mark(const PacketLayout& packet) {
-    if (packet.packet.empty() || packet.escape != PacketLayout::Escape::none) return;
-    if (packet.packet.front().role == Role::literal) return;
-    const bool ends_with_mark = packet.packet.back().role == Role::literal;
-    if (ends_with_mark && constant_size({layout_.arrays, packet})) return;
-    fail("packet", ends_with_mark ? "its size differs, so it must begin with bytes that mark it, or have an escape"
-                                  : "must begin or end with bytes that mark it, as \"FF FF\", or have an escape");
+  void check_marks(const PacketLayout& layout) {
+    const auto begins_with_mark = [](const auto& packet) { return packet.front().role == Role::literal; };
+    const auto ends_with_mark = [](const auto& packet) { return packet.back().role == Role::literal; };
+    const auto is_empty = [](const auto& packet) { return packet.empty(); };
+    const std::vector<PacketLayout::Packet>& packets = layout.packets;
+    if (layout.escape != PacketLayout::Escape::none || std::ranges::any_of(packets, is_empty)) return;
+    if (std::ranges::all_of(packets, begins_with_mark)) return;
+    if (has_constant_sizes({layout_.arrays, layout})) return;
+    fail("packet", std::ranges::all_of(packets, ends_with_mark)
+                       ? "its size differs, so it must begin with bytes that mark it, or have an escape"
+                       : "must begin or end with bytes that mark it, as \"FF FF\", or have an escape");
   }
 
   void read_readings() {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -12,9 +11,12 @@
 #include <string_view>
 
 #include "bytes/layouts/has_role.hpp"
+#include "dermis/bytes/files/numbers.hpp"
 
 namespace dermis::bytes::layouts {
 namespace {
+
+using files::digit;
 
 constexpr std::size_t kMostShown = 24;
 constexpr double kMostNanos = 9e18;
@@ -26,10 +28,6 @@ bool is_blank(std::uint8_t byte) noexcept {
 /// Blank, or a bracket of a list in a line.
 bool is_passed_over(std::uint8_t byte) noexcept {
   return is_blank(byte) || byte == '[' || byte == ']' || byte == '(' || byte == ')';
-}
-
-std::uint32_t digit(std::uint8_t byte) noexcept {
-  return static_cast<std::uint32_t>(byte) - '0';
 }
 
 }  // namespace
@@ -202,8 +200,7 @@ std::size_t LineMatch::read_plain(std::span<float> values) noexcept {
   std::size_t count = 0;
   for (; count < values.size() && at != end_ && (*at == ' ' || *at == ','); ++count) {
     const std::uint8_t* const first = ++at;
-    std::uint32_t whole = 0;
-    for (std::uint32_t next = digit(*at); next <= 9; next = digit(*++at)) whole = 10 * whole + next;
+    const std::uint32_t whole = files::take_digits(at);
     const bool is_whole = at != first && at - first <= kMostDigits && *at != '.' && (*at | 0x20U) != 'e';
     if (!is_whole) break;
     values[count] = static_cast<float>(whole);
@@ -214,24 +211,9 @@ std::size_t LineMatch::read_plain(std::span<float> values) noexcept {
 
 /// A reading, or NaN for an empty one and for nan.
 bool LineMatch::read_reading(float& value) noexcept {
+  if (text_.width > 0 || text_.is_hexadecimal) return read_digits(value);
   const std::uint8_t* const first = at_;
-  if (text_.width > 0 || text_.is_hexadecimal) {
-    const std::uint8_t* const last =
-        text_.width > 0 && static_cast<std::size_t>(end_ - at_) >= text_.width ? at_ + text_.width : end_;
-    if (text_.width > 0 && last == end_ && static_cast<std::size_t>(end_ - at_) < text_.width) return false;
-    std::uint32_t whole = 0;
-    const bool has_prefix = text_.is_hexadecimal && last - at_ > 2 && *at_ == '0' && (at_[1] | 0x20U) == 'x';
-    if (has_prefix) at_ += 2;
-    const char* const from = reinterpret_cast<const char*>(at_);
-    const auto [end, error] =
-        std::from_chars(from, reinterpret_cast<const char*>(last), whole, text_.is_hexadecimal ? 16 : 10);
-    if (error != std::errc{} || (text_.width > 0 && end != reinterpret_cast<const char*>(last))) return false;
-    at_ += end - from;
-    value = static_cast<float>(whole);
-    return true;
-  }
-  std::uint32_t whole = 0;
-  for (std::uint32_t next = digit(*at_); next <= 9; next = digit(*++at_)) whole = 10 * whole + next;
+  const std::uint32_t whole = files::take_digits(at_);
   const bool is_whole = at_ != first && at_ - first <= 9 && *at_ != static_cast<std::uint8_t>(text_.decimal_point) &&
                         (*at_ | 0x20U) != 'e';
   if (is_whole) {
@@ -249,12 +231,27 @@ bool LineMatch::read_reading(float& value) noexcept {
   return is_empty || skip_absent();
 }
 
+/// As many as the width says, or hexadecimal ones.
+bool LineMatch::read_digits(float& value) noexcept {
+  std::string_view digits = rest().substr(0, text_.width > 0 ? text_.width : std::string_view::npos);
+  if (digits.size() < text_.width) return false;
+  const bool has_prefix =
+      text_.is_hexadecimal && digits.size() > 2 && (digits.starts_with("0x") || digits.starts_with("0X"));
+  if (has_prefix) digits.remove_prefix(2);
+  std::uint32_t whole = 0;
+  const std::size_t size =
+      text_.is_hexadecimal ? files::hexadecimal_at(digits, whole) : files::number_at(digits, whole);
+  if (size == 0 || (text_.width > 0 && size < digits.size())) return false;
+  at_ += size + (has_prefix ? 2 : 0);
+  value = static_cast<float>(whole);
+  return true;
+}
+
 /// Programs print these for no reading, beside nan.
 bool LineMatch::skip_absent() noexcept {
   constexpr std::array<std::string_view, 5> kWords = {"null", "None", "N/A", "NA", "--"};
-  const std::string_view rest(reinterpret_cast<const char*>(at_), static_cast<std::size_t>(end_ - at_));
   for (const std::string_view word : kWords) {
-    if (!rest.starts_with(word)) continue;
+    if (!rest().starts_with(word)) continue;
     at_ += word.size();
     return true;
   }
@@ -262,11 +259,10 @@ bool LineMatch::skip_absent() noexcept {
 }
 
 bool LineMatch::read_whole(std::optional<std::uint64_t>& value) noexcept {
-  const char* const from = reinterpret_cast<const char*>(at_);
   std::uint64_t whole = 0;
-  const auto [end, error] = std::from_chars(from, reinterpret_cast<const char*>(end_), whole);
-  if (error != std::errc{}) return fail("a whole number is expected");
-  at_ += end - from;
+  const std::size_t size = files::number_at(rest(), whole);
+  if (size == 0) return fail("a whole number is expected");
+  at_ += size;
   value = whole;
   return true;
 }
@@ -294,8 +290,7 @@ bool LineMatch::read_number(double& value) noexcept {
     if (!is_point && !is_part(*last)) break;
     text[size++] = is_point ? '.' : static_cast<char>(*last);
   }
-  const auto [end, error] = std::from_chars(text.data(), text.data() + size, value);
-  if (error != std::errc{} || end != text.data() + size) return false;
+  if (!files::parse_number(std::string_view(text.data(), size), value)) return false;
   at_ = last;
   return true;
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bytes/layouts/frame_assembly.hpp"
@@ -54,6 +55,7 @@ class LineMatch {
   bool read_values(std::span<float> values, std::size_t from, std::size_t to) noexcept;
   std::size_t read_plain(std::span<float> values) noexcept;
   bool read_reading(float& value) noexcept;
+  bool read_digits(float& value) noexcept;
   bool skip_absent() noexcept;
   bool read_whole(std::optional<std::uint64_t>& value) noexcept;
   bool read_counted(const TextField& field, std::optional<std::uint64_t>& value) noexcept;
@@ -62,6 +64,9 @@ class LineMatch {
   bool read_datetime(std::uint64_t& nanos) noexcept;
   bool read_zone(std::int64_t& east_ns) noexcept;
   bool read_array(const TextField* next, Piece& piece);
+  [[nodiscard]] std::string_view rest() const noexcept {
+    return {reinterpret_cast<const char*>(at_), static_cast<std::size_t>(end_ - at_)};
+  }
   void skip_blanks() noexcept;
   bool skip_separator() noexcept;
 

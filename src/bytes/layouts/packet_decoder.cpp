@@ -21,6 +21,14 @@ std::size_t longest_packet(const Layout& layout) {
   return 2 * kBytesOfReading * taxels + kOtherBytes;
 }
 
+std::size_t longest_mark(const PacketLayout& layout) noexcept {
+  std::size_t longest = 0;
+  for (const PacketLayout::Packet& packet : layout.packets) {
+    longest = std::max(longest, packet.front().literal.size());
+  }
+  return longest;
+}
+
 }  // namespace
 
 PacketDecoder::PacketDecoder(std::shared_ptr<const Layout> layout, std::size_t array)
@@ -28,8 +36,9 @@ PacketDecoder::PacketDecoder(std::shared_ptr<const Layout> layout, std::size_t a
       form_(std::get<PacketLayout>(layout_->form)),
       array_(array),
       longest_packet_(longest_packet(*layout_)),
-      match_(*layout_, array),
-      assembly_(*layout_, array, moduli_of(form_)) {}
+      assembly_(*layout_, array, moduli_of(form_)) {
+  for (const PacketLayout::Packet& packet : form_.packets) matches_.emplace_back(*layout_, packet, array);
+}
 
 void PacketDecoder::push(std::span<const std::uint8_t> bytes) {
   is_idle_ = false;
@@ -55,33 +64,50 @@ PacketDecoder::Found PacketDecoder::next_packet(RawFrame& frame) {
   const std::span<const std::uint8_t> bytes = window_.bytes();
   if (bytes.empty()) return Found::nothing;
   if (const std::size_t distance = distance_to_mark(bytes); distance > 0) return skip(distance);
-  switch (match_.read(bytes, piece_, numbers_)) {
-    case PacketMatch::Outcome::unfinished: return has_ended_ ? skip(1) : Found::nothing;
-    case PacketMatch::Outcome::damaged:
-      misfit_ = match_.misfit();
-      assembly_.damage(0);
-      return skip(1);
-    case PacketMatch::Outcome::foreign: misfit_ = match_.misfit(); return skip(1);
-    case PacketMatch::Outcome::whole: break;
-  }
-  if (match_.has_checksum()) return take(match_.size(), frame);
-  const std::span<const std::uint8_t> rest = bytes.subspan(match_.size());
-  const bool is_decided = rest.size() >= form_.packet.front().literal.size() || is_idle_ || has_ended_;
+  const auto [outcome, match] = read(bytes);
+  if (outcome == PacketMatch::Outcome::unfinished) return Found::nothing;
+  if (outcome == PacketMatch::Outcome::damaged) assembly_.damage(0);
+  if (outcome != PacketMatch::Outcome::whole) return skip(1);
+  if (match->has_checksum()) return take(match->size(), frame);
+  const std::span<const std::uint8_t> rest = bytes.subspan(match->size());
+  const bool is_decided = rest.size() >= longest_mark(form_) || is_idle_ || has_ended_;
   if (!is_decided) return Found::nothing;
-  return is_followed_by_packet(rest) ? take(match_.size(), frame) : skip(1);
+  return is_followed_by_packet(rest) ? take(match->size(), frame) : skip(1);
+}
+
+/// Tries the packets of the layout. One that may be more than the bytes so far keeps those behind it waiting, but not
+/// at the end.
+PacketDecoder::Reading PacketDecoder::read(std::span<const std::uint8_t> bytes) {
+  Reading reading;
+  for (PacketMatch& match : matches_) {
+    const PacketMatch::Outcome outcome = match.read(bytes, piece_, numbers_);
+    if (outcome == PacketMatch::Outcome::whole) return {outcome, &match};
+    if (outcome == PacketMatch::Outcome::unfinished && !has_ended_) return {outcome, &match};
+    if (outcome == PacketMatch::Outcome::unfinished) continue;
+    if (counts().frames == 0) misfit_ = match.misfit();
+    if (outcome == PacketMatch::Outcome::damaged) reading.outcome = outcome;
+  }
+  return reading;
 }
 
 /// Packets without a checksum are believed where the next one begins behind them.
 bool PacketDecoder::is_followed_by_packet(std::span<const std::uint8_t> rest) const noexcept {
-  const std::vector<std::uint8_t>& mark = form_.packet.front().literal;
-  const std::size_t size = std::min(rest.size(), mark.size());
-  return std::equal(mark.begin(), mark.begin() + static_cast<std::ptrdiff_t>(size), rest.begin());
+  return std::ranges::any_of(form_.packets, [&](const PacketLayout::Packet& packet) {
+    const std::vector<std::uint8_t>& mark = packet.front().literal;
+    const std::size_t size = std::min(rest.size(), mark.size());
+    return std::equal(mark.begin(), mark.begin() + static_cast<std::ptrdiff_t>(size), rest.begin());
+  });
 }
 
 std::size_t PacketDecoder::distance_to_mark(std::span<const std::uint8_t> bytes) const noexcept {
-  const void* const found = std::memchr(bytes.data(), form_.packet.front().literal.front(), bytes.size());
-  return found == nullptr ? bytes.size()
-                          : static_cast<std::size_t>(static_cast<const std::uint8_t*>(found) - bytes.data());
+  std::size_t distance = bytes.size();
+  for (const PacketLayout::Packet& packet : form_.packets) {
+    const void* const found = std::memchr(bytes.data(), packet.front().literal.front(), distance);
+    if (found != nullptr) {
+      distance = static_cast<std::size_t>(static_cast<const std::uint8_t*>(found) - bytes.data());
+    }
+  }
+  return distance;
 }
 
 PacketDecoder::Found PacketDecoder::skip(std::size_t bytes) {
@@ -106,13 +132,22 @@ PacketDecoder::Found PacketDecoder::next_escaped(RawFrame& frame) {
   if (end == nullptr) return reach == longest_packet_ ? skip(reach) : Found::nothing;
   const auto size = static_cast<std::size_t>(static_cast<const std::uint8_t*>(end) - bytes.data());
   if (size == 0) return skip(1);
-  const bool is_packet = undo_escapes(form_, bytes.first(size), plain_) &&
-                         match_.read(plain_, piece_, numbers_) == PacketMatch::Outcome::whole &&
-                         match_.size() == plain_.size();
-  if (is_packet) return take(size + 1, frame);
-  misfit_ = match_.misfit();
+  if (!undo_escapes(form_, bytes.first(size), plain_)) {
+    misfit_ = matches_.front().misfit();
+  } else if (is_one_of_them(plain_)) {
+    return take(size + 1, frame);
+  }
   if (counts().frames > 0) assembly_.damage(0);
   return skip(size + 1);
+}
+
+bool PacketDecoder::is_one_of_them(std::span<const std::uint8_t> plain) {
+  for (PacketMatch& match : matches_) {
+    const bool is_whole = match.read(plain, piece_, numbers_) == PacketMatch::Outcome::whole;
+    if (is_whole && match.size() == plain.size()) return true;
+    if (counts().frames == 0) misfit_ = match.misfit();
+  }
+  return false;
 }
 
 std::string PacketDecoder::advice() const {

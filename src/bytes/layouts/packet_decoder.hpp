@@ -38,7 +38,15 @@ class PacketDecoder final : public Decoder {
   /// The result of next_packet().
   enum class Found { nothing, packet, frame };
 
+  /// The outcome of the bytes, and the match of their packet where it is whole.
+  struct Reading {
+    PacketMatch::Outcome outcome = PacketMatch::Outcome::foreign;
+    const PacketMatch* match = nullptr;
+  };
+
   [[nodiscard]] Found next_packet(RawFrame& frame);
+  [[nodiscard]] Reading read(std::span<const std::uint8_t> bytes);
+  [[nodiscard]] bool is_one_of_them(std::span<const std::uint8_t> plain);
   [[nodiscard]] Found next_escaped(RawFrame& frame);
   [[nodiscard]] bool is_followed_by_packet(std::span<const std::uint8_t> rest) const noexcept;
   [[nodiscard]] std::size_t distance_to_mark(std::span<const std::uint8_t> bytes) const noexcept;
@@ -50,7 +58,7 @@ class PacketDecoder final : public Decoder {
   std::size_t array_;
   std::size_t longest_packet_;  ///< That is escaped.
   ByteWindow window_;
-  PacketMatch match_;
+  std::vector<PacketMatch> matches_;  ///< [packets of the layout]
   FrameAssembly assembly_;
   Piece piece_;
   std::vector<float> numbers_;       ///< Of the last packet.

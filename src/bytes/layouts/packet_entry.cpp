@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <string>
 
 #include "bytes/layouts/field_names.hpp"
+#include "dermis/bytes/files/numbers.hpp"
 
 namespace dermis::bytes::layouts {
 namespace {
@@ -37,11 +37,16 @@ std::string with_order_at_type(const std::vector<std::string_view>& tokens) {
   return text;
 }
 
-template <typename Number, typename... Base>
-std::optional<Number> number_in(std::string_view text, Base... base) {
+template <typename Number>
+std::optional<Number> number_in(std::string_view text) {
   Number value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, base...);
-  return error == std::errc{} && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+  return files::parse_number(text, value) ? std::optional(value) : std::nullopt;
+}
+
+template <typename Number>
+std::optional<Number> hexadecimal_in(std::string_view text) {
+  Number value{};
+  return files::parse_hexadecimal(text, value) ? std::optional(value) : std::nullopt;
 }
 
 std::optional<bool> order_in(std::string_view& type) {
@@ -113,7 +118,7 @@ Status read_checksum_option(std::string_view token, unsigned bits, Checksum& che
     if (!from || *from > 1024) return bad_input("from=: must be a number of bytes, 0 to 1024");
     return checksum.from = *from, Done{};
   }
-  const std::optional<std::uint32_t> value = number_in<std::uint32_t>(text, 16);
+  const std::optional<std::uint32_t> value = hexadecimal_in<std::uint32_t>(text);
   if (!value || *value > UINT32_MAX >> (32U - bits)) {
     return bad_input("'" + std::string(token) +
                      "' is no part of a checksum: it has poly=, init= and xorout= in hexadecimal "
@@ -149,7 +154,7 @@ Result<PacketField> parse_checksum(const std::vector<std::string_view>& tokens) 
 }
 
 Status read_mask(std::string_view digits, WireType& type) {
-  const std::optional<std::uint64_t> mask = number_in<std::uint64_t>(digits, 16);
+  const std::optional<std::uint64_t> mask = hexadecimal_in<std::uint64_t>(digits);
   const bool fits = mask && *mask > 0 && (type.bits == 64 || *mask >> type.bits == 0);
   if (!fits || type.kind != WireType::Kind::whole) {
     return bad_input("mask= must be hexadecimal digits of bits that a number without a sign has");
@@ -192,7 +197,7 @@ Result<PacketField> parse_skip(const std::vector<std::string_view>& tokens) {
 std::optional<std::vector<std::uint8_t>> parse_bytes(std::string_view text) {
   std::vector<std::uint8_t> bytes;
   for (const std::string_view token : tokens_of(text)) {
-    const std::optional<unsigned> byte = token.size() == 2 ? number_in<unsigned>(token, 16) : std::nullopt;
+    const std::optional<unsigned> byte = token.size() == 2 ? hexadecimal_in<unsigned>(token) : std::nullopt;
     if (!byte) return std::nullopt;
     bytes.push_back(static_cast<std::uint8_t>(*byte));
   }

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <type_traits>
 
 #include "bytes/layouts/has_role.hpp"
 
@@ -48,25 +49,41 @@ double number_of(std::uint64_t bits, const WireType& type) noexcept {
   return static_cast<double>(static_cast<std::int64_t>(bits << unused) >> unused);
 }
 
-/// `IsSwapped`: the bytes of the machine stand the other way round.
-template <bool IsSwapped>
-void read_16(std::span<const std::uint8_t> bytes, std::size_t count, float* values) noexcept {
-  for (std::size_t i = 0; i < count; ++i) {
-    std::uint16_t value = 0;
-    std::memcpy(&value, &bytes[2 * i], sizeof(value));
-    if (IsSwapped) value = static_cast<std::uint16_t>(value << 8U | value >> 8U);
-    values[i] = static_cast<float>(value);
+template <typename Bits>
+Bits swapped(Bits bits) noexcept {
+  if constexpr (sizeof(Bits) == 2) {
+    return __builtin_bswap16(bits);
+  } else {
+    return __builtin_bswap32(bits);
+  }
+}
+
+/// Numbers of 16 or 32 bits, whose bytes may stand the other way round than those of the machine.
+template <typename Number>
+void read_as(std::span<const std::uint8_t> bytes, bool is_swapped, std::size_t count, float* values) noexcept {
+  using Bits = std::conditional_t<sizeof(Number) == 2, std::uint16_t, std::uint32_t>;
+  const auto bits_of = [&](std::size_t i) {
+    Bits bits = 0;
+    std::memcpy(&bits, &bytes[sizeof(Bits) * i], sizeof(bits));
+    return bits;
+  };
+  const auto number = [](Bits bits) { return static_cast<float>(std::bit_cast<Number>(bits)); };
+  if (is_swapped) {
+    for (std::size_t i = 0; i < count; ++i) values[i] = number(swapped(bits_of(i)));
+  } else {
+    for (std::size_t i = 0; i < count; ++i) values[i] = number(bits_of(i));
   }
 }
 
 void read_numbers(std::span<const std::uint8_t> bytes, const WireType& type, std::size_t count,
                   float* values) noexcept {
-  const bool is_whole = type.kind == WireType::Kind::whole && type.mask == 0;
-  if (is_whole && type.bits == 8) return void(std::copy_n(bytes.begin(), count, values));
-  if (is_whole && type.bits == 16) {
-    const bool is_swapped = type.is_big_endian == (std::endian::native == std::endian::little);
-    return is_swapped ? read_16<true>(bytes, count, values) : read_16<false>(bytes, count, values);
-  }
+  using Kind = WireType::Kind;
+  const bool is_swapped = type.is_big_endian == (std::endian::native == std::endian::little);
+  const auto is = [&](Kind kind, unsigned bits) { return type.kind == kind && type.bits == bits && type.mask == 0; };
+  if (is(Kind::whole, 8)) return void(std::copy_n(bytes.begin(), count, values));
+  if (is(Kind::whole, 16)) return read_as<std::uint16_t>(bytes, is_swapped, count, values);
+  if (is(Kind::negative, 16)) return read_as<std::int16_t>(bytes, is_swapped, count, values);
+  if (is(Kind::real, 32)) return read_as<float>(bytes, is_swapped, count, values);
   for (std::size_t i = 0; i < count; ++i) values[i] = static_cast<float>(number_of(bits_at(bytes, type, i), type));
 }
 
@@ -78,19 +95,21 @@ std::size_t bytes_of(const WireType& type, std::size_t count) noexcept {
 
 Moduli moduli_of(const PacketLayout& layout) {
   Moduli moduli;
-  for (const PacketField& field : layout.packet) {
-    if (field.role == Role::frame) moduli.frame = range_of(field);
-    const double nanos = std::round(1e9 * field.unit * static_cast<double>(range_of(field)));
-    if (field.role == Role::time && nanos < 9e18) {
-      moduli.time_ns = std::max(moduli.time_ns, static_cast<std::uint64_t>(nanos));
+  for (const PacketLayout::Packet& packet : layout.packets) {
+    for (const PacketField& field : packet) {
+      if (field.role == Role::frame) moduli.frame = range_of(field);
+      const double nanos = std::round(1e9 * field.unit * static_cast<double>(range_of(field)));
+      if (field.role == Role::time && nanos < 9e18) {
+        moduli.time_ns = std::max(moduli.time_ns, static_cast<std::uint64_t>(nanos));
+      }
     }
   }
   return moduli;
 }
 
-PacketMatch::PacketMatch(const Layout& layout, std::size_t array)
+PacketMatch::PacketMatch(const Layout& layout, const PacketLayout::Packet& packet, std::size_t array)
     : layout_(layout),
-      packet_(std::get<PacketLayout>(layout.form).packet),
+      packet_(packet),
       array_(array),
       names_array_(has_role(packet_, Role::array)),
       has_checksum_(has_role(packet_, Role::checksum)) {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "bytes/layouts/checksums.hpp"
 #include "bytes/layouts/frame_fields.hpp"
+#include "dermis/bytes/layouts/checksum_of.hpp"
 #include "dermis/bytes/layouts/layout.hpp"
 
 namespace dermis::bytes::layouts {
@@ -21,7 +21,7 @@ namespace dermis::bytes::layouts {
 /// Where the fields of packets wrap.
 [[nodiscard]] Moduli moduli_of(const PacketLayout& layout);
 
-/// Reads the packets of a layout. Keeps the readings of one array of those that a packet has.
+/// Reads one of the packets of a layout. Keeps the readings of one array of those that a packet has.
 class PacketMatch {
  public:
   enum class Outcome {
@@ -31,11 +31,13 @@ class PacketMatch {
     damaged,     ///< A packet whose checksum is wrong.
   };
 
-  PacketMatch(const Layout& layout, std::size_t array);
+  /// `packet` is one of the layout.
+  PacketMatch(const Layout& layout, const PacketLayout::Packet& packet, std::size_t array);
 
   /// Reads the packet that the bytes begin with. `numbers` become the readings of the array that is wanted.
   [[nodiscard]] Outcome read(std::span<const std::uint8_t> bytes, Piece& piece, std::vector<float>& numbers);
 
+  [[nodiscard]] const PacketLayout::Packet& packet() const noexcept { return packet_; }
   [[nodiscard]] bool has_checksum() const noexcept { return has_checksum_; }
   [[nodiscard]] std::size_t size() const noexcept { return at_; }
   /// "packet[3], a checksum, is 5F where 33 is expected", of the last one that did not fit.
@@ -51,7 +53,7 @@ class PacketMatch {
   [[nodiscard]] std::size_t count_of(const PacketField& field, std::size_t array, const Piece& piece) const noexcept;
 
   const Layout& layout_;
-  const std::vector<PacketField>& packet_;
+  const PacketLayout::Packet& packet_;
   std::size_t array_;
   bool names_array_;  ///< A field says whose readings a packet has.
   bool has_checksum_;

@@ -7,7 +7,7 @@
 
 namespace dermis::bytes::layouts {
 
-/// A number of a device that counts modulo `modulus`, counted on where it wraps. 0: it never does.
+/// A number of a device that counts modulo `modulus`, counted on where it wraps, up to 2^62. 0: it never does.
 class Unwrapped {
  public:
   explicit Unwrapped(std::uint64_t modulus = 0) : modulus_(modulus) {}
@@ -15,7 +15,7 @@ class Unwrapped {
   /// `most_back`: the number may fall by so much; a larger fall is a restart of the device.
   [[nodiscard]] std::int64_t count(std::uint64_t number, std::int64_t most_back) noexcept {
     const std::int64_t step = step_to(number);
-    const bool goes_on = last_.has_value() && step >= -most_back;
+    const bool goes_on = last_.has_value() && step >= -most_back && total_ + step <= kMost;
     total_ = goes_on ? total_ + step : static_cast<std::int64_t>(number);
     last_ = number;
     return total_;
@@ -29,6 +29,8 @@ class Unwrapped {
     return forward <= modulus_ / 2 ? static_cast<std::int64_t>(forward)
                                    : static_cast<std::int64_t>(forward) - static_cast<std::int64_t>(modulus_);
   }
+
+  static constexpr std::int64_t kMost = std::int64_t{1} << 62U;
 
   std::uint64_t modulus_;
   std::optional<std::uint64_t> last_;

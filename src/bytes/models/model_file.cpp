@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -12,6 +11,7 @@
 #include <utility>
 
 #include "dermis/bytes/files/array_toml.hpp"
+#include "dermis/bytes/files/numbers.hpp"
 #include "dermis/bytes/files/safetensors.hpp"
 #include "dermis/touch/pipeline/direct_model.hpp"
 
@@ -54,10 +54,8 @@ const std::string& metadata(const SafetensorsFile& file, const std::string& key)
 }
 
 std::size_t metadata_count(const SafetensorsFile& file, const std::string& key) {
-  const std::string& text = metadata(file, key);
   std::size_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} && end == text.data() + text.size() ? value : 0;
+  return files::parse_number(metadata(file, key), value) ? value : 0;
 }
 
 /// Only where there are tables: files without one stay as they always were.

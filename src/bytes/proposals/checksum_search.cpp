@@ -9,6 +9,7 @@
 #include "bytes/proposals/byte_text.hpp"
 #include "bytes/proposals/draft.hpp"
 #include "bytes/proposals/trial.hpp"
+#include "dermis/bytes/files/text.hpp"
 #include "dermis/bytes/layouts/layout.hpp"
 
 namespace dermis::bytes::proposals {
@@ -49,7 +50,7 @@ std::string toml_with(const Packets& packets, std::size_t at, const std::string&
   if (at > mark + 1) draft.packet.push_back("skip " + std::to_string(at - mark - 1));
   draft.packet.push_back(checksum);
   if (at + size < packets.size) draft.packet.push_back("skip " + std::to_string(packets.size - at - size));
-  if (!packets.escape.empty()) draft.keys.emplace_back("escape", quoted(packets.escape));
+  if (!packets.escape.empty()) draft.keys.emplace_back("escape", files::quoted_toml(packets.escape));
   return toml_of(draft);
 }
 

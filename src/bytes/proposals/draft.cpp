@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "bytes/proposals/draft.hpp"
 
-#include <cstdio>
+#include "dermis/bytes/files/text.hpp"
 
 namespace dermis::bytes::proposals {
 namespace {
@@ -13,46 +13,25 @@ std::string shape_keys(const FrameShape& shape) {
 
 }  // namespace
 
-std::string quoted(std::string_view text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      result += {'\\', c};
-    } else if (c == '\t') {
-      result += "\\t";
-    } else if (c == '\r') {
-      result += "\\r";
-    } else if (byte < 0x20 || byte == 0x7F) {
-      char escape[8];
-      std::snprintf(escape, sizeof escape, "\\u%04X", unsigned{byte});
-      result += escape;
-    } else {
-      result += c;
-    }
-  }
-  return result + '"';
-}
-
 std::string toml_of(const Draft& draft) {
   std::string text = "[layout]\n";
   const bool is_alone = draft.arrays.size() == 1;
   if (is_alone) text += shape_keys(draft.arrays.front().shape);
-  const std::string line = quoted(draft.line);
-  const std::string lines = draft.head.empty() ? line : "[" + quoted(draft.head) + ", " + line + "]";
+  const std::string line = files::quoted_toml(draft.line);
+  const std::string lines = draft.head.empty() ? line : "[" + files::quoted_toml(draft.head) + ", " + line + "]";
   if (!draft.line.empty()) text += "line = " + lines + "\n";
   if (!draft.packet.empty()) {
     text += "packet = [";
     for (const std::string& field : draft.packet) {
       if (text.back() != '[') text += ", ";
-      text += quoted(field);
+      text += files::quoted_toml(field);
     }
     text += "]\n";
   }
   for (const auto& [key, value] : draft.keys) text.append(key).append(" = ").append(value).append("\n");
   if (is_alone) return text;
   for (const DraftArray& array : draft.arrays) {
-    text += "\n[[layout.array]]\nname = " + quoted(array.name) + "\n";
+    text += "\n[[layout.array]]\nname = " + files::quoted_toml(array.name) + "\n";
     if (array.id) text += "id = " + std::to_string(*array.id) + "\n";
     text += shape_keys(array.shape);
   }

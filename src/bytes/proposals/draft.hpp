@@ -38,8 +38,6 @@ struct Draft {
   double merit = 0.0;    ///< What speaks for it beside the frames: checksums, counters, what is known.
 };
 
-/// As a string of TOML.
-[[nodiscard]] std::string quoted(std::string_view text);
 [[nodiscard]] std::string toml_of(const Draft& draft);
 
 }  // namespace dermis::bytes::proposals

@@ -73,8 +73,8 @@ std::optional<Packets> packets_with(const Escape& escape, std::span<const std::u
 
 std::vector<Packets> escaped_packets_in(std::span<const std::uint8_t> bytes) {
   std::vector<Packets> found;
-  for (const Escape& escape : {Escape{"cobs", {.packet = {}, .escape = PacketLayout::Escape::cobs}},
-                               Escape{"slip", {.packet = {}, .escape = PacketLayout::Escape::slip}},
+  for (const Escape& escape : {Escape{"cobs", {.packets = {}, .escape = PacketLayout::Escape::cobs}},
+                               Escape{"slip", {.packets = {}, .escape = PacketLayout::Escape::slip}},
                                Escape{"7E 7D 20", {{}, PacketLayout::Escape::stuffed, 0x7E, 0x7D, 0x20}}}) {
     if (std::optional<Packets> packets = packets_with(escape, bytes)) found.push_back(*std::move(packets));
   }

@@ -9,6 +9,7 @@
 #include "bytes/proposals/column_names.hpp"
 #include "bytes/proposals/left_over.hpp"
 #include "bytes/proposals/line_writer.hpp"
+#include "dermis/bytes/files/text.hpp"
 
 namespace dermis::bytes::proposals {
 namespace {
@@ -87,9 +88,10 @@ Draft begin_line_draft(const LinesAlike& text, const LineFields& fields, const K
   if (text.numerals.decimal_point == ',') draft.keys.emplace_back("decimal_point", "\",\"");
   if (text.numerals.is_hexadecimal) draft.keys.emplace_back("digits", "\"hexadecimal\"");
   if (text.numerals.width > 0) draft.keys.emplace_back("width", std::to_string(text.numerals.width));
-  if (!text.numerals.separator.empty()) draft.keys.emplace_back("separator", quoted(text.numerals.separator));
+  if (!text.numerals.separator.empty())
+    draft.keys.emplace_back("separator", files::quoted_toml(text.numerals.separator));
   const std::string unit = unit_of_name(text.columns[fields.spans.front().begin].name);
-  if (!unit.empty() && known.unit.empty()) draft.keys.emplace_back("unit", quoted(unit));
+  if (!unit.empty() && known.unit.empty()) draft.keys.emplace_back("unit", files::quoted_toml(unit));
   draft.has_certain_unit = !unit.empty();
   return draft;
 }

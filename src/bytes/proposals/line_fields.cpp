@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <string_view>
 #include <utility>
 
 #include "bytes/proposals/column_names.hpp"
+#include "dermis/bytes/files/numbers.hpp"
 
 namespace dermis::bytes::proposals {
 namespace {
@@ -24,10 +24,9 @@ std::vector<std::size_t> numbers_in(std::string_view name) {
   std::vector<std::size_t> numbers;
   for (std::size_t i = 0; i < name.size(); ++i) {
     if (std::isdigit(static_cast<unsigned char>(name[i])) == 0) continue;
-    std::size_t value = 0;
-    const auto [end, error] = std::from_chars(name.data() + i, name.data() + name.size(), value);
-    numbers.push_back(value);
-    i = static_cast<std::size_t>(end - name.data());
+    std::size_t& value = numbers.emplace_back();
+    if (files::number_at(name.substr(i), value) == 0) value = 0;
+    while (i < name.size() && files::is_digit(name[i])) ++i;
   }
   return numbers;
 }

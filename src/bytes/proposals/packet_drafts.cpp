@@ -13,6 +13,7 @@
 #include "bytes/proposals/packet_writer.hpp"
 #include "bytes/proposals/shapes.hpp"
 #include "bytes/proposals/value_search.hpp"
+#include "dermis/bytes/files/text.hpp"
 #include "dermis/bytes/layouts/layout.hpp"
 
 namespace dermis::bytes::proposals {
@@ -106,7 +107,7 @@ class CutDrafts {
     draft.look = std::to_string(packets_.packets.size()) + " packets of " + std::to_string(packets_.size) +
                  " bytes, each with " + std::to_string(span.count) + " readings of " + span.type;
     if (!packets_.escape.empty()) {
-      draft.keys.emplace_back("escape", quoted(packets_.escape));
+      draft.keys.emplace_back("escape", files::quoted_toml(packets_.escape));
       draft.reasons.push_back("between two delimiters stand as many bytes each, once their escapes (" +
                               packets_.escape + ") are undone");
       draft.merit += 0.5;

@@ -12,6 +12,7 @@
 #include "bytes/proposals/smoothness.hpp"
 #include "bytes/proposals/text_drafts.hpp"
 #include "bytes/proposals/trial.hpp"
+#include "dermis/bytes/files/text.hpp"
 #include "dermis/bytes/proposals/proposals.hpp"
 
 namespace dermis::bytes::proposals {
@@ -83,7 +84,7 @@ struct Judged {
 std::optional<Judged> judge(Draft draft, std::span<const std::uint8_t> bytes, const Known& known) {
   const bool is_tiny = draft.arrays.front().shape.taxel_count() < kFewestTaxels;
   if (is_tiny && !known.rows && !known.cols) return std::nullopt;
-  if (!known.unit.empty()) draft.keys.emplace_back("unit", quoted(known.unit));
+  if (!known.unit.empty()) draft.keys.emplace_back("unit", files::quoted_toml(known.unit));
   std::optional<Trial> trial = try_layout(toml_of(draft), bytes);
   if (!trial || trial->frames == 0) return std::nullopt;
   const double left = static_cast<double>(trial->left) / static_cast<double>(bytes.size());

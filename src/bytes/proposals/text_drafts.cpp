@@ -16,6 +16,7 @@
 #include "bytes/proposals/line_readings.hpp"
 #include "bytes/proposals/shapes.hpp"
 #include "bytes/proposals/smoothness.hpp"
+#include "dermis/bytes/files/text.hpp"
 
 namespace dermis::bytes::proposals {
 namespace {
@@ -77,7 +78,7 @@ class GroupDrafts {
     draft.merit += says_nothing || !draft.head.empty() ? 0.3 : shape.cols <= kMostColsOfRow ? 0.1 : 0.0;
     draft.merit += gain_of_rows(readings_of_lines(text_.lines, text_.group.members, span, 4 * mark.rows), mark.rows);
     if (draft.head.empty())
-      draft.keys.emplace_back(mark.lines.empty() ? "frame_begin" : "frame_end", quoted(mark.text));
+      draft.keys.emplace_back(mark.lines.empty() ? "frame_begin" : "frame_end", files::quoted_toml(mark.text));
     draft.reasons.push_back((mark.text.empty() ? "an empty line" : "'" + printable(mark.text) + "'") + " comes every " +
                             std::to_string(mark.rows) + " rows");
     draft.arrays = {{"", shape}};
@@ -165,7 +166,7 @@ std::vector<Draft> text_drafts(std::string_view text, const Known& known) {
     tokenise(lines, numerals);
     for (const LineGroup& group : groups_of(lines)) {
       for (Draft& draft : GroupDrafts(lines, group, numerals, known).all()) {
-        if (!line_end.empty()) draft.keys.emplace_back("line_end", quoted(line_end));
+        if (!line_end.empty()) draft.keys.emplace_back("line_end", files::quoted_toml(line_end));
         drafts.push_back(std::move(draft));
       }
     }

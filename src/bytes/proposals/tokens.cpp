@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <limits>
 #include <string>
+
+#include "dermis/bytes/files/numbers.hpp"
 
 namespace dermis::bytes::proposals {
 namespace {
@@ -97,12 +98,10 @@ double value_of(std::string_view text, const Numerals& numerals) {
   std::replace(plain.begin(), plain.end(), numerals.decimal_point, '.');
   if (numerals.is_hexadecimal) {
     unsigned whole = 0;
-    std::from_chars(plain.data(), plain.data() + plain.size(), whole, 16);
-    return whole;
+    return files::hexadecimal_at(plain, whole) > 0 ? whole : 0;
   }
   double value = std::numeric_limits<double>::quiet_NaN();
-  std::from_chars(plain.data(), plain.data() + plain.size(), value);
-  return value;
+  return files::number_at(plain, value) > 0 ? value : std::numeric_limits<double>::quiet_NaN();
 }
 
 Token token_at(std::string_view text, const Numerals& numerals, char before) {

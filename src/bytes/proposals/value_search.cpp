@@ -11,6 +11,7 @@
 #include "bytes/proposals/checksum_search.hpp"
 #include "bytes/proposals/draft.hpp"
 #include "bytes/proposals/trial.hpp"
+#include "dermis/bytes/files/text.hpp"
 #include "dermis/bytes/layouts/layout.hpp"
 
 namespace dermis::bytes::proposals {
@@ -111,7 +112,7 @@ class ValueSearch {
     if (span.begin > mark) draft.packet.push_back("skip " + std::to_string(span.begin - mark));
     draft.packet.push_back("values " + span.type);
     if (span.end < packets_.size) draft.packet.push_back("skip " + std::to_string(packets_.size - span.end));
-    if (!packets_.escape.empty()) draft.keys.emplace_back("escape", quoted(packets_.escape));
+    if (!packets_.escape.empty()) draft.keys.emplace_back("escape", files::quoted_toml(packets_.escape));
     return try_layout(toml_of(draft), sample_);
   }
 

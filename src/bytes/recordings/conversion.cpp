@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "bytes/recordings/described_sensors.hpp"
+#include "bytes/recordings/format_rows.hpp"
 #include "dermis/bytes/files/array_toml.hpp"
 #include "dermis/bytes/recordings/recording.hpp"
 
@@ -31,8 +32,9 @@ struct Extras {
 
 std::vector<std::string> left_out(const Extras& extras, bool has_forces, const FrameNotes& notes, FrameFormat format) {
   std::vector<std::string> names;
-  const bool holds_all = format == FrameFormat::mcap || format == FrameFormat::hdf5;
-  const bool holds_temperature = holds_all || format == FrameFormat::csv;
+  const Holds holds = row_of(format).holds;
+  const bool holds_all = holds == Holds::all;
+  const bool holds_temperature = holds != Holds::counts;
   if (extras.is_timed && !has_times(format)) names.emplace_back("times");
   if (extras.has_temperature && !holds_temperature) names.emplace_back("temperature");
   if (extras.most_sensors > 0 && !holds_temperature) names.emplace_back("temperatures of several sensors");

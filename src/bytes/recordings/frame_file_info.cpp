@@ -8,6 +8,7 @@
 #include <memory>
 #include <system_error>
 
+#include "bytes/recordings/format_rows.hpp"
 #include "dermis/bytes/files/taxel_text.hpp"
 #include "dermis/touch/frames/mean_celsius.hpp"
 
@@ -80,7 +81,7 @@ Result<FrameFileInfo> info_of_frames(const std::string& path, FrameFormat format
   if (!notes) return notes.error();
   info.notes = std::move(*notes);
   if (const Result<Nanos> first = add_all(**source, is_timed, info); !first) return first.error();
-  if (format == FrameFormat::hdf5 || format == FrameFormat::mcap) info.lost = (*source)->statistics().lost_frames;
+  if (row_of(format).holds == Holds::all) info.lost = (*source)->statistics().lost_frames;
   return info;
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <string_view>
 #include <system_error>
 
+#include "bytes/recordings/format_rows.hpp"
 #include "bytes/recordings/hdf5_plugin.hpp"
 #include "dermis/bytes/files/file_kind.hpp"
 #include "dermis/bytes/files/input.hpp"
@@ -17,29 +17,6 @@ namespace dermis::bytes::recordings {
 namespace {
 
 constexpr const char* kWritten = ".csv, .mcap, .h5, .hdf5, .wiresens.h5, .wiresens.hdf5 and .npy";
-
-struct Ending {
-  std::string_view ending;
-  FrameFormat format;
-};
-
-constexpr std::array kEndings = {Ending{".wiresens.h5", FrameFormat::wiresens},
-                                 Ending{".wiresens.hdf5", FrameFormat::wiresens},
-                                 Ending{".h5", FrameFormat::hdf5},
-                                 Ending{".hdf5", FrameFormat::hdf5},
-                                 Ending{".csv", FrameFormat::csv},
-                                 Ending{".mcap", FrameFormat::mcap},
-                                 Ending{".npy", FrameFormat::npy},
-                                 Ending{".npz", FrameFormat::npz},
-                                 Ending{".dsa", FrameFormat::dsa},
-                                 Ending{".dsa3", FrameFormat::dsa},
-                                 Ending{".asf", FrameFormat::tekscan},
-                                 Ending{".lst", FrameFormat::novel_lst},
-                                 Ending{".asc", FrameFormat::novel_asc},
-                                 Ending{".mat", FrameFormat::matlab},
-                                 Ending{".txt", FrameFormat::text_matrix},
-                                 Ending{".png", FrameFormat::png_stack},
-                                 Ending{".packed10", FrameFormat::packed10}};
 
 /// A pipe, a terminal; the standard input and output, also where a shell leads them to a file.
 bool is_stream(const std::string& path) {
@@ -83,75 +60,36 @@ std::string first_word(std::string text) {
 /// Exports of several systems have the endings .csv and .txt.
 FrameFormat text_format(const std::string& path, FrameFormat by_name) {
   const std::string word = first_word(first_bytes(path));
+  const auto begins_so = [&](const FormatRow& row) {
+    return std::ranges::find(row.first_words, word) != row.first_words.end();
+  };
+  const auto found = std::ranges::find_if(format_rows(), begins_so);
+  if (found != format_rows().end()) return found->format;
   double number = 0.0;
-  if (word == "DATA_TYPE") return FrameFormat::tekscan;
-  if (word == "File:" || word == "FRAME") return FrameFormat::xsensor;
-  if (files::parse_number(word, number)) return FrameFormat::text_matrix;
-  return by_name;
-}
-
-/// The kind of file that a format begins as; empty where it may begin as anything.
-std::string_view kind_of_format(FrameFormat format) {
-  switch (format) {
-    case FrameFormat::mcap: return files::kMcapKind;
-    case FrameFormat::hdf5:
-    case FrameFormat::wiresens: return files::kHdf5Kind;
-    case FrameFormat::npy: return files::kNpyKind;
-    case FrameFormat::npz: return files::kZipKind;
-    case FrameFormat::tekscan:
-    case FrameFormat::novel_lst:
-    case FrameFormat::novel_asc:
-    case FrameFormat::text_matrix: return files::kTableKind;
-    default: return {};
-  }
+  return files::parse_number(word, number) ? FrameFormat::text_matrix : by_name;
 }
 
 }  // namespace
 
 const char* to_string(FrameFormat format) {
-  switch (format) {
-    case FrameFormat::csv: return "frames.csv";
-    case FrameFormat::mcap: return "MCAP";
-    case FrameFormat::hdf5: return "HDF5";
-    case FrameFormat::wiresens: return "WiReSens HDF5";
-    case FrameFormat::npy: return "NumPy";
-    case FrameFormat::npz: return "NumPy archive";
-    case FrameFormat::dsa: return "Weiss DSA";
-    case FrameFormat::tekscan: return "Tekscan ASCII";
-    case FrameFormat::xsensor: return "XSENSOR ASCII";
-    case FrameFormat::novel_lst: return "novel listing";
-    case FrameFormat::novel_asc: return "novel ASCII";
-    case FrameFormat::matlab: return "MATLAB";
-    case FrameFormat::text_matrix: return "text matrix";
-    case FrameFormat::png_stack: return "PNG";
-    case FrameFormat::packed10: return "packed 10 bits";
-    case FrameFormat::hdf5_dataset: return "HDF5 dataset";
-  }
-  return "";
+  return row_of(format).name;
 }
 
 bool has_times(FrameFormat format) {
-  switch (format) {
-    case FrameFormat::npy:
-    case FrameFormat::npz:
-    case FrameFormat::text_matrix:
-    case FrameFormat::png_stack:
-    case FrameFormat::matlab:
-    case FrameFormat::hdf5_dataset:
-    case FrameFormat::packed10: return false;
-    default: return true;
-  }
+  return row_of(format).times == Times::always;
 }
 
 bool may_have_times(FrameFormat format) {
-  return format == FrameFormat::matlab || format == FrameFormat::hdf5_dataset;
+  return row_of(format).times == Times::sometimes;
 }
 
 Result<FrameFormat> frame_format(const std::string& path) {
   const std::string name = files::in_lower_case(path);
-  const auto* const found =
-      std::find_if(kEndings.begin(), kEndings.end(), [&](const Ending& known) { return name.ends_with(known.ending); });
-  if (found != kEndings.end()) return found->format;
+  const auto ends_so = [&](const FormatRow& row) {
+    return std::ranges::any_of(row.endings, [&](std::string_view ending) { return name.ends_with(ending); });
+  };
+  const auto found = std::ranges::find_if(format_rows(), ends_so);
+  if (found != format_rows().end()) return found->format;
   if (is_stream(path)) return FrameFormat::csv;
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) return FrameFormat::png_stack;
@@ -161,7 +99,7 @@ Result<FrameFormat> frame_format(const std::string& path) {
 
 Result<FrameFormat> output_format(const std::string& path) {
   Result<FrameFormat> format = frame_format(path);
-  if (!format || *format <= FrameFormat::npy) return format;
+  if (!format || row_of(*format).create != nullptr) return format;
   return bad_input(files::in_quotes(path) + ": files of this ending are only read; to write, there are " + kWritten);
 }
 
@@ -172,7 +110,7 @@ Result<FrameFormat> recognise_frames(const std::string& path) {
   if (was_simulated(place.path)) {
     return bad_input(place.path + ": is a folder; name " + (std::filesystem::path(place.path) / "frames.csv").string());
   }
-  if (const std::string_view kind = kind_of_format(*format); !kind.empty()) {
+  if (const std::string_view kind = row_of(*format).kind; !kind.empty()) {
     if (const auto other = files::wrong_kind(first_bytes(place.path), kind))
       return bad_input(place.path + ": " + *other);
   }

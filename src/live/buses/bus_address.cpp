@@ -3,11 +3,11 @@
 #include "dermis/live/buses/bus_address.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <set>
 #include <utility>
 
+#include "dermis/bytes/files/numbers.hpp"
 #include "dermis/touch/frames/nearest_name.hpp"
 
 namespace dermis::live::buses {
@@ -17,14 +17,6 @@ constexpr std::size_t kMostCharacters = 4096;
 constexpr std::string_view kTcp = "modbus-tcp:";
 constexpr std::string_view kRtu = "modbus-rtu:";
 constexpr std::string_view kDds = "dds:";
-
-template <typename Number>
-std::optional<Number> number(const std::string& text, Number least, Number most) {
-  Number value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool is_one = error == std::errc{} && end == text.data() + text.size() && value >= least && value <= most;
-  return is_one ? std::optional(value) : std::nullopt;
-}
 
 /// An address on its way; the first error is kept.
 class Parser {
@@ -77,7 +69,7 @@ class Parser {
   std::optional<Number> take_number(const char* name, Number least, Number most, const char* range) {
     const std::string text = take(name);
     if (text.empty()) return std::nullopt;
-    const std::optional<Number> value = number<Number>(text, least, most);
+    const std::optional<Number> value = bytes::files::number_within<Number>(text, least, most);
     if (!value) fail(std::string(name) + ": must be " + range + ", not '" + text + "'");
     return value;
   }
@@ -114,7 +106,7 @@ class Parser {
       fail("name the host, as modbus-tcp://192.168.123.210");
     }
     if (colon == std::string::npos) return;
-    const auto port = number<std::uint16_t>(where.substr(colon + 1), 1, 65535);
+    const auto port = bytes::files::number_within<std::uint16_t>(where.substr(colon + 1), 1, 65535);
     if (!port) return fail("the port must be 1 to 65535");
     place.port = *port;
   }
@@ -122,7 +114,7 @@ class Parser {
   TopicPlace read_topic(const std::string& where) {
     TopicPlace place;
     const std::size_t slash = where.find('/');
-    const auto domain = number<std::uint32_t>(where.substr(0, slash), 0, 232);
+    const auto domain = bytes::files::number_within<std::uint32_t>(where.substr(0, slash), 0, 232);
     if (!domain) fail("name a domain of 0 to 232, as dds://0/rt/chest/raw");
     place.domain = domain.value_or(0);
     if (slash != std::string::npos) place.topic = where.substr(slash + 1);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cassert>
-#include <charconv>
 #include <cstdlib>
 #include <limits>
 #include <string_view>
@@ -13,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "dermis/bytes/files/numbers.hpp"
 #include "live/dds/participant.hpp"
 #include "live/dds/writing_queue.hpp"
 
@@ -32,8 +32,7 @@ Result<std::uint64_t> domain_of_environment() {
   const std::string_view text = environment("ROS_DOMAIN_ID");
   std::uint64_t domain = 0;
   if (text.empty()) return domain;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), domain);
-  if (error == std::errc() && end == text.data() + text.size()) return domain;
+  if (bytes::files::parse_number(text, domain)) return domain;
   return bad_input("ROS_DOMAIN_ID: must be 0 to 232, is '" + std::string(text) + "'");
 }
 

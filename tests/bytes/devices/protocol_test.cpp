@@ -17,7 +17,8 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// What the tests need to know of a protocol; one that is not in the table has the defaults.
+/// What the tests need to know of a protocol; one that is not in the table has the defaults, and the shape of its
+/// devices.
 struct Traits {
   FrameShape shape = {16, 32};
   std::uint64_t max_count = 200;  ///< Whole counts up to this are carried.
@@ -41,7 +42,8 @@ Traits traits_of(const std::string& protocol) {
       {"wuji", {.shape = {24, 32}, .max_count = 32767, .has_checksum = true}},
   };
   const auto found = kTraits.find(protocol);
-  return found == kTraits.end() ? Traits{} : found->second;
+  if (found != kTraits.end()) return found->second;
+  return {.shape = make_decoder({.name = protocol}).value()->shape().value_or(FrameShape{16, 32})};
 }
 
 std::unique_ptr<Decoder> decoder_of(const std::string& protocol) {

@@ -117,7 +117,7 @@ TEST(SourceUri, takes_the_keys_of_a_layout) {
   const SourceUri uri =
       parsed("serial:///dev/ttyUSB0?rows=2&cols=3&line=%7Bframe%7D%22 {values}&line_end=%0D&scale=0.5");
   EXPECT_EQ(uri.protocol.layout_keys,
-            "[layout]\nrows = 2\ncols = 3\nline = \"{frame}\\u0022 {values}\"\nline_end = \"\\u000D\"\nscale = 0.5\n");
+            "[layout]\nrows = 2\ncols = 3\nline = \"{frame}\\\" {values}\"\nline_end = \"\\r\"\nscale = 0.5\n");
   EXPECT_TRUE(make_decoder(uri.protocol));
   const SourceUri packet = parsed("udp://0.0.0.0:9000?rows=2&cols=3&packet=AA 55,frame u8,values u16le");
   EXPECT_TRUE(make_decoder(packet.protocol));

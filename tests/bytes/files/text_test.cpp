@@ -14,6 +14,10 @@
 namespace dermis::bytes::files {
 namespace {
 
+TEST(Text, is_quoted_for_toml_with_escapes_for_what_a_string_cannot_hold) {
+  EXPECT_EQ(quoted_toml("a \"b\" \\ \t\r\n\x7F\x01"), R"("a \"b\" \\ \t\r\u000A\u007F\u0001")");
+}
+
 TEST(Text, quotes_are_put_around_and_long_text_is_cut) {
   EXPECT_EQ(in_quotes("a.csv"), "'a.csv'");
   EXPECT_EQ(in_quotes(std::string(10'000, 'x')), "'" + std::string(200, 'x') + "...'");

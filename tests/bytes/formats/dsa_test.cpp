@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/bytes/formats/dsa.hpp"
+#include "dermis/bytes/formats/imports.hpp"
 
 #include <bzlib.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/bytes/formats/xsensor.hpp"
+#include "dermis/bytes/formats/imports.hpp"
 
 #include <gtest/gtest.h>
 

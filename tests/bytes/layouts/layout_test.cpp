@@ -520,6 +520,47 @@ TEST(PacketLayout, damaged_bytes_cost_no_more_than_their_frames) {
   }
 }
 
+TEST(PacketLayout, packets_may_differ) {
+  const std::string two = R"(packet = [["AA 01", "values u8", "checksum sum8"],
+                                       ["AA 02", "values u16be", "checksum sum8"]]
+)";
+  const Bytes bytes = {0xAA, 1, 1, 2, 3, 4, 0xB5, 0xAA, 2, 0, 5, 0, 6, 0, 7, 0, 8, 0xC6};
+  EXPECT_EQ(readings_of(two, bytes), kOneToEight);
+  const std::string apart = R"(packet = [["AA 01", "values u8"], ["BB", "values u16be"]]
+)";
+  EXPECT_EQ(readings_of(apart, Bytes{0xAA, 1, 1, 2, 3, 4, 0xBB, 0, 5, 0, 6, 0, 7, 0, 8}), kOneToEight);
+  const std::string escaped = R"(packet = [["01", "values u8"], ["02", "values u16be"]]
+escape = "slip"
+)";
+  EXPECT_EQ(readings_of(escaped, Bytes{1, 1, 2, 3, 4, 0xC0, 2, 0, 5, 0, 6, 0, 7, 0, 8, 0xC0}), kOneToEight);
+}
+
+TEST(PacketLayout, the_distance_of_marks_tells_packets_that_differ_in_size) {
+  const std::string keys = R"(packet = [["AA 55", "values u8"], ["AA 55", "values u8", "skip 1"]]
+)";
+  Bytes bytes;
+  for (int k = 0; k < 6; ++k) bytes.insert(bytes.end(), {0xAA, 0x55, 1, 2, 3, 4, 9});
+  EXPECT_EQ(readings_of(keys, bytes), Readings(6, {1, 2, 3, 4}));
+}
+
+TEST(PacketLayout, a_clock_that_leaps_beyond_all_time_begins_anew) {
+  const std::string keys = R"(packet = ["AA 55", "time_ms u32be", "values u8", "checksum sum8"]
+)";
+  Bytes bytes;
+  for (std::uint32_t k = 0; k < 5000; ++k) {  // by 2^31 - 1 ms each: 2^63 ns are 4295 of them
+    const std::uint32_t time = k * INT32_MAX;
+    const auto byte = [&](unsigned shift) { return static_cast<std::uint8_t>(time >> shift); };
+    Bytes packet = {0xAA, 0x55, byte(24), byte(16), byte(8), byte(0), 1, 2, 3, 4};
+    unsigned sum = 0;
+    for (const std::uint8_t one : packet) sum += one;
+    packet.push_back(static_cast<std::uint8_t>(sum));
+    bytes.insert(bytes.end(), packet.begin(), packet.end());
+  }
+  const auto decoder = make_decoder(layout_of(kTwoByTwo + keys), 0, false);
+  for (const RawFrame& frame : frames_of(*decoder, bytes)) ASSERT_GE(frame.acquisition.device_time, Nanos{});
+  EXPECT_EQ(decoder->counts().frames, 5000U);
+}
+
 TEST(LayoutToml, stands_beside_the_array_that_it_is_of) {
   const Result<Layout> layout = layout_from_toml(
       "[array]\nname = \"mat\"\nrows = 2\ncols = 3\n[readout]\nadc_bits = 12\n[layout]\nline = \"{values}\"\n",
@@ -541,6 +582,10 @@ TEST(LayoutToml, errors_name_the_line_the_key_and_the_mend) {
       "f32 or f64, then le where the low byte comes first or be where the high byte does");
   EXPECT_EQ(error_of(two + "packet = [\"values u8\"]\n"),
             "it.toml:4: layout.packet: must begin or end with bytes that mark it, as \"FF FF\", or have an escape");
+  EXPECT_EQ(error_of(two + "packet = [[\"FF\", \"values u8\"], [\"EE\", \"vales u8\"]]\n"),
+            "it.toml:4: layout.packet: packet 2: field 2: 'vales' is no field; did you mean 'values'?");
+  EXPECT_EQ(error_of(two + "packet = [\"FF\", [\"values u8\"]]\n"),
+            "it.toml:4: layout.packet: must be a list of texts in quotes");
   EXPECT_EQ(error_of("[layout]\nrows = 2\nline = \"{values}\"\n"),
             "it.toml: layout.cols: is missing; it has no default");
   EXPECT_NE(error_of(two + "line = \"{values}\"\nseperator = \";\"\n").find("did you mean 'layout.separator'?"),

@@ -58,6 +58,8 @@ class ConfigFile {
   /// A list of any size of integers of 0 or more, or of texts.
   void counts(std::string_view key, std::vector<std::size_t>& values);
   void texts(std::string_view key, std::vector<std::string>& values);
+  /// A list of texts, or a list of such lists.
+  void text_rows(std::string_view key, std::vector<std::vector<std::string>>& rows);
   /// One of `names`; `index` is set to its place.
   void choice(std::string_view key, const std::vector<std::string>& names, std::size_t& index);
   /// What the key holds is read by others.

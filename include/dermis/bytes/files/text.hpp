@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "dermis/bytes/files/numbers.hpp"
 #include "dermis/touch/frames/frames.hpp"
 
 namespace dermis::bytes::files {
@@ -15,6 +16,9 @@ inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 /// 'text' in quotes for a message; long text is cut.
 [[nodiscard]] std::string in_quotes(std::string_view text);
+
+/// As a string of TOML, in quotes and with escapes.
+[[nodiscard]] std::string quoted_toml(std::string_view text);
 
 /// Space, tab, carriage return or form feed.
 [[nodiscard]] constexpr bool is_blank(char c) noexcept {
@@ -26,11 +30,6 @@ inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 /// ASCII letters become small ones.
 [[nodiscard]] std::string in_lower_case(std::string_view text);
-
-/// Parses the whole text; nan and inf are numbers.
-[[nodiscard]] bool parse_number(std::string_view text, float& value);
-[[nodiscard]] bool parse_number(std::string_view text, double& value);
-[[nodiscard]] bool parse_number(std::string_view text, std::size_t& value);
 
 /// Seconds of at most 9e9 in size (285 years), rounded to nanoseconds; plain decimals are exact.
 [[nodiscard]] bool parse_seconds(std::string_view text, Nanos& time);

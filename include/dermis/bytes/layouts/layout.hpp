@@ -109,8 +109,9 @@ struct PacketField {
 
 /// Packets of bytes, which begin with a literal or are escaped.
 struct PacketLayout {
+  using Packet = std::vector<PacketField>;
   enum class Escape { none, cobs, slip, stuffed };
-  std::vector<PacketField> packet;
+  std::vector<Packet> packets;  ///< The first that the bytes fit holds.
   Escape escape = Escape::none;
   std::uint8_t delimiter = 0;    ///< stuffed: between two packets,
   std::uint8_t escape_byte = 0;  ///< stuffed: before a byte that is changed,
@@ -154,8 +155,8 @@ struct Layout {
 /// The same from memory; `name` stands for the path in messages.
 [[nodiscard]] Result<Layout> layout_from_toml(std::string_view text, const std::string& name);
 
-/// Decodes the packets of a device that has one of these layouts. Their packets have a constant size and no checksum;
-/// they differ in size and have the same mark.
+/// Decodes the packets of a device that has one of these layouts. Where there are several, their packets have a
+/// constant size and no checksum; they differ in size and have the same mark.
 [[nodiscard]] std::unique_ptr<Decoder> make_decoder(const std::vector<std::shared_ptr<const Layout>>& layouts);
 
 /// Decodes the frames of one array of the layout. Those of a whole file wait for others that come up to a second

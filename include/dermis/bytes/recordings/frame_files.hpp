@@ -24,7 +24,7 @@ enum class FrameFormat {
   hdf5,      ///< .h5, .hdf5
   wiresens,  ///< .wiresens.h5, .wiresens.hdf5; files of .h5 and .hdf5 that are read may be of this format too
   npy,       ///< .npy
-  // Formats of other systems, only read (dermis/importers):
+  // Formats of other systems, only read (formats/imports.hpp):
   npz,           ///< .npz
   dsa,           ///< .dsa, .dsa3
   tekscan,       ///< .asf; .csv and .txt that begin as one

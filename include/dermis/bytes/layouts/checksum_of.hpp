@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "dermis/bytes/layouts/layout.hpp"
 
@@ -21,13 +22,13 @@ class ChecksumOf {
 
  private:
   [[nodiscard]] std::uint32_t of(std::span<const std::uint8_t> bytes) const noexcept;
+  template <bool IsReflected>
   [[nodiscard]] std::uint32_t crc(std::span<const std::uint8_t> bytes) const noexcept;
-  [[nodiscard]] std::uint32_t reflected_crc(std::span<const std::uint8_t> bytes) const noexcept;
 
   Checksum checksum_{};
-  unsigned bits_ = 8;
-  std::uint32_t mask_ = 0xFF;
-  std::array<std::uint32_t, 256> table_{};  ///< crc: remainder of each byte.
+  unsigned unused_ = 24;                                ///< Bits of 32.
+  std::uint32_t initial_ = 0;                           ///< Of the register.
+  std::vector<std::array<std::uint32_t, 256>> tables_;  ///< crc: remainder of a byte before 0 ... 7 others.
 };
 
 }  // namespace dermis::bytes::layouts
