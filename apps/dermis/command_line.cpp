@@ -119,8 +119,20 @@ std::vector<std::string> takers_of(const std::string& option, const CLI::App& co
   return takers;
 }
 
-/// Names the problem of an unknown argument of a command of `app`. Adds the name that may have been meant, or the few
-/// commands that take such an option.
+/// The commands below `command` that have a name, by their whole names in quotes.
+std::vector<std::string> commands_named(const std::string& name, const CLI::App& command, const std::string& above) {
+  std::vector<std::string> found;
+  for (const CLI::App* each : command.get_subcommands(nullptr)) {
+    const std::string whole = above + " " + each->get_name();
+    if (each->get_name() == name) found.push_back(bytes::files::in_quotes(whole));
+    const std::vector<std::string> below = commands_named(name, *each, whole);
+    found.insert(found.end(), below.begin(), below.end());
+  }
+  return found;
+}
+
+/// Names the problem of an unknown argument of a command of `app`. Adds the name that may have been meant, the
+/// command below another that has it, or the few commands that take such an option.
 std::string unknown(const std::string& argument, const CLI::App& command, const CLI::App& app) {
   const bool is_option = argument.starts_with('-');
   const std::set<std::string> known = is_option ? options_of(command) : commands_of(command);
@@ -128,6 +140,10 @@ std::string unknown(const std::string& argument, const CLI::App& command, const 
   const std::string name = argument.substr(0, argument.find('='));
   const std::string nearest = nearest_name(name, known);
   std::string what = fmt::format("unknown {} '{}'", is_option ? "option" : "command", name);
+  if (!is_option) {
+    const std::vector<std::string> elsewhere = commands_named(name, app, app.get_name());
+    if (!elsewhere.empty()) return fmt::format("{}; there is {}", what, fmt::join(elsewhere, " and "));
+  }
   if (!nearest.empty()) return fmt::format("{}; did you mean '{}'?", what, nearest);
   constexpr std::size_t kFew = 2;
   const std::vector<std::string> takers = is_option ? takers_of(name, app, app.get_name()) : std::vector<std::string>();
@@ -172,21 +188,6 @@ void tell_missing_checksums(const CLI::App& command) {
   }
 }
 
-void print(const std::string& text) {
-  fmt::print("{}\n", text);
-}
-
-/// For those who type it in place of --version.
-void add_version(CLI::App& app, Action& chosen) {
-  CLI::App& command = *app.add_subcommand("version", "Show the version");
-  command.callback([&chosen] {
-    chosen = []() -> Result<int> {
-      print(DERMIS_VERSION);
-      return 0;
-    };
-  });
-}
-
 /// The --help of the command with these names, "circuit" "forward".
 Result<std::string> help_of(const CLI::App& app, const std::vector<std::string>& names) {
   const CLI::App* command = &app;
@@ -203,6 +204,7 @@ Result<std::string> help_of(const CLI::App& app, const std::vector<std::string>&
 /// For those who type it in place of --help.
 void add_help(CLI::App& app, Action& chosen) {
   CLI::App& command = *app.add_subcommand("help", "Show what a command takes");
+  command.group("");
   auto names = std::make_shared<std::vector<std::string>>();
   command.add_option("command", *names, "Such as run, or circuit forward");
   command.callback([&app, &chosen, names] {
@@ -331,6 +333,9 @@ Option Command::output_folder(const std::string& name, std::string& folder, cons
 
 Command Command::subcommand(const std::string& name, const std::string& summary) {
   app_.require_subcommand(has_action_ ? 0 : 1, 1);
+  for (CLI::Option* option : app_.get_options()) {
+    if (option->get_required()) places_->required.push_back(option->required(false));
+  }
   return {*app_.add_subcommand(name, summary), chosen_};
 }
 
@@ -346,6 +351,9 @@ void Command::action_with_exit_status(Action action) {
   has_action_ = true;
   app_.callback([&chosen = chosen_, &command = app_, places = places_, action = std::move(action)] {
     if (!command.get_subcommands().empty()) return;
+    for (const CLI::Option* option : places->required) {
+      if (option->empty()) throw CLI::RequiredError(option->get_name());
+    }
     tell_missing_checksums(command);
     chosen = [places, action]() -> Result<int> {
       if (Status kept = places->files.check(places->is_forced); !kept) return kept.error();
@@ -361,11 +369,10 @@ Result<Action> parse_command_line(int argc, char** argv, std::span<const Command
   Action chosen;
   add_reference(app, chosen);
   for (const CommandEntry& entry : commands) {
-    Command command(*app.add_subcommand(entry.name, entry.summary), chosen);
+    Command command(*app.add_subcommand(entry.name, entry.summary)->group(entry.group), chosen);
     entry.add(command);
   }
   add_help(app, chosen);
-  add_version(app, chosen);
   app.footer(kMoreHelp);  // after the commands, which would inherit it
   try {
     app.parse(argc, argv);

@@ -66,7 +66,8 @@ class Command {
   Option output_folder(const std::string& name, std::string& folder, const std::vector<std::string>& files,
                        const std::string& help);
 
-  /// A command of this command. The user must name one, unless this command has got an action before.
+  /// A command of this command. The user must name one, unless this command has got an action before. The options that
+  /// this command requires are those of that action.
   Command subcommand(const std::string& name, const std::string& summary);
 
   void action(std::function<Status()> action);
@@ -79,6 +80,7 @@ class Command {
   struct Places {
     FilePlaces files;
     bool is_forced = false;
+    std::vector<CLI::Option*> required{};
   };
 
   CLI::App& app_;
@@ -90,6 +92,7 @@ class Command {
 struct CommandEntry {
   const char* name;
   const char* summary;
+  const char* group;              ///< The heading above it in the help.
   void (*add)(Command& command);  ///< Declares its options and its action.
 };
 

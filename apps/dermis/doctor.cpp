@@ -198,6 +198,11 @@ void add_doctor(Command& command) {
   command.input("--in", options->in, "Raw counts: frames.csv, a recording, or the URI of a device").required();
   command.flag("--json", options->json, "Print the result as JSON");
   command.action([options] { return doctor(*options); });
+  Command check = command.subcommand("check", "Weigh a known object: has the calibration aged?");
+  add_check(check);
+  Command mend =
+      command.subcommand("recalibrate", "Mend the gains of a model by known weights, of which one is enough");
+  add_recalibrate(mend);
 }
 
 }  // namespace dermis::app

@@ -108,7 +108,7 @@ void print_json(const std::string& file, const std::string& format, const FrameF
 
 std::string mend_of(const FrameFileInfo& info) {
   const bool is_recording = info.format == bytes::recordings::FrameFormat::mcap;
-  return is_recording ? "'dermis recover' makes it so" : "its last frame is cut off";
+  return is_recording ? "'dermis info recover' makes it so" : "its last frame is cut off";
 }
 
 void print_line(const char* what, const std::string& value) {
@@ -258,6 +258,8 @@ void add_info(Command& command) {
   options->shape.add(command);
   command.flag("--json", options->json, "As JSON");
   command.action([options] { return print_info(*options); });
+  Command recover = command.subcommand("recover", "Repair a cut or damaged recording, and say what is lost");
+  add_recover(recover);
 }
 
 }  // namespace dermis::app

@@ -23,31 +23,35 @@ constexpr int kExitFailed = 1;
 constexpr int kExitBadInput = 2;
 constexpr int kExitReaderGone = 128 + SIGPIPE;
 
+constexpr const char* kCalibrated = "A calibrated array";
+constexpr const char* kAtWork = "At work";
+constexpr const char* kKept = "Devices and recordings";
+constexpr const char* kDesign = "Design and research";
+
 constexpr std::array kCommands{
-    CommandEntry{"simulate", "Simulate an array: frames.csv and loads.csv (the true loads)", add_simulate},
-    CommandEntry{"calibrate", "Learn a model from frames with known loads", add_calibrate},
-    CommandEntry{"recalibrate", "Mend the gains of a model by known weights, of which one is enough", add_recalibrate},
-    CommandEntry{"run", "Turn raw counts into newtons per taxel, and into contacts", add_run},
-    CommandEntry{"evaluate", "Measure accuracy on known loads, and compare with look-up tables", add_evaluate},
-    CommandEntry{"learn", "Learn classes from examples of poses or gestures", add_learn},
-    CommandEntry{"recognise", "Name the poses or gestures of a stream, or answer \"unknown\"", add_recognise},
-    CommandEntry{"circuit", "Compute a readout circuit, for people who design one", add_circuit},
-    CommandEntry{"doctor", "Check the health of an array: line faults, noise, drift", add_doctor},
-    CommandEntry{"check", "Weigh a known object: has the calibration aged?", add_check},
-    CommandEntry{"paper", "Reproduce the paper, and judge its networks beside dermis", add_paper},
-    CommandEntry{"record", "Record a device, or any other source of frames", add_record},
-    CommandEntry{"replay", "Play a recording at the pace of its frames, as counts or newtons", add_replay},
-    CommandEntry{"emulate", "Play a device from a recording, to develop without hardware", add_emulate},
-    CommandEntry{"convert", "Convert frames to another file format, by the ending of the name", add_convert},
-    CommandEntry{"dataset", "Turn recordings into episodes for learning: LeRobot, HDF5, zarr", add_dataset},
-    CommandEntry{"describe", "Write the layout of bytes that dermis does not know", add_describe},
-    CommandEntry{"info", "Show what a recording, another file of frames or a model holds", add_info},
-    CommandEntry{"recover", "Repair a cut or damaged recording, and say what is lost", add_recover},
-    CommandEntry{"image", "Draw a frame as PNG or SVG, or some seconds as a film (GIF)", add_image},
-    CommandEntry{"top", "Show a live heat map in the terminal, until q or Ctrl-C", add_top},
-    CommandEntry{"watch", "Compare forces with limits, and stop a program if one is crossed", add_watch},
-    CommandEntry{"serve", "Show an array or a suit live in the browser and stream it", add_serve},
-    CommandEntry{"fleet", "Keep the frames of many robots on a hub, and see how they do", add_fleet},
+    CommandEntry{"calibrate", "Learn a model from frames with known loads", kCalibrated, add_calibrate},
+    CommandEntry{"run", "Turn raw counts into newtons per taxel, and into contacts", kCalibrated, add_run},
+    CommandEntry{"evaluate", "Measure accuracy on known loads, and compare with look-up tables", kCalibrated,
+                 add_evaluate},
+    CommandEntry{"doctor", "Check an array and its calibration by its counts or a known weight; mend the gains",
+                 kCalibrated, add_doctor},
+    CommandEntry{"serve", "Show an array or a suit live in the browser and stream it", kAtWork, add_serve},
+    CommandEntry{"top", "Show a live heat map in the terminal, until q or Ctrl-C", kAtWork, add_top},
+    CommandEntry{"watch", "Compare forces with limits, and stop a program if one is crossed", kAtWork, add_watch},
+    CommandEntry{"recognise", "Learn poses or gestures, and name those of a stream, or answer \"unknown\"", kAtWork,
+                 add_recognise},
+    CommandEntry{"fleet", "Keep the frames of many robots on a hub, and see how they do", kAtWork, add_fleet},
+    CommandEntry{"describe", "Write the layout of bytes that dermis does not know", kKept, add_describe},
+    CommandEntry{"record", "Record a device, or any other source of frames", kKept, add_record},
+    CommandEntry{"replay", "Play a recording at the pace of its frames, as counts or newtons", kKept, add_replay},
+    CommandEntry{"emulate", "Play a device from a recording, to develop without hardware", kKept, add_emulate},
+    CommandEntry{"convert", "Convert frames to another file format, by the ending of the name", kKept, add_convert},
+    CommandEntry{"info", "Show what a file of frames or a model holds; repair a recording", kKept, add_info},
+    CommandEntry{"image", "Draw a frame as PNG or SVG, or some seconds as a film (GIF)", kKept, add_image},
+    CommandEntry{"dataset", "Turn recordings into episodes for learning: LeRobot, HDF5, zarr", kKept, add_dataset},
+    CommandEntry{"simulate", "Simulate an array: frames.csv and loads.csv (the true loads)", kDesign, add_simulate},
+    CommandEntry{"circuit", "Compute a readout circuit, for people who design one", kDesign, add_circuit},
+    CommandEntry{"paper", "Reproduce the paper, and judge its networks beside dermis", kDesign, add_paper},
 };
 
 /// A file that is opened must not become the standard error of a process that was started without one.

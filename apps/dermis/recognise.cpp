@@ -94,7 +94,7 @@ Status recognise(const RecogniseOptions& options) {
 
 void add_recognise(Command& command) {
   auto options = std::make_shared<RecogniseOptions>();
-  command.input_file("--classes", options->in.classes, "Classes of 'dermis learn'").required();
+  command.input_file("--classes", options->in.classes, "Classes of 'dermis recognise learn'").required();
   command.input("--in", options->in.loads.from, "A file of frames, a recording or the URI of a device").required();
   command.input_file("--model", options->in.loads.model,
                      "Model for classes that were learned from forces, or suit.toml of several arrays");
@@ -109,6 +109,8 @@ void add_recognise(Command& command) {
   command.flag("--json", options->json,
                "Write one line of JSON for each answer, with the probabilities of all classes");
   command.action([options] { return recognise(*options); });
+  Command learn = command.subcommand("learn", "Learn classes from examples of poses or gestures");
+  add_learn(learn);
 }
 
 }  // namespace dermis::app

@@ -142,7 +142,7 @@ void add_serve(Command& command) {
       "Its model, or the array.toml of an array to be calibrated; without it the recording tells, or the page asks");
   command.option("--suit", options->place.suit, "suit.toml: several arrays with their sources and models");
   command.option("--classes", options->place.classes,
-                 "Classes of 'dermis learn', from newtons: name what touches the array");
+                 "Classes of 'dermis recognise learn', from newtons: name what touches the array");
   command.option("--threats", options->place.threats, "threats.toml: limits for the forces");
   command.option("--record", options->session.record, "Record from the beginning, .mcap");
   command.option("--host", options->session.server.host, "Address to serve at; all but loopback need a token")

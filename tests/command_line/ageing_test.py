@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
-"""`dermis check` and `dermis recalibrate` on a sheet that has aged in the simulator."""
+"""`dermis doctor check` and `dermis doctor recalibrate` on a sheet that has aged in the simulator."""
 
 import shutil
 
@@ -31,7 +31,7 @@ class Ageing(SmallArray):
         return out
 
     def weigh(self, folder, weight=15):
-        return dermis("check", "--model", self.model, "--in", folder / "frames.csv", "--weight", weight)
+        return dermis("doctor", "check", "--model", self.model, "--in", folder / "frames.csv", "--weight", weight)
 
     def test_a_healthy_sheet_is_well(self):
         result = self.weigh(self.weights(1.0, "fresh"))
@@ -45,7 +45,16 @@ class Ageing(SmallArray):
         self.assertRegex(before.stdout, r"recalibrate: gains have changed by about (9|10|11) % .*: it reads too much")
         model = self.work / "model.safetensors"
         shutil.copy(self.model, model)
-        options = ("recalibrate", "--model", model, "--frames", aged / "frames.csv", "--loads", aged / "loads.csv")
+        options = (
+            "doctor",
+            "recalibrate",
+            "--model",
+            model,
+            "--frames",
+            aged / "frames.csv",
+            "--loads",
+            aged / "loads.csv",
+        )
         result = dermis(*options)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertRegex(result.stdout, r"the sheet read (9|10)\.\d % too much")
@@ -53,7 +62,7 @@ class Ageing(SmallArray):
         self.assertRegex(kept.name, r"^model-before-\d{8}-\d{6}\.safetensors$")
         self.assertIn(f"'{model}' as it was: '{kept}'\n", result.stderr)
         self.assertEqual(kept.read_bytes(), self.model.read_bytes())
-        after = dermis("check", "--model", model, "--in", aged / "frames.csv", "--weight", 15)
+        after = dermis("doctor", "check", "--model", model, "--in", aged / "frames.csv", "--weight", 15)
         self.assertEqual(after.returncode, 0, after.stdout + after.stderr)
         mended = model.read_bytes()
         self.succeed(*options)
@@ -65,6 +74,7 @@ class Ageing(SmallArray):
         fresh = self.work / "new.safetensors"
         before = self.model.read_bytes()
         self.succeed(
+            "doctor",
             "recalibrate",
             "--model",
             self.model,
@@ -80,7 +90,7 @@ class Ageing(SmallArray):
 
     def test_what_cannot_be_weighed_is_told(self):
         frames = self.calibration / "frames.csv"
-        check = ("check", "--model", self.model, "--in", frames)
+        check = ("doctor", "check", "--model", self.model, "--in", frames)
         self.refuse((*check, "--weight", 0), ["--weight", "above 0"])
         self.refuse((*check, "--weight", "nan"), ["--weight"])
         self.refuse(check, ["--weight"])
@@ -88,6 +98,7 @@ class Ageing(SmallArray):
         unloaded = self.written("unloaded.csv", "frame,kind,where,value\n0,force,all,0\n")
         self.refuse(
             (
+                "doctor",
                 "recalibrate",
                 "--model",
                 self.model,
@@ -101,7 +112,8 @@ class Ageing(SmallArray):
             [unloaded, "a known weight is needed"],
         )
         self.refuse(
-            ("recalibrate", "--model", self.array, "--frames", frames, "--loads", unloaded), [self.array, "is no model"]
+            ("doctor", "recalibrate", "--model", self.array, "--frames", frames, "--loads", unloaded),
+            [self.array, "is no model"],
         )
 
 

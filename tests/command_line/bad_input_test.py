@@ -132,8 +132,8 @@ class MissingFiles(SmallArray):
             self.calibrate_arguments(model, frames=absent),
             self.calibrate_arguments(model, loads=absent),
             ("doctor", "--model", self.model, "--in", absent),
-            ("check", "--model", self.model, "--in", absent, "--weight", 5),
-            ("recalibrate", "--model", self.model, "--frames", absent, "--loads", absent),
+            ("doctor", "check", "--model", self.model, "--in", absent, "--weight", 5),
+            ("doctor", "recalibrate", "--model", self.model, "--frames", absent, "--loads", absent),
             self.run_arguments(forces, model=absent),
             self.run_arguments(forces, **{"in": absent}),
             self.evaluate_arguments(model=absent),
@@ -408,10 +408,10 @@ class WhatCannotBe(SmallArray):
                 model, array=square, frames=self.work / "square/frames.csv", loads=self.work / "square/loads.csv"
             )
         )
-        for command in ("recalibrate", "evaluate"):
+        for command in (("doctor", "recalibrate"), ("evaluate",)):
             self.refuse(
                 (
-                    command,
+                    *command,
                     "--model",
                     model,
                     "--frames",
@@ -438,7 +438,7 @@ class EveryCommand(SmallArray):
         cls.classes = cls.root / "classes"
         cls.recording = cls.root / "rec.mcap"
         for step in (
-            ("learn", "--in", cls.contacts / "frames.csv", "--labels", cls.labels, "--out", cls.classes),
+            ("recognise", "learn", "--in", cls.contacts / "frames.csv", "--labels", cls.labels, "--out", cls.classes),
             ("convert", cls.contacts / "frames.csv", cls.recording),
         ):
             result = support.dermis(*step)
@@ -473,7 +473,10 @@ class EveryCommand(SmallArray):
         yield ("replay", frames, "--speed", 0, "--out", self.work / "counts.csv"), self.work / "counts.csv"
         yield ("record", "--from", frames, "--out", self.work / "counts.mcap"), self.work / "counts.mcap"
         yield ("image", "--in", frames, "--frame", 150, "--out", self.work / "counts.png"), self.work / "counts.png"
-        yield ("learn", "--in", frames, "--labels", self.labels, "--out", self.work / "classes"), self.work / "classes"
+        yield (
+            ("recognise", "learn", "--in", frames, "--labels", self.labels, "--out", self.work / "classes"),
+            self.work / "classes",
+        )
         yield (
             ("recognise", "--classes", self.classes, "--in", frames, "--out", self.work / "r.csv"),
             self.work / "r.csv",

@@ -490,7 +490,7 @@ class Unread(FrameFiles):
 
     def test_a_recovery_of_nothing_fails(self):
         self.refuse(
-            ("recover", self.rewrite(in_gzip), "--out", self.work / "out.mcap"),
+            ("info", "recover", self.rewrite(in_gzip), "--out", self.work / "out.mcap"),
             ["in_gzip.mcap: nothing can be recovered: the chunk is compressed with 'gzi'"],
             status=1,
         )
@@ -517,7 +517,7 @@ class Recover(FrameFiles):
         return json.loads(result.stdout)
 
     def test_a_complete_recording_stays_the_same(self):
-        text = self.succeed("recover", self.recording, "--out", self.work / "out.mcap")
+        text = self.succeed("info", "recover", self.recording, "--out", self.work / "out.mcap")
         self.assertIn(f"out.mcap: {FRAMES} frames", text)
         self.assertIn("nothing was wrong", text)
         self.assertEqual(
@@ -536,12 +536,12 @@ class Recover(FrameFiles):
             self.assertFalse(left["complete"])
             if left["frames"] == 0:
                 self.refuse(
-                    ("recover", cut, "--out", self.work / "out.mcap", "--force"),
+                    ("info", "recover", cut, "--out", self.work / "out.mcap", "--force"),
                     ["cut.mcap: nothing can be recovered"],
                     status=1,
                 )
                 continue
-            text = self.succeed("recover", cut, "--out", self.work / "out.mcap", "--force")
+            text = self.succeed("info", "recover", cut, "--out", self.work / "out.mcap", "--force")
             info = self.recovered("out.mcap")
             self.assertTrue(info["complete"])
             self.assertIn(f"{info['frames']} frames", text)
@@ -564,7 +564,7 @@ class Recover(FrameFiles):
         # One bit of LZ4 may lead a copy to other bytes that are the same; that loses nothing.
         damaged[middle : middle + 64] = bytes(byte ^ 0x5A for byte in damaged[middle : middle + 64])
         (self.work / "damaged.mcap").write_bytes(damaged)
-        text = self.succeed("recover", self.work / "damaged.mcap", "--out", self.work / "out.mcap")
+        text = self.succeed("info", "recover", self.work / "damaged.mcap", "--out", self.work / "out.mcap")
         self.assertRegex(text, r"1 damaged chunk with \d+ messages is lost")
         info = self.recovered("out.mcap")
         self.assertTrue(info["complete"])
@@ -573,13 +573,20 @@ class Recover(FrameFiles):
     def test_errors_name_the_mend(self):
         copy = self.work / "a.mcap"
         copy.write_bytes(self.recording.read_bytes())
-        self.refuse(("recover", copy, "--out", copy), ["--out", "name another"])
-        self.refuse(("recover", self.contacts / "frames.csv", "--out", self.work / "b.mcap"), ["frames.csv", ".mcap"])
-        self.refuse(("recover", copy, "--out", self.work / "b.h5"), ["b.h5", ".mcap"])
-        self.refuse(("recover", self.work / "none.mcap", "--out", self.work / "b.mcap"), ["none.mcap", "No such file"])
-        self.refuse(("recover", self.written("t.mcap", "text"), "--out", self.work / "b.mcap"), ["t.mcap"])
+        self.refuse(("info", "recover", copy, "--out", copy), ["--out", "name another"])
         self.refuse(
-            ("recover", self.long, "--out", self.work / "b.mcap"), ["b.mcap"], status=1, **files_limited_to(100_000)
+            ("info", "recover", self.contacts / "frames.csv", "--out", self.work / "b.mcap"), ["frames.csv", ".mcap"]
+        )
+        self.refuse(("info", "recover", copy, "--out", self.work / "b.h5"), ["b.h5", ".mcap"])
+        self.refuse(
+            ("info", "recover", self.work / "none.mcap", "--out", self.work / "b.mcap"), ["none.mcap", "No such file"]
+        )
+        self.refuse(("info", "recover", self.written("t.mcap", "text"), "--out", self.work / "b.mcap"), ["t.mcap"])
+        self.refuse(
+            ("info", "recover", self.long, "--out", self.work / "b.mcap"),
+            ["b.mcap"],
+            status=1,
+            **files_limited_to(100_000),
         )
 
 

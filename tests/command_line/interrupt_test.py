@@ -49,7 +49,19 @@ class Interrupted(SmallArray):
         for name, command in (
             ("convert.csv", lambda frames: ("convert", frames, self.work / "out.npy")),
             ("evaluate.csv", lambda frames: self.evaluate_arguments(frames=frames)),
-            ("learn.csv", lambda frames: ("learn", "--in", frames, "--labels", labels, "--out", self.work / "classes")),
+            (
+                "learn.csv",
+                lambda frames: (
+                    "recognise",
+                    "learn",
+                    "--in",
+                    frames,
+                    "--labels",
+                    labels,
+                    "--out",
+                    self.work / "classes",
+                ),
+            ),
             ("calibrate.csv", lambda frames: self.calibrate_arguments(self.work / "m", frames=frames)),
         ):
             with self.subTest(name):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """kill -9 at random moments while 10,240 taxels are recorded at 1 kHz: no frame is missing before the last one, in the
-file as it is left and after dermis recover, and npm's reader reads the recovered file by its index.
+file as it is left and after dermis info recover, and npm's reader reads the recovered file by its index.
 Usage: kill_test.py BINARY MCAP_SAMPLE [KILLS [SEED]]
 KILLS is for a machine that does nothing else: each frame that was taken 100 ms before a kill is to be read back,
 too."""
@@ -98,7 +98,7 @@ class Kill(unittest.TestCase):
                     self.assertLess(ages[-1], PROMISE_S + 1 / RATE_HZ)
                 recovered = self.work / "recovered.mcap"
                 result = subprocess.run(
-                    [BINARY, "recover", self.out, "--out", recovered], capture_output=True, text=True
+                    [BINARY, "info", "recover", self.out, "--out", recovered], capture_output=True, text=True
                 )
                 self.assertEqual(result.returncode, 0, result.stderr)
                 self.assertEqual(read_frames(recovered), frames)

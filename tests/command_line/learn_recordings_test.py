@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
-"""`dermis learn --in`: recordings become classes, by the forces of a model or by tared readings, which `dermis
+"""`dermis recognise learn --in`: recordings become classes, by the forces of a model or by tared readings, which `dermis
 recognise` names in other recordings."""
 
 import bisect
@@ -70,6 +70,7 @@ class Forces(SmallArray):
     def learn(self, *seeds, model=True, labels=None, arguments=()):
         recordings = [self.root / f"rec{seed}.mcap" for seed in seeds]
         return [
+            "recognise",
             "learn",
             "--in",
             *recordings,
@@ -127,7 +128,16 @@ class Forces(SmallArray):
 
     def test_a_report_compares_with_other_estimators(self):
         self.refuse(
-            ["learn", "--in", self.root / "rec3.mcap", "--labels", self.labels(3), "--report", self.work / "page"],
+            [
+                "recognise",
+                "learn",
+                "--in",
+                self.root / "rec3.mcap",
+                "--labels",
+                self.labels(3),
+                "--report",
+                self.work / "page",
+            ],
             ["nothing would be written", "--out"],
         )
         self.succeed(*self.learn(3, 4, arguments=["--report", self.work / "page"]))
@@ -143,6 +153,7 @@ class Forces(SmallArray):
     def test_the_network_of_the_paper_is_compared_with_the_recipe(self):
         table = self.succeed(
             "paper",
+            "recognise",
             "learn",
             "--in",
             self.root / "rec3.mcap",
@@ -192,7 +203,7 @@ class Forces(SmallArray):
         ]
         self.assertEqual(dermis("convert", self.root / "rec3.mcap", self.work / "frames.npy").returncode, 0)
         labels = self.labels(3)
-        self.succeed("learn", *frames, "--labels", labels, "--out", self.work / "c.safetensors")
+        self.succeed("recognise", "learn", *frames, "--labels", labels, "--out", self.work / "c.safetensors")
         text = self.succeed("evaluate", "--classes", self.work / "c.safetensors", *frames, "--labels", labels)
         self.assertIn(f"of {len(self.kinds[3])}, calibration error", text)
         first, *others = labels.read_text().splitlines()
@@ -262,14 +273,18 @@ class Forces(SmallArray):
         self.refuse(
             [*self.learn(3, model=False)[:3], other, *self.learn(3, model=False)[3:]], ["other.csv", "1x2", "4x5"]
         )
-        self.refuse(["learn", "--in", "sim:idle?rate=100&rows=4&cols=5", *self.learn(3)[3:]], ["record it first"])
+        self.refuse(
+            ["recognise", "learn", "--in", "sim:idle?rate=100&rows=4&cols=5", *self.learn(3)[3:]], ["record it first"]
+        )
 
     def test_examples_that_are_named_twice_or_not_at_all(self):
         labels, out = self.labels(3), self.work / "c.safetensors"
-        self.refuse(["learn", "--labels", labels, "--out", out], ["name the examples", "recordings", "frames"])
-        self.refuse(["learn", "--labels", labels, "--out", out, "--frames", labels], ["with their arrays"])
         self.refuse(
-            ["learn", "--labels", labels, "--out", out, "--frames", labels, "--arrays", labels, "--tare"],
+            ["recognise", "learn", "--labels", labels, "--out", out], ["name the examples", "recordings", "frames"]
+        )
+        self.refuse(["recognise", "learn", "--labels", labels, "--out", out, "--frames", labels], ["with their arrays"])
+        self.refuse(
+            ["recognise", "learn", "--labels", labels, "--out", out, "--frames", labels, "--arrays", labels, "--tare"],
             ["--frames", "tare"],
         )
         self.refuse(self.learn(3, arguments=["--frames", labels]), ["--in", "excludes frames"])
@@ -322,6 +337,7 @@ class TaredReadings(unittest.TestCase):
         lines = [f"t{i},{first},{last},{kind}" for i, (first, last, kind) in enumerate(happened)]
         labels = self.written("labels.csv", "\n".join(["id,first,last,class", *lines]) + "\n")
         return [
+            "recognise",
             "learn",
             "--in",
             self.work / "taught.mcap",
@@ -407,6 +423,7 @@ class TaredReadings(unittest.TestCase):
         arrays = self.written("arrays.csv", f"array,rows,cols,first_column\nskin,{ROWS},{COLS},0\n")
         self.assertEqual(dermis("convert", self.work / "taught.csv", self.work / "taught.npy").returncode, 0)
         self.succeed(
+            "recognise",
             "learn",
             "--frames",
             self.work / "taught.npy",
@@ -496,6 +513,7 @@ class Suit(SmallArray):
         """At one frame a second, so that no frame is looked at together with those before."""
         monday = self.recordings[0]
         return [
+            "recognise",
             "learn",
             "--in",
             monday,
@@ -536,7 +554,9 @@ class Suit(SmallArray):
         self.refuse(
             ["recognise", *classes, "--in", f"{friday}#left", "--model", self.model], [classes[1], "1 arrays", "had 2"]
         )
-        self.succeed("learn", "--in", f"{monday}#left", "--labels", self.work / "monday.csv", "--out", classes[1])
+        self.succeed(
+            "recognise", "learn", "--in", f"{monday}#left", "--labels", self.work / "monday.csv", "--out", classes[1]
+        )
         self.refuse(["recognise", *classes, "--in", friday], [friday, "name one", "'left', 'right'"])
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
-"""`dermis learn`: a data set in plain files becomes classes and predictions; what cannot be learned gives one line.
+"""`dermis recognise learn`: a data set in plain files becomes classes and predictions; what cannot be learned gives one line.
 `dermis recognise` names what it has learned."""
 
 import csv
@@ -60,7 +60,9 @@ class Learn(unittest.TestCase):
             for name, ending in (("frames", "npy"), ("arrays", "csv"), ("labels", "csv"))
         }
         files.update(replaced)
-        return dermis("learn", *(part for name, path in files.items() for part in (f"--{name}", path)), *arguments)
+        return dermis(
+            "recognise", "learn", *(part for name, path in files.items() for part in (f"--{name}", path)), *arguments
+        )
 
     def refuse(self, *places, arguments=None, **replaced):
         before = files_below(self.work)

@@ -17,12 +17,15 @@ COMMANDS = {
     "convert": (("in", "--array"), ("out",)),
     "describe": (("source",), ("--out",)),
     "image": (("--in", "--model"), ("--out",)),
-    "learn": (("--labels", "--in", "--model", "--splits", "--open"), ("--out", "--predictions", "--open-predictions")),
+    "recognise learn": (
+        ("--labels", "--in", "--model", "--splits", "--open"),
+        ("--out", "--predictions", "--open-predictions"),
+    ),
     "paper calibrate": (("--array", "--frames", "--loads"), ("--bank", "--checkpoint")),
-    "recalibrate": (("--model", "--frames", "--loads"), ("--out",)),
+    "doctor recalibrate": (("--model", "--frames", "--loads"), ("--out",)),
     "recognise": (("--classes", "--in", "--model", "--extra"), ("--out",)),
     "record": (("--from", "--array", "--model"), ("--out",)),
-    "recover": (("in",), ("--out",)),
+    "info recover": (("in",), ("--out",)),
     "replay": (("recording", "--model"), ("--out",)),
     "run": (("--model", "--in"), ("--out", "--sigma", "--totals", "--contacts")),
 }
@@ -31,9 +34,14 @@ FOLDERS = {
     "simulate": (("--array", "--physics"), "--out", ("frames.csv", "loads.csv", "contacts.csv", "origin.toml")),
     "evaluate": (("--model", "--frames", "--loads", "--classes", "--in", "--labels"), "--report", ("index.html",)),
     "paper evaluate": (("--model", "--frames", "--loads", "--bank"), "--report", ("index.html",)),
-    "learn": (("--labels", "--in", "--model", "--splits", "--open"), "--report", ("index.html",)),
+    "recognise learn": (("--labels", "--in", "--model", "--splits", "--open"), "--report", ("index.html",)),
 }
-MODELS = {("calibrate", "--out"), ("learn", "--out"), ("paper calibrate", "--bank"), ("recalibrate", "--out")}
+MODELS = {
+    ("calibrate", "--out"),
+    ("recognise learn", "--out"),
+    ("paper calibrate", "--bank"),
+    ("doctor recalibrate", "--out"),
+}
 MODELS |= {("paper calibrate", "--checkpoint")}  # which is gone on from, or refused
 PROTECTED = {
     "a recording": b"\x89MCAP0\r\n",
@@ -80,11 +88,15 @@ class NothingIsOverwritten(SmallArray):
         return paths
 
     def test_every_command_that_writes_is_named_here(self):
-        commands = re.findall(r"^  (\w+) {2,}", dermis("--help").stdout.split("Subcommands:")[1], re.MULTILINE)
+        commands = re.findall(r"^  (\w+) {2,}", dermis("--help").stdout.split("A calibrated array:")[1], re.MULTILINE)
         names = [
             *(set(commands) - {"circuit"}),
             "circuit forward",
             "circuit invert",
+            "doctor check",
+            "doctor recalibrate",
+            "info recover",
+            "recognise learn",
             "paper calibrate",
             "paper evaluate",
         ]
@@ -110,7 +122,7 @@ class NothingIsOverwritten(SmallArray):
             "simulate": {"--array": self.array, "--scene": "idle"},
             "evaluate": {},
             "paper evaluate": {"--bank": self.array},
-            "learn": {"--labels": self.array},
+            "recognise learn": {"--labels": self.array},
         }
         folder, link = self.work / "folder", self.work / "link"
         folder.mkdir()
@@ -150,7 +162,7 @@ class NothingIsOverwritten(SmallArray):
         )
         for command in (
             ("recognise", "--classes", self.model, "--in", self.contacts / "frames.csv"),
-            ("learn", "--labels", self.contacts / "loads.csv", "--in", self.contacts / "frames.csv"),
+            ("recognise", "learn", "--labels", self.contacts / "loads.csv", "--in", self.contacts / "frames.csv"),
         ):
             for what, name in named.items():
                 with self.subTest(command[0], what=what):
@@ -219,7 +231,7 @@ class NothingIsOverwritten(SmallArray):
         for command in (
             ("record", "--from", frames, "--out"),
             ("convert", frames),
-            ("recover", recording, "--out"),
+            ("info", "recover", recording, "--out"),
             self.calibrate_arguments("")[:-1],
         ):
             with self.subTest(command[0]):

@@ -21,9 +21,11 @@ LINT_OF_NO_DATE = re.compile(r".*WARNING: missing date, using \"\": TH")  # buil
 
 
 def commands_of(*command):
-    """Names below "Subcommands:" in the help of a command."""
-    text = dermis(*command, "--help").stdout
-    return HELP_COMMAND.findall(text.split("Subcommands:", 1)[1]) if "Subcommands:" in text else []
+    """Names below the headings of commands in the help of a command."""
+    _, _, named = re.split(
+        r"^(Subcommands|A calibrated array):$", dermis(*command, "--help").stdout + "\nSubcommands:\n", 1, re.M
+    )
+    return HELP_COMMAND.findall(named)
 
 
 def options_of(*command):

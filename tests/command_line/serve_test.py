@@ -119,6 +119,7 @@ class Serve(SmallArray):
             "id,first,last,class\n" + "".join(f"t{k},{k},{k},{half}\n" for k, half in enumerate(halves))
         )
         result = dermis(
+            "recognise",
             "learn",
             "--frames",
             folder / "frames.npy",

@@ -14,20 +14,20 @@ from support import SmallArray, dermis
 NO_STREAMS = (
     ("calibrate", "--frames"),
     ("calibrate", "--out"),
-    ("check", "--model"),
+    ("doctor check", "--model"),
     ("doctor", "--model"),
     ("evaluate", "--model"),
     ("evaluate", "--classes"),
     ("evaluate", "--report"),
     ("image", "--model"),
-    ("learn", "--model"),
-    ("learn", "--out"),
-    ("learn", "--report"),
+    ("recognise learn", "--model"),
+    ("recognise learn", "--out"),
+    ("recognise learn", "--report"),
     ("paper", "--report"),
     ("paper calibrate", "--bank"),
     ("paper evaluate", "--bank"),
-    ("recalibrate", "--model"),
-    ("recalibrate", "--out"),
+    ("doctor recalibrate", "--model"),
+    ("doctor recalibrate", "--out"),
     ("recognise", "--classes"),
     ("recognise", "--model"),
     ("record", "--model"),
@@ -126,18 +126,21 @@ class Terminal(SmallArray):
                 self.refuse((*command.split(), option, "-"), [f"{option}: '-' is no file; name one"])
         self.refuse(("image", "--in", self.contacts / "frames.csv", "--out", "-"), ["--out: '-' is no file; name one"])
         self.refuse(("info", "-"), ["'-' is no file; name one"])
-        self.refuse(("recover", "-", "--out", self.work / "r.mcap"), ["'-' is no file; name one"])
+        self.refuse(("info", "recover", "-", "--out", self.work / "r.mcap"), ["'-' is no file; name one"])
 
-    def test_help_and_version_are_commands_too(self):
+    def test_help_is_a_command_too(self):
         self.assertEqual(self.succeed("help"), dermis("--help").stdout)
-        self.assertEqual(self.succeed("version"), dermis("--version").stdout)
         for command in (("run",), ("circuit",), ("circuit", "forward")):
             self.assertEqual(self.succeed("help", *command), dermis(*command, "--help").stdout)
         self.refuse(("help", "evalute"), ["unknown command 'evalute'; did you mean 'evaluate'?"])
         self.refuse(("help", "run", "fast"), ["'fast' is one argument too many"])
         self.assertRegex(
-            self.succeed("help"), r"(?m)^  help {3,}.*\n  version {3,}(.*\n)*dermis help COMMAND: .*guides: .*\n\Z"
+            self.succeed("help"), r"(?m)^At work:\n  serve {3,}(.*\n)*dermis help COMMAND: .*guides: .*\n\Z"
         )
+
+    def test_a_command_below_another_is_named(self):
+        self.refuse(("recover", "a.mcap"), ["unknown command 'recover'; there is 'dermis info recover'"])
+        self.refuse(("doctor", "--model", self.model), ["--in is required"])
 
     def test_a_model_is_told_in_words(self):
         text = self.succeed("info", self.model)
@@ -204,10 +207,10 @@ class Terminal(SmallArray):
 
     def test_a_weight_in_two_arguments_is_told_how_to_write_it(self):
         self.refuse(
-            ("check", "--model", self.model, "--in", self.contacts / "frames.csv", "--weight", 200, "g"),
+            ("doctor", "check", "--model", self.model, "--in", self.contacts / "frames.csv", "--weight", 200, "g"),
             ["'g' is one argument too many; write '200 g' in quotes, or 200g (see"],
         )
-        self.refuse(("check", "--weight", 200, 5), ["'5' is one argument too many (see"])
+        self.refuse(("doctor", "check", "--weight", 200, 5), ["'5' is one argument too many (see"])
 
     def test_a_weight_may_be_given_by_its_mass(self):
         array = self.written(
@@ -216,18 +219,18 @@ class Terminal(SmallArray):
         lines = [f"{k / 10},{2 if 30 <= k % 200 < 120 else 0}" for k in range(600)]
         frames = self.written("press.csv", "time_s,r0c0\n" + "\n".join(lines) + "\n")
         told = {
-            dermis("check", "--model", array, "--in", frames, "--weight", weight).stdout
+            dermis("doctor", "check", "--model", array, "--in", frames, "--weight", weight).stdout
             for weight in ("0.2 kg", "200g", "1.96133", "1.96133 N")
         }
         self.assertEqual(len(told), 1)
         self.assertRegex(told.pop(), r"^weight +1.961 N, put on 3 times\n")
         self.refuse(
-            ("check", "--model", array, "--in", frames, "--weight", 200),
+            ("doctor", "check", "--model", array, "--in", frames, "--weight", 200),
             ["3 read something else, the last 2 N; if it weighs 200 grams, write '200 g'"],
             status=1,
         )
         self.refuse(
-            ("check", "--model", array, "--in", frames, "--weight", "two"),
+            ("doctor", "check", "--model", array, "--in", frames, "--weight", "two"),
             ["--weight: 'two' is no force; write newtons, or a unit as in 2 N, 200 g or 0.2 kg"],
         )
 

@@ -65,7 +65,9 @@ class Bags(SmallArray):
             "id,first,last,class\n" + "".join(f"{k},{5 * k},{5 * k},{'hand' if k % 2 else 'foot'}\n" for k in range(40))
         )
         classes = cls.root / "classes"
-        learned = dermis("learn", "--in", cls.contacts / "frames.csv", "--labels", labels, "--out", classes)
+        learned = dermis(
+            "recognise", "learn", "--in", cls.contacts / "frames.csv", "--labels", labels, "--out", classes
+        )
         if learned.returncode:
             raise AssertionError(learned.stderr)
         cls.recording = cls.root / "rec.mcap"

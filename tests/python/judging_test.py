@@ -110,7 +110,9 @@ class Judging(workspace.CalibratedArray):
         labels = self.folder / "labels.csv"
         labels.write_text("id,first,last,class\n" + "".join(f"{k},{k},{k},{kind}\n" for k, kind in kinds.items()))
         classes = self.folder / "classes.safetensors"
-        workspace.dermis("learn", "--in", self.frames, "--model", self.model, "--labels", labels, "--out", classes)
+        workspace.dermis(
+            "recognise", "learn", "--in", self.frames, "--model", self.model, "--labels", labels, "--out", classes
+        )
         said = workspace.dermis("recognise", "--classes", classes, "--model", self.model, "--in", self.frames)
         recogniser = dermis.Recogniser(classes, self.loaded)
         self.assertEqual(recogniser.names, ["few", "many"])

@@ -55,6 +55,7 @@ function learn() {
     ),
   );
   bench.run(
+    "recognise",
     "learn",
     "--frames",
     bench.path("frames.npy"),

@@ -231,6 +231,7 @@ it("teaches three touches, throws an example away, trains, and names new touches
   const saved = bench.path(model.replace(".safetensors", ""));
   assert.equal(readCsv(`${saved}.labels.csv`).length, 3 * TAUGHT - 1);
   bench.run(
+    "recognise",
     "learn",
     "--in",
     `${saved}.frames.csv`,

@@ -12,7 +12,7 @@
 namespace dermis::bytes::recordings {
 namespace {
 
-constexpr const char* kMend = "; dermis recover writes what can be read into a new file";
+constexpr const char* kMend = "; dermis info recover writes what can be read into a new file";
 
 /// A chunk as the summary describes it.
 struct ChunkPlace {

@@ -87,7 +87,9 @@ class Events(support.SmallArray):
             "id,first,last,class\n" + "".join(f"{k},{5 * k},{5 * k},{'hand' if k % 2 else 'foot'}\n" for k in range(40))
         )
         cls.classes = cls.root / "classes"
-        learned = support.dermis("learn", "--in", cls.contacts / "frames.csv", "--labels", labels, "--out", cls.classes)
+        learned = support.dermis(
+            "recognise", "learn", "--in", cls.contacts / "frames.csv", "--labels", labels, "--out", cls.classes
+        )
         if learned.returncode:
             raise AssertionError(learned.stderr)
 

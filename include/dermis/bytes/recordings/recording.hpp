@@ -122,7 +122,7 @@ struct RecordingInfo {
   std::uint64_t lost = 0;                 ///< Of all arrays.
   double duration_s = 0.0;                ///< From the time of the first to that of the last frame.
   Nanos start_utc{};                      ///< Time of the first, since 1970.
-  bool complete = false;                  ///< Written to its end; otherwise `dermis recover` writes the index.
+  bool complete = false;                  ///< Written to its end; otherwise `dermis info recover` writes the index.
   std::string compression;                ///< "none", "lz4", "zstd", or several with '+'.
   std::string software_version;           ///< "dermis 0.1.0"; empty if unknown.
   std::vector<RecordedArrayInfo> arrays;  ///< One at least.

@@ -12,7 +12,7 @@
 
 namespace dermis::out::report {
 
-/// The results of 'dermis learn' as a page: accuracy, advice, estimators side by side, confusion, and the worst errors.
+/// The results of 'dermis recognise learn' as a page: accuracy, advice, estimators side by side, confusion, and the worst errors.
 /// `learned`: of all labels of `data`.
 [[nodiscard]] std::string recognition_page(const learn::recognition::LabelledFrames& data,
                                            const learn::recognition::Learned& learned,

@@ -74,7 +74,7 @@ struct SuitPlace {
   /// array.
   std::string model{};
   std::string suit{};     ///< suit.toml
-  std::string classes{};  ///< From `dermis learn`, for one source; a suit.toml names its own. Empty: none.
+  std::string classes{};  ///< From `dermis recognise learn`, for one source; a suit.toml names its own. Empty: none.
   std::string threats{};  ///< threats.toml; empty: none.
 };
 

@@ -71,7 +71,7 @@ export class ClassBars {
     setHidden(this.#none, classes.length > 0);
     setText(
       this.#none,
-      `No classes are served for ${array}: learn them (dermis learn) and serve them (dermis serve --classes), or teach them here.`,
+      `No classes are served for ${array}: learn them (dermis recognise learn) and serve them (dermis serve --classes), or teach them here.`,
     );
     setText(this.#answer, "");
     setText(this.#reason, classes.length > 0 ? "nothing was recognised yet" : "");
