@@ -58,7 +58,7 @@ class Plugin final : public Hdf5Plugin {
 }  // namespace
 }  // namespace dermis::bytes::recordings
 
-extern "C" __attribute__((visibility("default"))) dermis::bytes::recordings::Hdf5Plugin& dermis_hdf5() {
+extern "C" __attribute__((visibility("default"))) void dermis_hdf5(dermis::bytes::recordings::Hdf5Plugin*& found) {
   static dermis::bytes::recordings::Plugin plugin;
-  return plugin;
+  found = &plugin;
 }

@@ -22,14 +22,14 @@ class NotedFrames : public FrameSource {
   [[nodiscard]] virtual const FrameNotes& notes() const noexcept = 0;
 };
 
-/// What is in a file, by the names of its datasets.
+/// The contents of a file, by the names of its datasets.
 struct Hdf5Contents {
-  bool has_frames = false;    ///< Of create_frames(), or alike.
-  bool has_wiresens = false;  ///< Of the WiReSens toolkit.
+  bool has_frames = false;    ///< As create_frames() writes them, or alike.
+  bool has_wiresens = false;  ///< As the WiReSens toolkit writes them.
   std::string datasets;       ///< "; it has: '/observations/tactile' (500 x 8 x 8), ..."
 };
 
-/// What each does is in the header of the same name in plugins/hdf5. `shape`: fails where frames have another.
+/// The headers in plugins/hdf5 say more of each. `shape`: fails where frames have another.
 class Hdf5Plugin {
  public:
   Hdf5Plugin() = default;
@@ -56,7 +56,7 @@ class Hdf5Plugin {
 };
 
 /// The function of the plugin, and its name.
-using FindHdf5 = Hdf5Plugin& (*)();
+using FindHdf5 = void (*)(Hdf5Plugin*& found);
 inline constexpr const char* kFindHdf5 = "dermis_hdf5";
 
 /// Fails where the plugin or the library of HDF5 is not there.
