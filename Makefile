@@ -104,7 +104,7 @@ site: setup
 campaigns: python build
 	scripts/setup campaigns
 	cmp -s tests/live/fleet/requirements.txt build/campaigns/requirements.txt || { \
-	  python3 -m venv --clear build/campaigns && \
+	  /usr/bin/python3 -m venv --clear build/campaigns && \
 	  build/campaigns/bin/pip install --quiet --requirement tests/live/fleet/requirements.txt && \
 	  cp tests/live/fleet/requirements.txt build/campaigns; }
 	PYTHONPATH=$(CURDIR)/build/release/python build/campaigns/bin/python tests/live/fleet/campaigns_test.py build/release/bin/dermis

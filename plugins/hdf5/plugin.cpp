@@ -18,47 +18,38 @@ Result<std::unique_ptr<Base>> as(Result<std::unique_ptr<Derived>> made) {
   return std::unique_ptr<Base>(*std::move(made));
 }
 
-class Plugin final : public Hdf5Plugin {
- public:
-  Result<Hdf5Contents> contents(const std::string& path) override {
-    const QuietHdf5 quiet;
-    const Result<Hdf5Input> file = Hdf5Input::open(path);
-    if (!file) return file.error();
-    return Hdf5Contents{file->contains("counts"), file->contains("pressure") && file->contains("frame_count"),
-                        file->datasets_text()};
-  }
-  Result<std::unique_ptr<NotedFrames>> open_frames(const std::string& path,
-                                                   const std::optional<FrameShape>& shape) override {
-    return as<NotedFrames>(Hdf5FramesReader::open(path, shape));
-  }
-  Result<std::unique_ptr<FrameSource>> open_wiresens(const std::string& path,
-                                                     const std::optional<FrameShape>& shape) override {
-    return as<FrameSource>(WiresensHdf5Reader::open(path, shape));
-  }
-  Result<std::unique_ptr<FrameSource>> open_dataset(const std::string& path, const std::string& dataset,
-                                                    const std::optional<FrameShape>& shape,
-                                                    const std::optional<double>& rate_hz) override {
-    return as<FrameSource>(Hdf5DatasetReader::open(path, dataset, shape, rate_hz));
-  }
-  Result<std::unique_ptr<formats::MatlabFile>> open_matlab(const std::string& path) override {
-    return recordings::open_matlab(path);
-  }
-  Result<std::unique_ptr<FrameSink>> create_frames(const std::string& path, FrameShape shape,
-                                                   const FrameNotes& notes) override {
-    return as<FrameSink>(Hdf5FramesWriter::create(path, shape, notes));
-  }
-  Result<std::unique_ptr<FrameSink>> create_wiresens(const std::string& path, FrameShape shape) override {
-    return as<FrameSink>(WiresensHdf5Writer::create(path, shape));
-  }
-  Result<std::unique_ptr<Hdf5Tables>> create_tables(const std::string& path) override {
-    return recordings::create_tables(path);
-  }
-};
+Result<Hdf5Contents> contents_of(const std::string& path) {
+  const QuietHdf5 quiet;
+  const Result<Hdf5Input> file = Hdf5Input::open(path);
+  if (!file) return file.error();
+  return Hdf5Contents{file->contains("counts"), file->contains("pressure") && file->contains("frame_count"),
+                      file->datasets_text()};
+}
+
+using Path = const std::string&;
+using Shape = const std::optional<FrameShape>&;
+
+constexpr Hdf5Plugin kPlugin{
+    .contents = contents_of,
+    .open_frames = [](Path path, Shape shape) { return as<NotedFrames>(Hdf5FramesReader::open(path, shape)); },
+    .open_wiresens = [](Path path, Shape shape) { return as<FrameSource>(WiresensHdf5Reader::open(path, shape)); },
+    .open_dataset =
+        [](Path path, Path dataset, Shape shape, const std::optional<double>& rate_hz) {
+          return as<FrameSource>(Hdf5DatasetReader::open(path, dataset, shape, rate_hz));
+        },
+    .open_matlab = open_matlab,
+    .create_frames =
+        [](Path path, FrameShape shape, const FrameNotes& notes) {
+          return as<FrameSink>(Hdf5FramesWriter::create(path, shape, notes));
+        },
+    .create_wiresens = [](Path path,
+                          FrameShape shape) { return as<FrameSink>(WiresensHdf5Writer::create(path, shape)); },
+    .create_tables = create_tables};
 
 }  // namespace
 }  // namespace dermis::bytes::recordings
 
-extern "C" __attribute__((visibility("default"))) dermis::bytes::recordings::Hdf5Plugin& dermis_hdf5() {
-  static dermis::bytes::recordings::Plugin plugin;
-  return plugin;
+extern "C" __attribute__((visibility("default"))) void dermis_hdf5(
+    const dermis::bytes::recordings::Hdf5Plugin*& found) {
+  found = &dermis::bytes::recordings::kPlugin;
 }

@@ -468,7 +468,7 @@ class EveryCommand(SmallArray):
         yield from self.with_forces(frames)
         yield self.calibrate_arguments(self.work / "model", frames=frames, loads=self.contacts / "loads.csv"), None
         yield ("convert", frames, self.work / "frames.npy"), self.work / "frames.npy"
-        yield ("dataset", frames, "--out", self.work / "set"), self.work / "set"
+        yield ("dataset", frames, "--format", "zarr", "--out", self.work / "set"), self.work / "set"
         yield ("info", frames), None
         yield ("replay", frames, "--speed", 0, "--out", self.work / "counts.csv"), self.work / "counts.csv"
         yield ("record", "--from", frames, "--out", self.work / "counts.mcap"), self.work / "counts.mcap"

@@ -6,11 +6,13 @@
 
 namespace dermis::bytes::recordings {
 
-Result<Hdf5Plugin*> load_hdf5() {
+Result<const Hdf5Plugin*> load_hdf5() {
   const Result<void*> function = find_plugin_function(
       {"HDF5", "libdermis_hdf5.so", "(Debian: dermis), and its library (Debian: libhdf5-103-1)"}, kFindHdf5);
   if (!function) return function.error();
-  return &reinterpret_cast<FindHdf5>(*function)();
+  const Hdf5Plugin* found = nullptr;
+  reinterpret_cast<FindHdf5>(*function)(found);
+  return found;
 }
 
 Result<std::unique_ptr<Hdf5Tables>> Hdf5Tables::create(const std::string& path) {

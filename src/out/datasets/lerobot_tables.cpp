@@ -61,7 +61,7 @@ LeRobotTables::~LeRobotTables() {
 }
 
 /// Where the process has ended, its last line says why.
-Status LeRobotTables::send(std::span<const std::byte> bytes) {
+Status LeRobotTables::send(std::span<const std::byte> bytes) const {
   while (!bytes.empty()) {
     const ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
     if (sent < 0 && errno == EINTR) continue;
@@ -71,12 +71,12 @@ Status LeRobotTables::send(std::span<const std::byte> bytes) {
   return Done{};
 }
 
-Status LeRobotTables::send_line(std::string line) {
+Status LeRobotTables::send_line(std::string line) const {
   line += '\n';
   return send(std::as_bytes(std::span(line)));
 }
 
-Status LeRobotTables::expect(std::string_view answer) {
+Status LeRobotTables::expect(std::string_view answer) const {
   constexpr std::size_t kMostCharacters = 4096;
   std::string line;
   for (char letter = 0; line.size() < kMostCharacters;) {
@@ -89,7 +89,7 @@ Status LeRobotTables::expect(std::string_view answer) {
   return failed(kUse + (line.empty() ? "it has ended without a word" : line));
 }
 
-Status LeRobotTables::finish() {
+Status LeRobotTables::finish() const {
   if (Status sent = send_line("{}"); !sent) return sent;
   return expect("done");
 }

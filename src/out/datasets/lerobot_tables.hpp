@@ -24,14 +24,14 @@ class LeRobotTables {
   ~LeRobotTables();
 
   /// A line of JSON, or bytes that such a line has announced.
-  [[nodiscard]] Status send(std::span<const std::byte> bytes);
-  [[nodiscard]] Status send_line(std::string line);
+  [[nodiscard]] Status send(std::span<const std::byte> bytes) const;
+  [[nodiscard]] Status send_line(std::string line) const;
   /// All is written.
-  [[nodiscard]] Status finish();
+  [[nodiscard]] Status finish() const;
 
  private:
   LeRobotTables(int socket, int process) : socket_(socket), process_(process) {}
-  [[nodiscard]] Status expect(std::string_view answer);
+  [[nodiscard]] Status expect(std::string_view answer) const;
 
   int socket_;
   int process_;

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
-"""The Parquet files of a LeRobot dataset, written by pyarrow. dermis starts this text as a program, and sends lines of
-JSON on its standard input: the columns, blocks of steps with their bytes behind them, ends of episodes, the end. The
-standard input is a socket, on which "ready" and "done" go back, or why there is none."""
+"""The Parquet files of a LeRobot dataset, written by pyarrow. dermis starts this text as a program. It sends lines of
+JSON: the columns, blocks of steps with their bytes behind them, ends of episodes, the end. The standard input is a
+socket, on which "ready" and "done" go back, or why there is none."""
 
 import json
 import os
