@@ -11,7 +11,7 @@
 #include <string_view>
 #include <type_traits>
 
-/// Numbers as they stand in text. What more a file or a line accepts, such as a decimal comma, it makes one of these.
+/// Numbers as they stand in text. A file that accepts more, such as a decimal comma, makes it one of these.
 namespace dermis::bytes::files {
 
 /// 0 ... 9, or more where the byte is not a digit.
