@@ -8,15 +8,13 @@
 #include <cstring>
 #include <memory>
 
+#include "dermis/bytes/files/numbers.hpp"
+
 namespace dermis::bytes::files {
 namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{1} << 20U;
 constexpr std::size_t kMaxKeyDotsPerLine = 64;
-
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
 
 bool is_decimal_point(std::string_view line, std::size_t dot) {
   std::size_t first = dot;

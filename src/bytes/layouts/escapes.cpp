@@ -28,6 +28,7 @@ bool undo_stuffing(const PacketLayout& layout, std::span<const std::uint8_t> byt
   return true;
 }
 
+constexpr std::size_t kMostInBlock = 254;
 constexpr std::size_t kShortBlock = 8;  ///< Bytes that are copied at once, also where fewer are meant.
 
 }  // namespace
@@ -36,22 +37,22 @@ constexpr std::size_t kShortBlock = 8;  ///< Bytes that are copied at once, also
 /// Stuffing", IEEE/ACM Transactions on Networking 7 (1999).
 std::optional<std::size_t> undo_cobs(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& plain) {
   if (plain.size() < bytes.size() + kShortBlock) plain.resize(2 * (bytes.size() + kShortBlock));
-  std::size_t length = 0;
+  std::uint8_t* to = plain.data();
   for (std::size_t at = 0; at < bytes.size();) {
-    const std::size_t code = bytes[at];
-    if (code == 0 || code > bytes.size() - at) return std::nullopt;
-    const std::size_t block = code - 1;
-    const bool is_short = block <= kShortBlock && bytes.size() - at > kShortBlock;
-    if (is_short) {
-      std::memcpy(&plain[length], &bytes[at] + 1, kShortBlock);
+    const std::size_t block = bytes[at] - std::size_t{1};  // beyond all for a code of 0
+    const std::size_t rest = bytes.size() - at - 1;
+    if (block > rest) return std::nullopt;
+    const std::uint8_t* const from = bytes.data() + at + 1;
+    if (block <= kShortBlock && rest >= kShortBlock) {
+      std::memcpy(to, from, kShortBlock);
     } else {
-      std::memcpy(&plain[length], &bytes[at] + 1, block);
+      std::memcpy(to, from, block);
     }
-    at += code;
-    length += block;
-    if (code < 0xFF && at < bytes.size()) plain[length++] = 0;
+    at += block + 1;
+    to += block;
+    if (block < kMostInBlock && at < bytes.size()) *to++ = 0;
   }
-  return length;
+  return static_cast<std::size_t>(to - plain.data());
 }
 
 std::uint8_t delimiter_of(const PacketLayout& layout) noexcept {

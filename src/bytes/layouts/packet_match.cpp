@@ -204,7 +204,8 @@ bool PacketMatch::use(const PacketField& field, double number, Piece& piece) {
     return true;
   }
   if (field.role == Role::time) {
-    const double nanos = std::round(1e9 * value);
+    // In this order, whole units of up to 100 days are exact.
+    const double nanos = std::round(1e9 * field.unit * number + 1e9 * field.offset);
     if (!(nanos >= 0.0 && nanos < kMostNanos)) return false;
     piece.set_time(static_cast<std::uint64_t>(nanos), field.unit);
     return true;

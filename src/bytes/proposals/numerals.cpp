@@ -5,15 +5,15 @@
 #include <map>
 
 #include "bytes/proposals/lines.hpp"
+#include "dermis/bytes/files/numbers.hpp"
 
 namespace dermis::bytes::proposals {
 namespace {
 
+using files::is_digit;
+
 constexpr std::size_t kLinesLooked = 400;
 
-bool is_digit(char c) {
-  return std::isdigit(static_cast<unsigned char>(c)) != 0;
-}
 bool is_hexadecimal(char c) {
   return std::isxdigit(static_cast<unsigned char>(c)) != 0;
 }

@@ -13,7 +13,7 @@ namespace dermis::bytes::recordings {
 
 enum class Times { always, sometimes, never };
 
-/// What a file has a place for beside counts: nothing, temperature and supply, or all that a frame has and FrameNotes.
+/// A file has a place for counts alone, for temperature and supply, too, or for all of a frame and FrameNotes.
 enum class Holds { counts, temperatures, all };
 
 /// A format of frames.

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <numeric>
 #include <span>
 #include <string>
 #include <string_view>
@@ -480,6 +481,19 @@ TEST(PacketLayout, counters_and_clocks_go_on_where_they_wrap) {
   EXPECT_EQ(frames[1].acquisition.lost_before, 2U);
   EXPECT_EQ(*frames[1].acquisition.device_time - *frames[0].acquisition.device_time, std::chrono::milliseconds(10));
   EXPECT_NEAR(*frames[0].temperature_celsius, 21.5, 1e-9);
+}
+
+TEST(PacketLayout, times_are_exact) {
+  const std::string keys = R"(packet = ["AA 55", "time_ms u32be", "values u8", "checksum sum8"]
+)";
+  for (std::uint32_t time = UINT32_MAX - 100; time < UINT32_MAX; ++time) {
+    const auto byte = [&](unsigned shift) { return static_cast<std::uint8_t>(time >> shift); };
+    Bytes packet = {0xAA, 0x55, byte(24), byte(16), byte(8), byte(0), 1, 2, 3, 4};
+    packet.push_back(static_cast<std::uint8_t>(std::accumulate(packet.begin(), packet.end(), 0U)));
+    const std::vector<RawFrame> frames = frames_of(kTwoByTwo + keys, packet);
+    ASSERT_EQ(frames.size(), 1U);
+    EXPECT_EQ(frames[0].acquisition.device_time, std::chrono::milliseconds(time));
+  }
 }
 
 TEST(PacketLayout, several_temperatures_are_those_of_sensors) {

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <type_traits>
 
-/// Numbers as they stand in text. What more a file or a line accepts, such as a decimal comma, it makes one of these.
+/// Numbers as they stand in text. A file that accepts more, such as a decimal comma, makes it one of these.
 namespace dermis::bytes::files {
 
 /// 0 ... 9, or more where the byte is not a digit.
@@ -77,7 +77,7 @@ template <typename Number>
 /// A number without sign or exponent, of at most `most_digits` before the point (15 or fewer are exact) and 8 behind
 /// it. `at` goes behind it. False where there is none.
 [[nodiscard]] inline bool take_decimal(const std::uint8_t*& at, std::ptrdiff_t most_digits, double& value) noexcept {
-  constexpr std::array<double, 9> kUnit = {1, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
+  static constexpr std::array<double, 9> kUnit = {1, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
   const std::uint8_t* const first = at;
   value = 0.0;
   for (; digit(*at) <= 9; ++at) value = 10.0 * value + digit(*at);

@@ -18,10 +18,10 @@
 /// said otherwise. `name` stands for the path in messages. Files without times need options.rate_hz.
 namespace dermis::bytes::formats {
 
-/// Recordings of the Weiss DSA, the tactile sensors of a SCHUNK SDH hand: XML, usually compressed by bzip2, with the
-/// counts of all matrices in one run-length code a frame. options.array is the number of the matrix, from 0, where
-/// there are several. If the file has the temperatures of the hand, a frame of matrix m has the last one of its axis
-/// (1 + m). The memory is that of a frame and of the temperatures, at most 16 MiB. `in` must be able to seek.
+/// Recordings of the Weiss DSA, the tactile sensors of a SCHUNK SDH hand. They are XML, usually compressed by bzip2,
+/// with the counts of all matrices in one run-length code a frame. options.array is the number of the matrix, from 0,
+/// where there are several. If the file has the temperatures of the hand, a frame of matrix m has the last one of its
+/// axis (1 + m). The memory is that of a frame and of the temperatures, at most 16 MiB. `in` must be able to seek.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_dsa(std::unique_ptr<std::istream> in, const std::string& name,
                                                             const ImportOptions& options);
 
