@@ -122,6 +122,11 @@ nlohmann::ordered_json circuit_json(const learn::calibration::CircuitFit& fit) {
   return json;
 }
 
+template <typename Sigma>
+void add_if_known(const char* name, const Sigma& sigma, nlohmann::ordered_json& json) {
+  if (sigma) json[name] = *sigma;
+}
+
 void print_json(const CalibrationReport& report, const ArrayDescription& array,
                 const std::optional<learn::calibration::CircuitFit>& circuit) {
   const learn::calibration::TrainingReport& training = report.training;
@@ -151,17 +156,11 @@ void print_json(const CalibrationReport& report, const ArrayDescription& array,
   for (const learn::calibration::StageTime& stage : report.stages) json["seconds"][stage.stage] = stage.seconds;
   const learn::calibration::UncertaintyReport& uncertainty = report.uncertainty;
   json["adc_noise_counts"] = uncertainty.adc_noise_counts.value_or(array.readout.adc_noise_counts);
-  if (uncertainty.relative_sigma) json["relative_sigma"] = *uncertainty.relative_sigma;
-  if (uncertainty.relative_sigma_of_shared) {
-    json["relative_sigma_of_shared"] = *uncertainty.relative_sigma_of_shared;
-  }
+  add_if_known("relative_sigma", uncertainty.relative_sigma, json);
+  add_if_known("relative_sigma_of_shared", uncertainty.relative_sigma_of_shared, json);
   if (!report.memory.empty()) json["memory"] = report.memory;
-  if (uncertainty.relative_sigma_of_tables) {
-    json["relative_sigma_of_tables"] = *uncertainty.relative_sigma_of_tables;
-  }
-  if (uncertainty.relative_sigma_of_unpressed) {
-    json["relative_sigma_of_unpressed"] = *uncertainty.relative_sigma_of_unpressed;
-  }
+  add_if_known("relative_sigma_of_tables", uncertainty.relative_sigma_of_tables, json);
+  add_if_known("relative_sigma_of_unpressed", uncertainty.relative_sigma_of_unpressed, json);
   fmt::print("{}\n", json.dump(2));
 }
 

@@ -92,6 +92,13 @@ Status circuit_forward(const ForwardOptions& options) {
   }
 }
 
+Result<std::optional<TaxelTablesWriter>> create_sigma(const InvertOptions& options, const ArrayDescription& array) {
+  if (options.sigma.empty()) return std::optional<TaxelTablesWriter>();
+  Result<TaxelTablesWriter> created = TaxelTablesWriter::create(options.sigma, array.rows, array.cols);
+  if (!created) return created.error();
+  return std::optional(*std::move(created));
+}
+
 Status circuit_invert(const InvertOptions& options) {
   const Result<ArrayDescription> array = read_known_circuit(options.array);
   if (!array) return array.error();
@@ -104,12 +111,9 @@ Status circuit_invert(const InvertOptions& options) {
   if (!in) return in.error();
   Result<TaxelTablesWriter> out = TaxelTablesWriter::create(options.out, array->rows, array->cols);
   if (!out) return out.error();
-  std::optional<TaxelTablesWriter> sigma;
-  if (!options.sigma.empty()) {
-    Result<TaxelTablesWriter> created = TaxelTablesWriter::create(options.sigma, array->rows, array->cols);
-    if (!created) return created.error();
-    sigma.emplace(*std::move(created));
-  }
+  Result<std::optional<TaxelTablesWriter>> sigma_out = create_sigma(options, *array);
+  if (!sigma_out) return sigma_out.error();
+  std::optional<TaxelTablesWriter>& sigma = *sigma_out;
 
   std::size_t frames = 0;
   std::size_t unsolved = 0;

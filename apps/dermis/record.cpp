@@ -73,6 +73,14 @@ Error without_frames(const std::string& from, const Status& recorded, std::span<
   return error;
 }
 
+std::string sum_of(const RecordOptions& options, const bytes::devices::RecorderProgress& last, bool has_model) {
+  std::string sum = options.out + ": " + summary(last.frames, last.source);
+  if (last.queue.waits == 0) return sum;
+  return sum + fmt::format("; the device waited {} times, at most {:.0f} ms, for the {}", last.queue.waits,
+                           1e3 * std::chrono::duration<double>(last.queue.longest_wait).count(),
+                           has_model ? "model or the disk" : "disk");
+}
+
 Status record(const RecordOptions& options) {
   std::atomic<bool>& stop = stop_flag();
   bytes::devices::RecorderOptions recorder;
@@ -104,13 +112,7 @@ Status record(const RecordOptions& options) {
       **source, [&](const FrameShape& shape) { return live::forces::create_recording(output, shape); }, recorder, last);
   line.end();
   if (last.frames > 0) {
-    std::string sum = options.out + ": " + summary(last.frames, last.source);
-    if (last.queue.waits > 0) {
-      sum += fmt::format("; the device waited {} times, at most {:.0f} ms, for the {}", last.queue.waits,
-                         1e3 * std::chrono::duration<double>(last.queue.longest_wait).count(),
-                         known->model ? "model or the disk" : "disk");
-    }
-    print_notice(sum);
+    print_notice(sum_of(options, last, known->model.has_value()));
     if (options.from.starts_with("file:") && (*source)->is_live()) {
       print_notice("the file has no times, so the recording has those of this reading: give rate=");
     }

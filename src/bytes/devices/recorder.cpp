@@ -48,6 +48,14 @@ class Writer {
     source_ = source;
   }
 
+  /// The same, where a tick has passed since.
+  void tell_now_and_then(const FrameSource& source) {
+    const Clock::time_point now = Clock::now();
+    if (now < next_told_) return;
+    set_source_statistics(source.statistics());
+    next_told_ = now + kTick;
+  }
+
   /// Writes what is left and commits, if there is anything. The first error of the sink.
   Status finish() {
     join();
@@ -105,6 +113,7 @@ class Writer {
   mutable std::mutex mutex_;
   std::uint64_t frames_ = 0;
   SourceStatistics source_;
+  Clock::time_point next_told_{};
   std::uint64_t reported_frames_ = 0;
   Status status_ = Done{};
   std::thread thread_;
@@ -145,16 +154,26 @@ Nanos time_between(Nanos first, Nanos time) {
   return Nanos(static_cast<std::int64_t>(difference));
 }
 
+Result<std::unique_ptr<Writer>> open_writer(const OpenSink& open_sink, const FrameShape& shape,
+                                            const RecorderOptions& options) {
+  Result<std::unique_ptr<FrameSink>> sink = open_sink(shape);
+  if (!sink) return sink.error();
+  return std::make_unique<Writer>(*std::move(sink), shape, options);
+}
+
+bool is_asked_to_stop(const RecorderOptions& options) {
+  return !options.source_stops && options.stop != nullptr && options.stop->load();
+}
+
 }  // namespace
 
 Status record(FrameSource& source, const OpenSink& open_sink, const RecorderOptions& options, RecorderProgress& last) {
   last = {};
   std::unique_ptr<Writer> writer;
   const auto open = [&](const FrameShape& shape) -> Status {
-    Result<std::unique_ptr<FrameSink>> sink = open_sink(shape);
-    if (!sink) return sink.error();
-    writer = std::make_unique<Writer>(std::move(*sink), shape, options);
-    return Done{};
+    Result<std::unique_ptr<Writer>> opened = open_writer(open_sink, shape, options);
+    if (opened) writer = *std::move(opened);
+    return opened ? Status(Done{}) : opened.error();
   };
   if (const std::optional<FrameShape> shape = source.shape()) {
     if (Status opened = open(*shape); !opened) return opened;
@@ -164,27 +183,21 @@ Status record(FrameSource& source, const OpenSink& open_sink, const RecorderOpti
   Deadline deadline(options);
   RawFrame frame;
   std::optional<Nanos> first_time;
-  Clock::time_point next_told{};
   for (std::uint64_t frames = 0; !options.frames || frames < *options.frames; ++frames) {
-    if (!options.source_stops && options.stop != nullptr && options.stop->load()) break;
+    if (is_asked_to_stop(options)) break;
     deadline.source_waits(true);
     const Result<bool> more = source.next(frame);
     deadline.source_waits(false);
     if (!more) status = more.error();
     if (!more || !*more) break;
-    if (!first_time) {
-      first_time = frame.time;
-      deadline.begin_anew();
-    }
+    if (!first_time) deadline.begin_anew();
+    if (!first_time) first_time = frame.time;
     if (options.duration && time_between(*first_time, frame.time) >= *options.duration) break;
     if (!writer) {
       if (Status opened = open(*source.shape()); !opened) return opened;
     }
     if (!writer->push(frame)) break;
-    if (const Clock::time_point now = Clock::now(); now >= next_told) {
-      writer->set_source_statistics(source.statistics());
-      next_told = now + kTick;
-    }
+    writer->tell_now_and_then(source);
   }
   last.source = source.statistics();
   if (!writer) return status;

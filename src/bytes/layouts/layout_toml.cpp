@@ -93,8 +93,7 @@ class LayoutReader {
     layout_.arrays.push_back(std::move(array));
   }
 
-  void read_text() {
-    TextLayout text;
+  void read_patterns(TextLayout& text) {
     std::vector<std::string> patterns;
     if (file_.holds_text(key("line"))) {
       file_.text(key("line"), patterns.emplace_back());
@@ -114,6 +113,11 @@ class LayoutReader {
     for (const TextLayout::Pattern& line : text.lines) {
       check_shares("line", line, !has_role(line, Role::col) && has_role(text.lines, Role::row));
     }
+  }
+
+  void read_text() {
+    TextLayout text;
+    read_patterns(text);
     file_.text(key("line_end"), text.line_end);
     const std::string_view numbers = "0123456789abcdefABCDEF+-.,";
     if (!text.line_end.empty() && numbers.find(text.line_end.back()) != std::string_view::npos) {

@@ -276,6 +276,25 @@ Status write_model(const std::string& path, const Model& model) {
   return files::write_safetensors(path, file);
 }
 
+namespace {
+
+Status read_baselines(const SafetensorsFile& file, const std::string& path, TensorReader& reader, Model& model) {
+  const std::size_t baselines = metadata_count(file, "baselines");
+  if (metadata(file, "baselines") != std::to_string(baselines)) {
+    return bad_input(path + ": does not say how many baselines it holds");
+  }
+  if (baselines > kMaxBaselines) {
+    return bad_input(path + ": has " + std::to_string(baselines) + " baselines, at most " +
+                     std::to_string(kMaxBaselines) + " can be read");
+  }
+  for (std::size_t index = 0; index < baselines; ++index) {
+    model.baselines.push_back(get_baseline(file, index, model.array.taxel_count(), reader));
+  }
+  return Done{};
+}
+
+}  // namespace
+
 Result<Model> read_model(const std::string& path) {
   if (path.ends_with(".toml")) return read_direct_model(path);
   const Result<SafetensorsFile> file = files::read_safetensors(path);
@@ -297,17 +316,7 @@ Result<Model> read_model(const std::string& path) {
   if (file->metadata.contains(kGainErrors)) {
     model.networks.gain_errors = get_gain_errors(taxels, model.array.cols, reader);
   }
-  const std::size_t baselines = metadata_count(*file, "baselines");
-  if (metadata(*file, "baselines") != std::to_string(baselines)) {
-    return bad_input(path + ": does not say how many baselines it holds");
-  }
-  if (baselines > kMaxBaselines) {
-    return bad_input(path + ": has " + std::to_string(baselines) + " baselines, at most " +
-                     std::to_string(kMaxBaselines) + " can be read");
-  }
-  for (std::size_t index = 0; index < baselines; ++index) {
-    model.baselines.push_back(get_baseline(*file, index, taxels, reader));
-  }
+  if (const Status read = read_baselines(*file, path, reader, model); !read) return read.error();
   if (file->metadata.contains("memory")) model.memory = get_memory(reader);
   if (file->metadata.contains("strip.knots")) model.strip = get_strip(*file, reader);
   if (file->metadata.contains("supply")) model.supply = get_supply(reader);

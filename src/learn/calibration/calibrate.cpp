@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "learn/calibration/memory/memory_training.hpp"
+#include "learn/calibration/preparation.hpp"
 #include "learn/calibration/tables/baselines.hpp"
 
 namespace dermis::learn::calibration {
@@ -64,7 +65,32 @@ void remark_unpressed(const ArrayDescription& array, CalibrationReport& report) 
                                                             100.0 * *std::min_element(sigma->begin(), sigma->end())));
 }
 
+void report_samples(const SampleDatabase& database, CalibrationReport& report) {
+  report.frames = database.samples.size();
+  report.frames_rejected = database.frames_rejected;
+  report.first_rejection = database.first_rejection;
+  report.remarks = database.remarks;
+  report.doubts = database.doubts;
+  report.lacks_proof = database.lacks_proof;
+  if (!database.circuit_fit) return;
+  report.circuit = database.circuit_fit->statements;
+  report.discriminating_presses = database.circuit_fit->discriminating_presses;
+}
+
 }  // namespace
+
+Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std::span<const RawFrame> frames,
+                                             std::span<const Load> loads, Nanos settle_time,
+                                             const std::function<void(double)>& progress) {
+  Preparation preparation(array, frames, loads, settle_time);
+  if (Status checked = preparation.check_labels(); !checked) return checked.error();
+  preparation.find_rail();
+  preparation.find_settling();
+  if (Status found = preparation.find_circuit(); !found) return found.error();
+  preparation.judge_instrument();
+  preparation.doubt_circuit();
+  return preparation.invert(progress);
+}
 
 Result<Calibration> calibrate(const ArrayDescription& array, std::span<const RawFrame> frames,
                               std::span<const Load> loads, Nanos settle_time, const Progress& progress) {
@@ -110,12 +136,7 @@ Result<Calibration> calibrate(const SampleDatabase& database, std::span<const Ra
   }
   calibration.model.baselines = timed(report, "baselines", [&] { return make_baselines(database); });
 
-  report.frames = database.samples.size();
-  report.frames_rejected = database.frames_rejected;
-  report.first_rejection = database.first_rejection;
-  report.remarks = database.remarks;
-  report.doubts = database.doubts;
-  report.lacks_proof = database.lacks_proof;
+  report_samples(database, report);
   calibration.model.array = database.array;
   calibration.model.supply = database.supply;
   calibration.model.networks = training->networks;
@@ -126,10 +147,6 @@ Result<Calibration> calibrate(const SampleDatabase& database, std::span<const Ra
   report.uncertainty = *uncertainty;
   remark_unpressed(database.array, report);
   report.training = std::move(training->report);
-  if (database.circuit_fit) {
-    report.circuit = database.circuit_fit->statements;
-    report.discriminating_presses = database.circuit_fit->discriminating_presses;
-  }
   calibration.model.provenance = provenance(database.array, report);
   return calibration;
 }

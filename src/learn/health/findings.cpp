@@ -60,14 +60,7 @@ std::vector<FaultHistory> joined(const std::vector<FaultHistory>& faults) {
   return joined;
 }
 
-}  // namespace
-
-std::vector<std::string> findings_of(const Diagnosis& diagnosis, const touch::pipeline::Model& model) {
-  const ArrayDescription& array = model.array;
-  std::vector<std::string> found;
-  for (const FaultHistory& history : joined(diagnosis.faults)) {
-    found.push_back(place_name(history.fault, array) + " " + describe(history, array));
-  }
+void add_findings_of_frames(const Diagnosis& diagnosis, std::vector<std::string>& found) {
   if (diagnosis.frames == diagnosis.frames_rejected) found.emplace_back("no frame could be used");
   if (diagnosis.frames_unsolved > 0) {
     found.push_back(fmt::format("{} frames do not fit the circuit of the array: check readout in array.toml",
@@ -79,6 +72,10 @@ std::vector<std::string> findings_of(const Diagnosis& diagnosis, const touch::pi
   if (!diagnosis.missing_readings.empty()) {
     found.push_back(diagnosis.missing_readings + ": no force there, the others are solved");
   }
+}
+
+void add_findings_of_readings(const Diagnosis& diagnosis, const ArrayDescription& array,
+                              std::vector<std::string>& found) {
   if (diagnosis.noise_counts && *diagnosis.noise_counts > kMuchNoise * array.readout.adc_noise_counts) {
     found.push_back(fmt::format(
         "the readings have {:.1f} counts of noise or hum, {:.1f} times what was calibrated: check grounding "
@@ -89,6 +86,10 @@ std::vector<std::string> findings_of(const Diagnosis& diagnosis, const touch::pi
     found.push_back(fmt::format("{:.1f} % of the readings stand at the end of the ADC: forces there are lower bounds",
                                 100.0 * diagnosis.saturated_share));
   }
+}
+
+void add_findings_of_calibration(const Diagnosis& diagnosis, const touch::pipeline::Model& model,
+                                 std::vector<std::string>& found) {
   if (has_drifted(diagnosis)) {
     found.push_back(
         fmt::format("unloaded taxels conduct {:+.0f} % against the calibration: tare, check with a known weight, and "
@@ -105,6 +106,19 @@ std::vector<std::string> findings_of(const Diagnosis& diagnosis, const touch::pi
   }
   const auto doubts = model.provenance.find(touch::pipeline::kDoubts);
   if (doubts != model.provenance.end()) found.push_back("since the calibration: " + doubts->second);
+}
+
+}  // namespace
+
+std::vector<std::string> findings_of(const Diagnosis& diagnosis, const touch::pipeline::Model& model) {
+  const ArrayDescription& array = model.array;
+  std::vector<std::string> found;
+  for (const FaultHistory& history : joined(diagnosis.faults)) {
+    found.push_back(place_name(history.fault, array) + " " + describe(history, array));
+  }
+  add_findings_of_frames(diagnosis, found);
+  add_findings_of_readings(diagnosis, array, found);
+  add_findings_of_calibration(diagnosis, model, found);
   return found;
 }
 

@@ -161,54 +161,69 @@ Figure breakdown_figure(const Breakdown& breakdown, const Evaluation& evaluation
   return figure;
 }
 
+Breakdown by_force() {
+  return {"error_vs_force.svg",
+          "Error against force",
+          "true force [N]",
+          "Nothing was judged, so there is no error against force.",
+          Scale::logarithmic,
+          false,
+          [](const JudgedTaxel& taxel) { return std::optional(taxel.true_newtons); },
+          [](const JudgedTotal& total) { return std::optional(total.true_newtons); }};
+}
+
+Breakdown by_temperature() {
+  return {"error_vs_temperature.svg",
+          "Error against temperature",
+          "temperature [\u00b0C]",
+          "No temperature is known for what was judged, so there is no error against temperature.",
+          Scale::linear,
+          false,
+          [](const JudgedTaxel& taxel) { return taxel.temperature_celsius; },
+          [](const JudgedTotal& total) { return total.temperature_celsius; }};
+}
+
+Breakdown by_supply() {
+  return {"error_vs_supply.svg",
+          "Error against supply",
+          "supply [V]",
+          "No supply voltage is known for what was judged, so there is no error against supply.",
+          Scale::linear,
+          false,
+          [](const JudgedTaxel& taxel) { return taxel.supply_v; },
+          [](const JudgedTotal&) { return std::optional<double>(); }};
+}
+
+Breakdown by_contacts() {
+  return {"error_vs_contacts.svg",
+          "Error against number of contacts",
+          "contacts at the same time",
+          "No single taxels were judged, so there is no error against the number of contacts.",
+          Scale::linear,
+          true,
+          [](const JudgedTaxel& taxel) { return std::optional(static_cast<double>(taxel.contacts)); },
+          [](const JudgedTotal&) { return std::optional<double>(); }};
+}
+
+Breakdown by_onset() {
+  return {"error_vs_time.svg",
+          "Error against time since the onset",
+          "time since the load came [s]",
+          "No load was seen coming, so there is no error against time.",
+          Scale::logarithmic,
+          false,
+          [](const JudgedTaxel& taxel) { return above_zero(taxel.touch.seconds_since_onset); },
+          [](const JudgedTotal& total) { return above_zero(total.touch.seconds_since_onset); }};
+}
+
 }  // namespace
 
 std::vector<Figure> breakdown_figures(const Evaluation& evaluation) {
-  const Breakdown force{"error_vs_force.svg",
-                        "Error against force",
-                        "true force [N]",
-                        "Nothing was judged, so there is no error against force.",
-                        Scale::logarithmic,
-                        false,
-                        [](const JudgedTaxel& taxel) { return std::optional(taxel.true_newtons); },
-                        [](const JudgedTotal& total) { return std::optional(total.true_newtons); }};
-  const Breakdown temperature{"error_vs_temperature.svg",
-                              "Error against temperature",
-                              "temperature [\u00b0C]",
-                              "No temperature is known for what was judged, so there is no error against temperature.",
-                              Scale::linear,
-                              false,
-                              [](const JudgedTaxel& taxel) { return taxel.temperature_celsius; },
-                              [](const JudgedTotal& total) { return total.temperature_celsius; }};
-  const Breakdown supply{"error_vs_supply.svg",
-                         "Error against supply",
-                         "supply [V]",
-                         "No supply voltage is known for what was judged, so there is no error against supply.",
-                         Scale::linear,
-                         false,
-                         [](const JudgedTaxel& taxel) { return taxel.supply_v; },
-                         [](const JudgedTotal&) { return std::optional<double>(); }};
-  const Breakdown contacts{"error_vs_contacts.svg",
-                           "Error against number of contacts",
-                           "contacts at the same time",
-                           "No single taxels were judged, so there is no error against the number of contacts.",
-                           Scale::linear,
-                           true,
-                           [](const JudgedTaxel& taxel) { return std::optional(static_cast<double>(taxel.contacts)); },
-                           [](const JudgedTotal&) { return std::optional<double>(); }};
-  const Breakdown onset{"error_vs_time.svg",
-                        "Error against time since the onset",
-                        "time since the load came [s]",
-                        "No load was seen coming, so there is no error against time.",
-                        Scale::logarithmic,
-                        false,
-                        [](const JudgedTaxel& taxel) { return above_zero(taxel.touch.seconds_since_onset); },
-                        [](const JudgedTotal& total) { return above_zero(total.touch.seconds_since_onset); }};
-  return {breakdown_figure(force, evaluation, evaluation.by_force),
-          breakdown_figure(temperature, evaluation, evaluation.by_temperature),
-          breakdown_figure(supply, evaluation, evaluation.by_supply),
-          breakdown_figure(contacts, evaluation, evaluation.by_contacts),
-          breakdown_figure(onset, evaluation, evaluation.by_onset)};
+  return {breakdown_figure(by_force(), evaluation, evaluation.by_force),
+          breakdown_figure(by_temperature(), evaluation, evaluation.by_temperature),
+          breakdown_figure(by_supply(), evaluation, evaluation.by_supply),
+          breakdown_figure(by_contacts(), evaluation, evaluation.by_contacts),
+          breakdown_figure(by_onset(), evaluation, evaluation.by_onset)};
 }
 
 }  // namespace dermis::out::report

@@ -128,6 +128,32 @@ std::vector<PaperPoint> list_points(const ArrayDescription& array, const SampleD
   return listed;
 }
 
+void note_curve(const std::vector<double>& errors, TrainingCurve& curve) {
+  curve.name = "Adam from the paper's start";
+  for (std::size_t k = 0; k < errors.size(); ++k) {
+    curve.step.push_back(static_cast<double>(k + 1));
+    curve.value.push_back(errors[k]);
+  }
+}
+
+/// Gradient descent from the paper's start and from two of today.
+Status descend_from_each_start(BankTraining& training, const BankEffort& effort,
+                               const std::function<void(const std::string&, double)>& progress,
+                               PaperReproduction& found) {
+  const std::array<std::pair<BankStart, const char*>, 3> starts{{{BankStart::structured, "the paper's start"},
+                                                                 {BankStart::nguyen_widrow, "Nguyen-Widrow"},
+                                                                 {BankStart::xavier, "Xavier"}}};
+  for (std::size_t k = 0; k < starts.size(); ++k) {
+    const auto on_share = [&](double share) {
+      progress("convergence", (static_cast<double>(k) + share) / static_cast<double>(starts.size()));
+    };
+    found.convergence.push_back(
+        descend(training, starts[k].first, starts[k].second, effort.convergence_steps, on_share));
+    if (!std::isfinite(found.convergence.back().value.back())) return failed("gradient descent of the bank diverged");
+  }
+  return Done{};
+}
+
 }  // namespace
 
 ArrayDescription paper_array(std::size_t rows, std::size_t cols) {
@@ -152,27 +178,13 @@ Status reproduce_bank(const ArrayDescription& array, const BankEffort& effort,
   Result<BankTraining> training = BankTraining::create(*database, kBankSeed);
   if (!training) return training.error();
   found.unknowns = training->bank().networks().parameter_count();
-  const std::array<std::pair<BankStart, const char*>, 3> starts{{{BankStart::structured, "the paper's start"},
-                                                                 {BankStart::nguyen_widrow, "Nguyen-Widrow"},
-                                                                 {BankStart::xavier, "Xavier"}}};
-  for (std::size_t k = 0; k < starts.size(); ++k) {
-    const auto on_share = [&](double share) {
-      progress("convergence", (static_cast<double>(k) + share) / static_cast<double>(starts.size()));
-    };
-    found.convergence.push_back(
-        descend(*training, starts[k].first, starts[k].second, effort.convergence_steps, on_share));
-    if (!std::isfinite(found.convergence.back().value.back())) return failed("gradient descent of the bank diverged");
-  }
+  if (Status descended = descend_from_each_start(*training, effort, progress, found); !descended) return descended;
 
   Result<TrainedBank> trained = train_paper_bank(
       *database,
       {.steps = effort.training_steps, .seed = kBankSeed, .progress = [&](double share) { progress("bank", share); }});
   if (!trained) return trained.error();
-  found.bank_training.name = "Adam from the paper's start";
-  for (std::size_t k = 0; k < trained->report.curve.size(); ++k) {
-    found.bank_training.step.push_back(static_cast<double>(k + 1));
-    found.bank_training.value.push_back(trained->report.curve[k]);
-  }
+  note_curve(trained->report.curve, found.bank_training);
   found.bank_samples = database->samples.size();
   found.own_samples = static_cast<std::size_t>(
       std::count_if(database->samples.begin(), database->samples.end(),

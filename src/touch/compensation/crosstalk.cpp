@@ -146,7 +146,9 @@ void Compensator::forget() noexcept {
   faults_->forget();
 }
 
-void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept {
+namespace {
+
+void begin_frame(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept {
   conductance.time = conditioned.time;
   conductance.status = conditioned.status;
   conductance.temperature_celsius = conditioned.temperature_celsius;
@@ -154,10 +156,16 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
   conductance.taxels = conditioned.taxels;
   conductance.siemens.resize(conditioned.ratio.size());
   conductance.sigma_siemens.resize(conditioned.ratio.size());
-  prepare_errors(conditioned.ratio.size(), conductance.errors);
-  conductance.errors.shared_noise = conditioned.shared_noise;
   conductance.residual_sigma = 0.0;
   std::fill(conductance.siemens.begin(), conductance.siemens.end(), 0.0);
+}
+
+}  // namespace
+
+void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept {
+  begin_frame(conditioned, conductance);
+  prepare_errors(conditioned.ratio.size(), conductance.errors);
+  conductance.errors.shared_noise = conditioned.shared_noise;
   if (has(conditioned.status, FrameStatus::rejected)) {
     std::fill(conductance.sigma_siemens.begin(), conductance.sigma_siemens.end(), 0.0);
     return;

@@ -225,8 +225,7 @@ Status validate_supply_ohm(const Readout& readout) {
   return validate_resistors("supply_ohm", {*readout.supply_ohm}, 1, true);
 }
 
-Status validate_readout(const ArrayDescription& array) {
-  const Readout& readout = array.readout;
+Status validate_converter(const Readout& readout) {
   if (readout.adc_bits < 1 || readout.adc_bits > kMaxAdcBits) {
     return bad_input("readout.adc_bits: must be 1 to " + std::to_string(kMaxAdcBits));
   }
@@ -246,6 +245,12 @@ Status validate_readout(const ArrayDescription& array) {
   if (!(readout.drive_error_correlation >= 0.0 && readout.drive_error_correlation <= 1.0)) {
     return bad_input("readout.drive_error_correlation: must be 0 to 1");
   }
+  return Done{};
+}
+
+Status validate_readout(const ArrayDescription& array) {
+  const Readout& readout = array.readout;
+  if (Status valid = validate_converter(readout); !valid) return valid;
   if (Status valid = validate_calibrated(array); !valid) return valid;
   if (Status valid = validate_adc_errors(readout); !valid) return valid;
   if (Status valid = validate_supply_ohm(readout); !valid) return valid;

@@ -57,6 +57,16 @@ HWY_INLINE hn::Vec<D> moved_stops(D d, const MemoryStep& step, float* states, hn
   return share;
 }
 
+/// The standard deviation of what is freed: a lasting part grows with it, noise passes by `by_noise`.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V freed_sigma(D d, V sigma, V noise, V growth, V by_noise) {
+  const auto lasting = hn::Max(hn::MulSub(sigma, sigma, hn::Mul(noise, noise)), hn::Zero(d));
+  const auto noise_now = hn::Mul(noise, by_noise);
+  const auto variance = hn::MulAdd(hn::Mul(growth, growth), lasting, hn::Mul(noise_now, noise_now));
+  const auto least = hn::Set(d, std::numeric_limits<float>::min());
+  return hn::Max(hn::Sqrt(variance), least);
+}
+
 template <class D>
 HWY_INLINE void step_lanes(D d, const MemoryStep& step, std::size_t first, float* newtons) {
   float* const states = step.states.data() + first / kTile * kTile * kStates + first % kTile;
@@ -90,13 +100,9 @@ HWY_INLINE void step_lanes(D d, const MemoryStep& step, std::size_t first, float
   float* const sigma_newtons = step.sigma_newtons.data() + first;
   const auto sigma = hn::LoadU(d, sigma_newtons);
   const auto noise = hn::LoadU(d, step.noise_newtons.data() + first);
-  const auto lasting = hn::Max(hn::MulSub(sigma, sigma, hn::Mul(noise, noise)), hn::Zero(d));
   const auto growth = hn::Max(hn::IfThenElse(hn::Gt(material, hn::Zero(d)), hn::Div(freed, material), one), one);
   const auto by_noise = hn::Mul(share, gain);
-  const auto noise_now = hn::Mul(noise, by_noise);
-  const auto variance = hn::MulAdd(hn::Mul(growth, growth), lasting, hn::Mul(noise_now, noise_now));
-  const auto least = hn::Set(d, std::numeric_limits<float>::min());
-  hn::StoreU(hn::IfThenElse(is_known, hn::Max(hn::Sqrt(variance), least), sigma), d, sigma_newtons);
+  hn::StoreU(hn::IfThenElse(is_known, freed_sigma(d, sigma, noise, growth, by_noise), sigma), d, sigma_newtons);
   if (step.sums != nullptr) free_sums(d, *step.sums, first, late, by_noise, growth);
 }
 

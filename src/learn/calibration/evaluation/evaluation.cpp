@@ -45,6 +45,71 @@ double judged_from(const touch::pipeline::Model& model, const LoadsOfFrames& loa
   return std::max(kJudgedShare * heaviest_of(model.array, loads_of), static_cast<double>(least));
 }
 
+Status check_further(const touch::pipeline::Model& model, const FurtherEstimator* further) {
+  if (further == nullptr || further->taxel_count() == model.array.taxel_count()) return Done{};
+  return bad_input(fmt::format("{} is for {} taxels, the model for {}", further->name(), further->taxel_count(),
+                               model.array.taxel_count()));
+}
+
+std::size_t labelled_frames(const LoadsOfFrames& loads_of) {
+  std::size_t labelled = 0;
+  for (std::size_t frame = 0; frame < loads_of.frame_count(); ++frame) labelled += loads_of[frame].empty() ? 0 : 1;
+  return labelled;
+}
+
+/// The estimators side by side, and what their answers are counted for.
+class Judges {
+ public:
+  Judges(const touch::pipeline::Model& model, const LoadsOfFrames& loads_of, EstimatorRow row)
+      : array_(model.array),
+        loads_of_(loads_of),
+        row_(std::move(row)),
+        judgement_(row_.names().size(), model.array.taxel_count()),
+        bound_(model, labelled_frames(loads_of)),
+        troubles_(model.array, "") {}
+
+  void judge(std::size_t frame, const RawFrame& raw, Evaluation& evaluation) {
+    const bool accepted = row_.run(raw);
+    troubles_.add(raw, row_.force(), row_.pipeline());
+    if (loads_of_[frame].empty()) return;
+    ++(accepted ? evaluation.frames : evaluation.frames_rejected);
+    if (!accepted) return;
+    Sample truth;
+    expand_loads(array_, loads_of_[frame], truth);
+    judgement_.add(frame, raw, truth, row_);
+    examples_.offer(frame, truth, row_);
+    sums_.add(truth, row_.force());
+    bound_.offer(truth, row_);
+  }
+
+  [[nodiscard]] Status verdict() const { return troubles_.verdict(); }
+
+  void finish(const FurtherEstimator* further, Evaluation& evaluation) {
+    for (std::size_t k = 0; k < row_.names().size(); ++k) {
+      evaluation.estimators.push_back(judgement_.result(k, row_.names()[k]));
+    }
+    if (further != nullptr) evaluation.estimators.back().description = further->description();
+    evaluation.taxels = std::move(judgement_.taxels);
+    evaluation.totals = std::move(judgement_.totals);
+    evaluation.after_release = judgement_.after_release.bins();
+    evaluation.bound = bound_.comparison();
+    evaluation.coverage = coverage_of(evaluation.taxels);
+    evaluation.sums = sums_.errors();
+    evaluation.examples = std::move(examples_).chosen();
+    break_down(evaluation);
+  }
+
+ private:
+  const ArrayDescription& array_;
+  const LoadsOfFrames& loads_of_;
+  EstimatorRow row_;
+  Judgement judgement_;
+  ExampleChoice examples_;
+  SumJudgement sums_;
+  BoundCollector bound_;
+  touch::pipeline::FrameTroubles troubles_;
+};
+
 }  // namespace
 
 Result<Evaluation> evaluate(const touch::pipeline::Model& model, std::span<const RawFrame> frames,
@@ -53,56 +118,20 @@ Result<Evaluation> evaluate(const touch::pipeline::Model& model, std::span<const
   if (const auto turn = check_labels(model.array, frames, loads, {}).turn) return bad_input(*turn);
   Result<touch::pipeline::Pipeline> pipeline = touch::pipeline::Pipeline::create(model);
   if (!pipeline) return pipeline.error();
-  if (further != nullptr && further->taxel_count() != model.array.taxel_count()) {
-    return bad_input(fmt::format("{} is for {} taxels, the model for {}", further->name(), further->taxel_count(),
-                                 model.array.taxel_count()));
-  }
+  if (Status checked = check_further(model, further); !checked) return checked.error();
 
   Evaluation evaluation;
   evaluation.array = model.array;
   const LoadsOfFrames loads_of(loads, frames.size());
-  EstimatorRow row(model, std::move(*pipeline), further, judged_from(model, loads_of));
-  evaluation.judged_from_n = row.judged_from_n();
-  Judgement judgement(row.names().size(), model.array.taxel_count());
-  ExampleChoice examples;
-  SumJudgement sums;
-  std::size_t labelled = 0;
-  for (std::size_t frame = 0; frame < frames.size(); ++frame) labelled += loads_of[frame].empty() ? 0 : 1;
-  BoundCollector bound(model, labelled);
-  touch::pipeline::FrameTroubles troubles(model.array, "");
-  for (std::size_t frame = 0; frame < frames.size(); ++frame) {
-    const bool accepted = row.run(frames[frame]);
-    troubles.add(frames[frame], row.force(), row.pipeline());
-    if (loads_of[frame].empty()) continue;
-    if (!accepted) {
-      ++evaluation.frames_rejected;
-      continue;
-    }
-    ++evaluation.frames;
-    Sample truth;
-    expand_loads(model.array, loads_of[frame], truth);
-    judgement.add(frame, frames[frame], truth, row);
-    examples.offer(frame, truth, row);
-    sums.add(truth, row.force());
-    bound.offer(truth, row);
-  }
-  evaluation.most_have_forces = troubles.verdict();
+  evaluation.judged_from_n = judged_from(model, loads_of);
+  Judges judges(model, loads_of, EstimatorRow(model, std::move(*pipeline), further, evaluation.judged_from_n));
+  for (std::size_t frame = 0; frame < frames.size(); ++frame) judges.judge(frame, frames[frame], evaluation);
+  evaluation.most_have_forces = judges.verdict();
   if (evaluation.frames == 0) {
     if (!evaluation.most_have_forces) return evaluation.most_have_forces.error();
     return bad_input("no labelled frame fits the model's array");
   }
-  for (std::size_t k = 0; k < row.names().size(); ++k) {
-    evaluation.estimators.push_back(judgement.result(k, row.names()[k]));
-  }
-  if (further != nullptr) evaluation.estimators.back().description = further->description();
-  evaluation.taxels = std::move(judgement.taxels);
-  evaluation.totals = std::move(judgement.totals);
-  evaluation.after_release = judgement.after_release.bins();
-  evaluation.bound = bound.comparison();
-  evaluation.coverage = coverage_of(evaluation.taxels);
-  evaluation.sums = sums.errors();
-  evaluation.examples = std::move(examples).chosen();
-  break_down(evaluation);
+  judges.finish(further, evaluation);
   return evaluation;
 }
 

@@ -12,20 +12,14 @@
 #include <optional>
 #include <utility>
 
-#include "dermis/learn/calibration/calibrate.hpp"
 #include "dermis/learn/calibration/parallel.hpp"
 #include "dermis/touch/compensation/crosstalk.hpp"
 #include "dermis/touch/frames/quantile.hpp"
 #include "dermis/touch/preprocessing/conditioner.hpp"
 #include "dermis/touch/preprocessing/missing_readings.hpp"
 #include "dermis/touch/preprocessing/phase.hpp"
-#include "learn/calibration/circuit_fit/circuit_trial.hpp"
-#include "learn/calibration/instrument/instrument_judgement.hpp"
-#include "learn/calibration/labels/flicker.hpp"
-#include "learn/calibration/labels/label_check.hpp"
 #include "learn/calibration/labels/labels.hpp"
-#include "learn/calibration/labels/rail_search.hpp"
-#include "learn/calibration/labels/reading_check.hpp"
+#include "learn/calibration/samples/inverted_frames.hpp"
 #include "learn/calibration/samples/sample_choice.hpp"
 
 namespace dermis::learn::calibration {
@@ -215,21 +209,8 @@ std::optional<std::string> leave_out_flickering(std::span<const RawFrame> frames
                      fmt::join(names, ", "), taxels.size() == 1 ? "s" : "");
 }
 
-/// Those of the frames that become samples: no more are kept in memory.
-std::vector<Load> loads_of_samples(std::size_t taxels, std::span<const Load> loads, std::size_t frame_count) {
-  const std::vector<bool> is_chosen = choose_samples(taxels, LoadsOfFrames(loads, frame_count));
-  std::vector<Load> chosen;
-  std::copy_if(loads.begin(), loads.end(), std::back_inserter(chosen),
-               [&](const Load& load) { return is_chosen[load.frame]; });
-  return chosen;
-}
+}  // namespace
 
-bool has_floating_lines(const Readout& readout) {
-  if (readout.circuit != Circuit::divider) return false;
-  return readout.idle_rows == IdleRows::floating || readout.idle_columns == IdleColumns::floating;
-}
-
-/// The samples of an array whose circuit is known.
 Result<SampleDatabase> invert_frames(const ArrayDescription& array, std::span<const RawFrame> frames,
                                      std::span<const Load> loads, Nanos settle_time,
                                      const std::vector<std::string>& doubts,
@@ -262,75 +243,6 @@ Result<SampleDatabase> invert_frames(const ArrayDescription& array, std::span<co
   reject_without_temperature(database);
   if (Status checked = check_rejected(database, selection.missing()); !checked) return checked.error();
   if (Status checked = check_missing(database, selection.missing()); !checked) return checked.error();
-  return database;
-}
-
-/// A whole calibration of an array whose circuit is known.
-std::optional<touch::pipeline::Model> train(const ArrayDescription& array, std::span<const RawFrame> frames,
-                                            std::span<const Load> loads, Nanos settle_time) {
-  const Result<SampleDatabase> database = invert_frames(array, frames, loads, settle_time, {}, {});
-  if (!database) return std::nullopt;
-  Result<Calibration> calibration = calibrate(*database, frames);
-  return calibration ? std::optional(std::move(calibration->model)) : std::nullopt;
-}
-
-}  // namespace
-
-Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std::span<const RawFrame> frames,
-                                             std::span<const Load> loads, Nanos settle_time,
-                                             const std::function<void(double)>& progress) {
-  if (Status checked = check_loads(array, frames.size(), loads); !checked) return checked.error();
-  if (Status checked = check_readings(array, frames, loads); !checked) return checked.error();
-  ArrayDescription known = array;
-  std::optional<std::string> flickering = leave_out_flickering(frames, loads, known);
-  LabelCheck labels = check_labels(known, frames, loads, settle_time);
-  if (labels.turn) return bad_input(*labels.turn);
-  if (flickering) labels.remarks.insert(labels.remarks.begin(), *std::move(flickering));
-  std::vector<Load> kept;
-  if (!labels.pressed_frames.empty()) {
-    std::copy_if(loads.begin(), loads.end(), std::back_inserter(kept),
-                 [&](const Load& load) { return !labels.is_pressed(load.frame); });
-    loads = kept;
-  }
-  if (!known.readout.rail_counts) known.readout.rail_counts = find_rail(known, frames, loads);
-  if (!array.readout.rail_counts && known.readout.rail_counts) {
-    labels.remarks.push_back(
-        fmt::format("readings end at {} counts under whatever load: taken for saturated there (rail_counts)",
-                    *known.readout.rail_counts));
-  }
-  const std::vector<Load> chosen = loads_of_samples(array.taxel_count(), loads, frames.size());
-  InstrumentFit settling = fit_settling(known, frames, chosen);
-  labels.remarks.insert(labels.remarks.end(), settling.statements.begin(), settling.statements.end());
-  const bool asks = asks_for_instrument(settling.array.readout);
-  known = without_unknown_instrument(std::move(settling.array));
-  std::optional<CircuitFit> circuit;
-  if (known.has_unknown_circuit() || has_floating_lines(array.readout)) {
-    Result<CircuitFit> fit = fit_circuit(known, frames, loads, settle_time);
-    if (!fit) return fit.error();
-    known = fit->array;
-    if (!fit->statements.empty()) circuit = std::move(*fit);
-  }
-  const Trainable trainable{frames, chosen, settle_time, [&](const auto& described, std::span<const Load> kept) {
-                              return train(described, frames, kept, settle_time);
-                            }};
-  InstrumentFit instrument = judge_instrument(known, trainable, asks);
-  labels.remarks.insert(labels.remarks.end(), instrument.statements.begin(), instrument.statements.end());
-  known = instrument.array;
-  if (array.readout.circuit != Circuit::automatic) doubt_circuit(trainable, instrument);
-  Result<SampleDatabase> database =
-      invert_frames(instrument.array, frames, loads, settle_time, instrument.doubts, progress);
-  if (!database && array.readout.circuit == Circuit::automatic && known.readout.circuit != Circuit::none) {
-    circuit->statements.push_back("the circuit that was found does not do: " + database.error().message +
-                                  "; readings are taken as they are");
-    circuit->array = without_circuit(known);
-    instrument.array = circuit->array;
-    database = invert_frames(instrument.array, frames, loads, settle_time, instrument.doubts, progress);
-  }
-  if (!database) return database.error();
-  database->lacks_proof = instrument.lacks_proof;
-  database->unexplained_share = instrument.unexplained;
-  database->circuit_fit = std::move(circuit);
-  std::move(labels.remarks.begin(), labels.remarks.end(), std::back_inserter(database->remarks));
   return database;
 }
 

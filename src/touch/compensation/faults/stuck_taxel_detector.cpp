@@ -101,19 +101,19 @@ DERMIS_PROCESSOR_CLONES bool StuckTaxelDetector::count_repetitions(const Observa
     idle += is_interior & is_idle;
     idle_repeated += is_repeated & is_idle;
     const double added = evidence[taxel] + chance;
-    const double sum = (is_repeated & is_pressed & is_below_rail) != 0 ? added : 0.0;
-    evidence[taxel] = sum;
-    any_decides |= sum >= kEvidence ? 1 : 0;
+    evidence[taxel] = (is_repeated & is_pressed & is_below_rail) != 0 ? added : 0.0;
+    any_decides |= evidence[taxel] >= kEvidence ? 1 : 0;
     const std::int64_t in_a_row = is_repeated != 0 ? repetitions[taxel] + 1 : 0;
     repetitions[taxel] = in_a_row;
-    const std::int64_t of_idle = is_idle != 0 ? in_a_row : 0;
-    idle_repetitions = of_idle > idle_repetitions ? of_idle : idle_repetitions;
+    idle_repetitions = std::max(idle_repetitions, is_idle != 0 ? in_a_row : 0);
   }
   idle_repetitions_ = std::max(kFades * idle_repetitions_, static_cast<double>(idle_repetitions));
-  const double share = static_cast<double>(idle_repeated) / static_cast<double>(idle);
-  chance_ = idle < kLeastOthers ? 0.0 : -std::log(std::max(repeats_by_noise_, share));
-  chance_ = std::min(chance_, static_cast<double>(kMostForTaxel));
+  chance_ = idle < kLeastOthers ? 0.0 : chance_of_share(static_cast<double>(idle_repeated) / static_cast<double>(idle));
   return any_decides != 0;
+}
+
+double StuckTaxelDetector::chance_of_share(double share) const noexcept {
+  return std::min(-std::log(std::max(repeats_by_noise_, share)), static_cast<double>(kMostForTaxel));
 }
 
 void StuckTaxelDetector::find(const Observation& seen, const TaxelBlock& block, FaultList& faults) noexcept {

@@ -34,6 +34,7 @@ class StuckTaxelDetector {
   void heal(const Observation& seen, const CountScale& scale, const TaxelBlock& block, FaultList& faults) noexcept;
   [[nodiscard]] bool count_repetitions(const Observation& seen, const CountScale& scale,
                                        const TaxelBlock& block) noexcept;
+  [[nodiscard]] double chance_of_share(double share) const noexcept;
   void find(const Observation& seen, const TaxelBlock& block, FaultList& faults) noexcept;
 
   const Readout& readout_;

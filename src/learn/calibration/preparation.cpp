@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "learn/calibration/preparation.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "dermis/learn/calibration/calibrate.hpp"
+#include "learn/calibration/circuit_fit/circuit_trial.hpp"
+#include "learn/calibration/labels/flicker.hpp"
+#include "learn/calibration/labels/label_check.hpp"
+#include "learn/calibration/labels/labels.hpp"
+#include "learn/calibration/labels/rail_search.hpp"
+#include "learn/calibration/labels/reading_check.hpp"
+#include "learn/calibration/samples/inverted_frames.hpp"
+#include "learn/calibration/samples/sample_choice.hpp"
+
+namespace dermis::learn::calibration {
+namespace {
+
+/// Those of the frames that become samples: no more are kept in memory.
+std::vector<Load> loads_of_samples(std::size_t taxels, std::span<const Load> loads, std::size_t frame_count) {
+  const std::vector<bool> is_chosen = choose_samples(taxels, LoadsOfFrames(loads, frame_count));
+  std::vector<Load> chosen;
+  std::copy_if(loads.begin(), loads.end(), std::back_inserter(chosen),
+               [&](const Load& load) { return is_chosen[load.frame]; });
+  return chosen;
+}
+
+bool has_floating_lines(const Readout& readout) {
+  if (readout.circuit != Circuit::divider) return false;
+  return readout.idle_rows == IdleRows::floating || readout.idle_columns == IdleColumns::floating;
+}
+
+/// A whole calibration of an array whose circuit is known.
+std::optional<touch::pipeline::Model> train(const ArrayDescription& array, std::span<const RawFrame> frames,
+                                            std::span<const Load> loads, Nanos settle_time) {
+  const Result<SampleDatabase> database = invert_frames(array, frames, loads, settle_time, {}, {});
+  if (!database) return std::nullopt;
+  Result<Calibration> calibration = calibrate(*database, frames);
+  return calibration ? std::optional(std::move(calibration->model)) : std::nullopt;
+}
+
+void append(std::vector<std::string>& all, const std::vector<std::string>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+Preparation::Preparation(const ArrayDescription& array, std::span<const RawFrame> frames, std::span<const Load> loads,
+                         Nanos settle_time)
+    : described_(array), frames_(frames), loads_(loads), settle_time_(settle_time), known_(array) {}
+
+Status Preparation::check_labels() {
+  if (Status checked = check_loads(described_, frames_.size(), loads_); !checked) return checked;
+  if (Status checked = check_readings(described_, frames_, loads_); !checked) return checked;
+  if (auto flickering = leave_out_flickering(frames_, loads_, known_)) remarks_.push_back(*std::move(flickering));
+  const LabelCheck labels = calibration::check_labels(known_, frames_, loads_, settle_time_);
+  if (labels.turn) return bad_input(*labels.turn);
+  append(remarks_, labels.remarks);
+  if (labels.pressed_frames.empty()) return Done{};
+  std::copy_if(loads_.begin(), loads_.end(), std::back_inserter(kept_),
+               [&](const Load& load) { return !labels.is_pressed(load.frame); });
+  loads_ = kept_;
+  return Done{};
+}
+
+void Preparation::find_rail() {
+  if (known_.readout.rail_counts) return;
+  known_.readout.rail_counts = calibration::find_rail(known_, frames_, loads_);
+  if (!known_.readout.rail_counts) return;
+  remarks_.push_back(
+      fmt::format("readings end at {} counts under whatever load: taken for saturated there (rail_counts)",
+                  *known_.readout.rail_counts));
+}
+
+void Preparation::find_settling() {
+  chosen_ = loads_of_samples(described_.taxel_count(), loads_, frames_.size());
+  InstrumentFit settling = fit_settling(known_, frames_, chosen_);
+  append(remarks_, settling.statements);
+  asks_for_instrument_ = calibration::asks_for_instrument(settling.array.readout);
+  known_ = without_unknown_instrument(std::move(settling.array));
+}
+
+Status Preparation::find_circuit() {
+  if (!known_.has_unknown_circuit() && !has_floating_lines(described_.readout)) return Done{};
+  Result<CircuitFit> fit = fit_circuit(known_, frames_, loads_, settle_time_);
+  if (!fit) return fit.error();
+  known_ = fit->array;
+  if (!fit->statements.empty()) circuit_ = *std::move(fit);
+  return Done{};
+}
+
+Trainable Preparation::trainable() const {
+  return {frames_, chosen_, settle_time_, [this](const ArrayDescription& array, std::span<const Load> kept) {
+            return train(array, frames_, kept, settle_time_);
+          }};
+}
+
+void Preparation::judge_instrument() {
+  instrument_ = calibration::judge_instrument(known_, trainable(), asks_for_instrument_);
+  append(remarks_, instrument_.statements);
+  known_ = instrument_.array;
+}
+
+void Preparation::doubt_circuit() {
+  if (described_.readout.circuit != Circuit::automatic) calibration::doubt_circuit(trainable(), instrument_);
+}
+
+Result<SampleDatabase> Preparation::invert(const std::function<void(double)>& progress) {
+  const auto invert_as_found = [&] {
+    return invert_frames(instrument_.array, frames_, loads_, settle_time_, instrument_.doubts, progress);
+  };
+  Result<SampleDatabase> database = invert_as_found();
+  if (!database && described_.readout.circuit == Circuit::automatic && known_.readout.circuit != Circuit::none) {
+    circuit_->statements.push_back("the circuit that was found does not do: " + database.error().message +
+                                   "; readings are taken as they are");
+    circuit_->array = without_circuit(known_);
+    instrument_.array = circuit_->array;
+    database = invert_as_found();
+  }
+  if (!database) return database;
+  database->lacks_proof = instrument_.lacks_proof;
+  database->unexplained_share = instrument_.unexplained;
+  database->circuit_fit = std::move(circuit_);
+  std::move(remarks_.begin(), remarks_.end(), std::back_inserter(database->remarks));
+  return database;
+}
+
+}  // namespace dermis::learn::calibration
