@@ -3,6 +3,7 @@
 #include "learn/calibration/preparation.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <iterator>
@@ -28,6 +29,20 @@ std::vector<Load> loads_of_samples(std::size_t taxels, std::span<const Load> loa
   std::copy_if(loads.begin(), loads.end(), std::back_inserter(chosen),
                [&](const Load& load) { return is_chosen[load.frame]; });
   return chosen;
+}
+
+/// Takes the taxels that flicker for ones that the sheet does not have: their readings would make those of their lines
+/// impossible.
+std::optional<std::string> leave_out_flickering(std::span<const RawFrame> frames, std::span<const Load> loads,
+                                                ArrayDescription& array) {
+  const std::vector<std::size_t> taxels = find_flickering_taxels(array, frames, loads);
+  if (taxels.empty()) return std::nullopt;
+  std::vector<std::string> names;
+  for (const std::size_t taxel : taxels) names.push_back(array.taxel_name(taxel));
+  array.absent.insert(array.absent.end(), taxels.begin(), taxels.end());
+  std::sort(array.absent.begin(), array.absent.end());
+  return fmt::format("{} flicker{} while nothing presses: left out as if absent; check the contact",
+                     fmt::join(names, ", "), taxels.size() == 1 ? "s" : "");
 }
 
 bool has_floating_lines(const Readout& readout) {

@@ -195,20 +195,6 @@ std::optional<std::string> remark_on_choice(const LoadsOfFrames& loads_of, const
   return fmt::format("{} labelled frames repeat: {} of them are used, evenly over places and forces", labelled, chosen);
 }
 
-/// Takes the taxels that flicker for ones that the sheet does not have: their readings would make those of their lines
-/// impossible.
-std::optional<std::string> leave_out_flickering(std::span<const RawFrame> frames, std::span<const Load> loads,
-                                                ArrayDescription& array) {
-  const std::vector<std::size_t> taxels = find_flickering_taxels(array, frames, loads);
-  if (taxels.empty()) return std::nullopt;
-  std::vector<std::string> names;
-  for (const std::size_t taxel : taxels) names.push_back(array.taxel_name(taxel));
-  array.absent.insert(array.absent.end(), taxels.begin(), taxels.end());
-  std::sort(array.absent.begin(), array.absent.end());
-  return fmt::format("{} flicker{} while nothing presses: left out as if absent; check the contact",
-                     fmt::join(names, ", "), taxels.size() == 1 ? "s" : "");
-}
-
 }  // namespace
 
 Result<SampleDatabase> invert_frames(const ArrayDescription& array, std::span<const RawFrame> frames,
