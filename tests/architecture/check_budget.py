@@ -45,7 +45,7 @@ def line_counts(project, sources):
 
 
 def functions(project, sources):
-    """(path, name, lines) of each."""
+    """(path, name, lines) of each that has a name."""
     tags = subprocess.run(
         ["ctags", "--fields=+ne", "--output-format=json", *KINDS, "-L", "-", "-f", "-"],
         cwd=project,
@@ -55,7 +55,7 @@ def functions(project, sources):
         text=True,
     ).stdout
     for tag in map(json.loads, tags.splitlines()):
-        if "end" in tag:
+        if "end" in tag and not tag["name"].startswith("__anon"):
             yield tag["path"], tag["name"], tag["end"] - tag["line"] + 1
 
 

@@ -104,9 +104,9 @@ TRACES = {
 }
 # What a bare Debian has, with make, git and sudo, and what bash is made of.
 BARE = set(
-    """apt-config apt-get bash case cat cd cmp command cp date declare dirname do done dpkg-query echo env esac
-exec exit export fi find flock for git grep id if install ldd local ls make mkdir mktemp mount nproc printf return rm
-sed set sh sudo tail tar then touch trap umount while xargs""".split()
+    """apt-config apt-get bash case cat cd cmp command cp date declare dirname do done dpkg-query echo elif else env
+esac exec exit export fi find flock for git grep id if install ldd local ls make mkdir mktemp mount nproc printf
+return rm sed set sh sudo tail tar then touch trap umount while xargs""".split()
 )
 # Our own package and what makes its wheel, what ROS 2 brings to a launch file, and what tests/requirements.txt names.
 MODULES_OF_OTHERS = {

@@ -39,7 +39,7 @@ class ConstantPackets final : public MarkChainDecoder {
   struct Form {
     Form(const Layout& of_packets, const PacketLayout::Packet& packet, std::size_t array);
 
-    Layout layout;  ///< Of that packet without the mark, which may be damaged.
+    Layout layout;  ///< That packet without the mark, which may be damaged.
     std::size_t size;
     PacketMatch match;
     FrameFields fields;

@@ -17,7 +17,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// What the tests need to know of a protocol; one that is not in the table has the defaults, and the shape of its
+/// Facts of a protocol for the tests; one that is not in the table has the defaults, and the shape of its
 /// devices.
 struct Traits {
   FrameShape shape = {16, 32};
