@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
-"""`dermis recognise learn --in`: recordings become classes, by the forces of a model or by tared readings, which `dermis
-recognise` names in other recordings."""
+"""`dermis recognise learn --in`: recordings become classes, by the forces of a model or by tared readings, which
+`dermis recognise` names in other recordings."""
 
 import bisect
 import csv

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
-"""`dermis recognise learn`: a data set in plain files becomes classes and predictions; what cannot be learned gives one line.
-`dermis recognise` names what it has learned."""
+"""`dermis recognise learn`: a data set in plain files becomes classes and predictions; what cannot be learned gives one
+line. `dermis recognise` names what it has learned."""
 
 import csv
 import io

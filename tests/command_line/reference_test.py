@@ -22,10 +22,9 @@ LINT_OF_NO_DATE = re.compile(r".*WARNING: missing date, using \"\": TH")  # buil
 
 def commands_of(*command):
     """Names below the headings of commands in the help of a command."""
-    _, _, named = re.split(
-        r"^(Subcommands|A calibrated array):$", dermis(*command, "--help").stdout + "\nSubcommands:\n", 1, re.M
-    )
-    return HELP_COMMAND.findall(named)
+    heading = re.compile(r"^(?:Subcommands|A calibrated array):$", re.MULTILINE)
+    _, *named = heading.split(dermis(*command, "--help").stdout, maxsplit=1)
+    return HELP_COMMAND.findall(named[0]) if named else []
 
 
 def options_of(*command):

@@ -361,8 +361,8 @@ class Recognition:
         """First and last of those that were given, from 0."""
 
 class Recogniser:
-    """Names poses and gestures by the classes of `dermis recognise learn --model`, from forces (docs/recognition.md). rate_hz:
-    frames a second; that of the examples where it is None. Frames of a tare are better left out."""
+    """Names poses and gestures by the classes of `dermis recognise learn --model`, from forces (docs/recognition.md).
+    rate_hz: frames a second; that of the examples where it is None. Frames of a tare are better left out."""
 
     def __init__(self, classes: _Path, model: Model, *, rate_hz: float | None = None) -> None: ...
     def process(self, force: ForceFrame) -> Recognition | None:

@@ -14,9 +14,9 @@
 #include <utility>
 
 #include "dermis/bytes/files/text.hpp"
+#include "dermis/learn/calibration/parallel.hpp"
 #include "dermis/out/datasets/step_plan.hpp"
 #include "out/datasets/array_steps.hpp"
-#include "out/datasets/in_parallel.hpp"
 #include "out/datasets/recorded_arrays.hpp"
 #include "out/datasets/robot_series.hpp"
 
@@ -210,7 +210,7 @@ Status Maker::write_steps(std::span<const Nanos> times) {
     while (begin < columns_.size() && columns_[begin].array == array.name) ++begin;
   }
   begins.push_back(begin);
-  in_parallel(steps_.size(), [&](std::size_t k) {
+  learn::calibration::parallel_for(steps_.size(), [&](std::size_t k) {
     steps_[k].work(times, std::span(block_.values).subspan(begins[k], begins[k + 1] - begins[k]));
   });
   if (times.empty()) return Done{};

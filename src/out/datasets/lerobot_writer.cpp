@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "dermis/learn/calibration/parallel.hpp"
 #include "out/datasets/column_statistics.hpp"
 #include "out/datasets/dataset_writers.hpp"
-#include "out/datasets/in_parallel.hpp"
 #include "out/datasets/lerobot_tables.hpp"
 
 // The layout of LeRobot 0.4: "v3.0".
@@ -98,7 +98,7 @@ class LeRobotWriter final : public EpisodeSink {
     for (const std::span<const std::byte> column : values) {
       if (Status sent = tables_->send(column); !sent) return sent;
     }
-    in_parallel(columns_.size(), [&](std::size_t k) { of_episode_[k].add(values[k]); });
+    learn::calibration::parallel_for(columns_.size(), [&](std::size_t k) { of_episode_[k].add(values[k]); });
     steps_of_episode_ += block.steps;
     return Done{};
   }

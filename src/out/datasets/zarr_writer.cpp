@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "dermis/learn/calibration/parallel.hpp"
 #include "out/datasets/dataset_writers.hpp"
-#include "out/datasets/in_parallel.hpp"
 #include "out/datasets/zstd.hpp"
 
 namespace dermis::out::datasets {
@@ -134,7 +134,7 @@ class ZarrWriter final : public EpisodeSink {
   template <typename Work>
   [[nodiscard]] Status for_each(Work work) {
     std::vector<Status> done(columns_.size(), Done{});
-    in_parallel(columns_.size(), [&](std::size_t k) { done[k] = work(k); });
+    learn::calibration::parallel_for(columns_.size(), [&](std::size_t k) { done[k] = work(k); });
     const auto failure = std::find_if(done.begin(), done.end(), [](const Status& status) { return !status; });
     return failure == done.end() ? Status(Done{}) : *failure;
   }
