@@ -59,9 +59,9 @@ void add_evaluate(Command& command) {
   auto options = std::make_shared<EvaluateOptions>();
   add_force_evaluation(command, options->forces);
   add_left_out_evaluation(command, options->left_out);
-  command.input_file(
-      "--classes", options->classes,
-      "Judge the classes of 'dermis recognise learn', not forces, on labelled examples: --in, or --frames of tared frames.npy");
+  command.input_file("--classes", options->classes,
+                     "Judge the classes of 'dermis recognise learn', not forces, on labelled examples: --in, or "
+                     "--frames of tared frames.npy");
   add_example_options(command, options->examples);
   command.option("--rate", options->examples.data.rate_hz,
                  "Frames a second, if they differ from those of the examples [Hz]");

@@ -116,7 +116,8 @@ class Hdf5Output {
  public:
   [[nodiscard]] static Result<Hdf5Output> create(const std::string& path);
 
-  /// An empty dataset whose first dimension grows; chunks of `frames_per_chunk` along it, shuffled and deflated where packed.
+  /// An empty dataset whose first dimension grows; chunks of `frames_per_chunk` along it, shuffled and deflated where
+  /// packed.
   [[nodiscard]] Hdf5Id create_dataset(const char* name, hid_t file_type, const Hdf5Sizes& other_sizes,
                                       hsize_t frames_per_chunk, Hdf5Packing packing = Hdf5Packing::deflated) const;
   /// An attribute of the file ("/"), a group or a dataset.

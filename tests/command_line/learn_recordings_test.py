@@ -153,7 +153,6 @@ class Forces(SmallArray):
     def test_the_network_of_the_paper_is_compared_with_the_recipe(self):
         table = self.succeed(
             "paper",
-            "recognise",
             "learn",
             "--in",
             self.root / "rec3.mcap",

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/bytes/formats/imports.hpp"
-
 #include <bzlib.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +8,7 @@
 #include <cstdio>
 
 #include "bytes/formats/imported.hpp"
+#include "dermis/bytes/formats/imports.hpp"
 
 namespace dermis::bytes::formats {
 namespace {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/bytes/formats/imports.hpp"
-
 #include <gtest/gtest.h>
 
 #include "bytes/formats/imported.hpp"
+#include "dermis/bytes/formats/imports.hpp"
 
 namespace dermis::bytes::formats {
 namespace {

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/bytes/formats/imports.hpp"
-
 #include <gtest/gtest.h>
 #include <zlib.h>
 
 #include <cstdint>
 
 #include "bytes/formats/imported.hpp"
+#include "dermis/bytes/formats/imports.hpp"
 
 namespace dermis::bytes::formats {
 namespace {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/bytes/formats/imports.hpp"
-
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <zlib.h>
@@ -9,6 +7,7 @@
 #include <cstdint>
 
 #include "bytes/formats/imported.hpp"
+#include "dermis/bytes/formats/imports.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace dermis::bytes::formats {

@@ -12,8 +12,8 @@
 
 namespace dermis::out::report {
 
-/// The results of 'dermis recognise learn' as a page: accuracy, advice, estimators side by side, confusion, and the worst errors.
-/// `learned`: of all labels of `data`.
+/// The results of 'dermis recognise learn' as a page: accuracy, advice, estimators side by side, confusion, and the
+/// worst errors. `learned`: of all labels of `data`.
 [[nodiscard]] std::string recognition_page(const learn::recognition::LabelledFrames& data,
                                            const learn::recognition::Learned& learned,
                                            std::span<const learn::recognition::EstimatorFigures> estimators);

@@ -12,7 +12,8 @@
 
 namespace dermis::out::serve {
 
-/// Writes examples of one array, in newtons, as `dermis recognise learn` reads them: PATH.frames.csv, PATH.array.toml for its
+/// Writes examples of one array, in newtons, as `dermis recognise learn` reads them: PATH.frames.csv, PATH.array.toml
+/// for its
 /// --model, and PATH.labels.csv.
 [[nodiscard]] Status write_taught(const std::string& path, const ArrayDescription& array,
                                   const learn::recognition::LabelledFrames& data);
