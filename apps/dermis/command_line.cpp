@@ -336,7 +336,7 @@ Command Command::subcommand(const std::string& name, const std::string& summary)
   for (CLI::Option* option : app_.get_options()) {
     if (option->get_required()) places_->required.push_back(option->required(false));
   }
-  return {*app_.add_subcommand(name, summary), chosen_};
+  return {*app_.add_subcommand(name, summary)->group("Subcommands"), chosen_};
 }
 
 void Command::action(std::function<Status()> action) {
