@@ -172,8 +172,9 @@ Status record(FrameSource& source, const OpenSink& open_sink, const RecorderOpti
   std::unique_ptr<Writer> writer;
   const auto open = [&](const FrameShape& shape) -> Status {
     Result<std::unique_ptr<Writer>> opened = open_writer(open_sink, shape, options);
-    if (opened) writer = *std::move(opened);
-    return opened ? Status(Done{}) : opened.error();
+    if (!opened) return opened.error();
+    writer = *std::move(opened);
+    return Done{};
   };
   if (const std::optional<FrameShape> shape = source.shape()) {
     if (Status opened = open(*shape); !opened) return opened;
