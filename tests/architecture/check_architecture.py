@@ -12,6 +12,11 @@ from source_folders import ALL, PLUGINS
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 STANDARD_HEADER = re.compile(r"[a-z_]+")
 OPTION_IN_A_TEXT = re.compile(r'"(?:[^"\\\n]|\\.)*--[a-z](?:[^"\\\n]|\\.)*"')
+# Counts to newtons needs nothing of the machine: it runs in another program, and as WebAssembly.
+NOT_IN_TOUCH = re.compile(
+    r"^\s*#\s*include\s*<(?:fstream|filesystem|mutex|thread|unistd\.h|(?:sys|fmt|tbb|toml\+\+|nlohmann)/[^>]+)>"
+    r"|\b(?:throw|try|catch)\b"
+)
 SPDX = "// SPDX-License-Identifier: Apache-2.0\n// SPDX-FileCopyrightText: 2026 The dermis authors\n"
 
 
@@ -198,6 +203,14 @@ def message_violations(root):
                 yield f"{path.relative_to(root)}:{number}: a text of the library names an option of the command line"
 
 
+def touch_violations(root):
+    for folder in ("include/dermis/touch", "src/touch"):
+        for path in sorted((root / folder).rglob("*.[ch]pp")):
+            for number, line in enumerate(path.read_text().splitlines(), 1):
+                if found := NOT_IN_TOUCH.search(line.split("//")[0]):
+                    yield f"{path.relative_to(root)}:{number}: touch stands alone, without {found.group().strip()}"
+
+
 def version_violations(root):
     project = re.search(r"project\(dermis VERSION ([\d.]+)", (root / "CMakeLists.txt").read_text()).group(1)
     for name, pattern in (("CITATION.cff", r"^version: \"?([\d.]+)\"?$"), ("CHANGELOG.md", r"^## \[([\d.]+)\]")):
@@ -219,6 +232,7 @@ def violations(root):
     yield from header_violations(root)
     yield from licence_violations(root)
     yield from message_violations(root)
+    yield from touch_violations(root)
     yield from version_violations(root)
 
 

@@ -59,7 +59,7 @@ class Rules(unittest.TestCase):
         self.write(
             "src/touch/fusion/force.cpp",
             SPDX
-            + '#include "dermis/touch/frames/frames.hpp"\n#include "touch/fusion/table.hpp"\n#include <tbb/tbb.h>\n',
+            + '#include "dermis/touch/frames/frames.hpp"\n#include "touch/fusion/table.hpp"\n#include <Eigen/Core>\n',
         )
         self.write("src/touch/fusion/table.hpp", HEADER)
         self.write("src/touch/fusion/fit/fit.cpp", FIT)
@@ -143,6 +143,14 @@ class Rules(unittest.TestCase):
         self.write("src/utils/text.cpp", SPDX)
         self.write("src/touch/text/text.cpp", SPDX)
         self.expect("src/utils/text.cpp: is in no wing", "src/touch/text/text.cpp: is in no wing and room")
+
+    def test_touch_uses_files_locks_exceptions_or_libraries(self):
+        text = "#include <mutex>\n#include <sys/resource.h>\n#include <fmt/core.h>\nvoid f() { throw 1; }\n"
+        self.write("src/touch/fusion/table.hpp", HEADER + text + "// catch of a try\n")
+        self.expect("table.hpp:4: touch", "<sys/resource.h>", "<fmt/core.h>", "table.hpp:7: touch stands alone")
+        self.write("src/touch/fusion/table.hpp", HEADER)
+        self.write("src/learn/calibration/calibrate.cpp", CALIBRATION + text)
+        self.expect()
 
     def test_a_third_party_header_in_a_public_one(self):
         self.write("include/dermis/touch/fusion/force.hpp", HEADER + "#include <Eigen/Core>\n")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
-"""What README, a guide and docs/c.md show of C++ and C compiles as printed.
+"""What README, a guide, docs/embedding.md and docs/c.md show of C++ and C compiles as printed.
 
 Usage: snippets_test.py C++-COMPILER C-COMPILER GENERATED-HEADERS"""
 
@@ -40,6 +40,9 @@ class Snippets(unittest.TestCase):
                     text=f"{includes}\n"
                     f"dermis::Status work(const dermis::RawFrame& raw) {{\n{body}return dermis::Done{{}};\n}}\n",
                 )
+
+    def test_the_program_of_the_page_on_embedding_is_whole(self):
+        self.compile(CXX, "-std=c++20", "-x", "c++", f"-I{ROOT}/include", text=snippet("docs/embedding.md", "cpp"))
 
     def test_the_program_of_the_page_on_c_is_whole(self):
         self.compile(CC, "-std=c99", "-x", "c", f"-I{ROOT}/bindings/c", text=snippet("docs/c.md", "c"))

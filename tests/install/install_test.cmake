@@ -9,7 +9,7 @@ set(flags "")
 if(SANITIZE)
   set(flags -fsanitize=${SANITIZE})
 endif()
-foreach(project outside runs_model)
+foreach(project outside runs_model touch_alone)
   run(${CMAKE_COMMAND} -S ${PROJECTS}/${project} -B ${FOLDER}/${project} -G Ninja -DCMAKE_PREFIX_PATH=${FOLDER}/prefix
       -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_CXX_FLAGS=${flags} -DEXAMPLES=${EXAMPLES})
   run(${CMAKE_COMMAND} --build ${FOLDER}/${project})

@@ -11,6 +11,9 @@
 #include "touch/compensation/matrix_product.hpp"
 #include "touch/compensation/shorted_crossings.hpp"
 
+#ifdef __wasm__
+#define HWY_COMPILE_ONLY_EMU128  // Highway 1.0.3 has no vectors of double there
+#endif
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "touch/compensation/grounded_rows_kernels.cpp"
 #include "hwy/foreach_target.h"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 #include <utility>
 
 #include "touch/contacts/patch_response.hpp"
@@ -69,9 +68,7 @@ float root_place(float share, std::size_t knots) {
 }  // namespace
 
 std::shared_ptr<const SmallContactTable> SmallContactTable::of(const TaxelSpacing& spacing) {
-  static std::mutex mutex;
-  static std::vector<std::pair<TaxelSpacing, std::weak_ptr<const SmallContactTable>>> known;
-  const std::lock_guard lock(mutex);
+  thread_local std::vector<std::pair<TaxelSpacing, std::weak_ptr<const SmallContactTable>>> known;
   std::erase_if(known, [](const auto& entry) { return entry.second.expired(); });
   for (const auto& [other, table] : known) {
     if (other == spacing) return table.lock();

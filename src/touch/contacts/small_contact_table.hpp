@@ -45,7 +45,7 @@ struct SmallContactPlace {
 /// alike.
 class SmallContactTable {
  public:
-  /// Tables are shared by arrays of the same spacing. Thread-safe.
+  /// Tables are shared by arrays of the same spacing that a thread asks for. Thread-safe.
   [[nodiscard]] static std::shared_ptr<const SmallContactTable> of(const TaxelSpacing& spacing);
 
   explicit SmallContactTable(const TaxelSpacing& spacing);

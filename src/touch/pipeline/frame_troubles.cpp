@@ -2,10 +2,9 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/touch/pipeline/frame_troubles.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 
+#include "dermis/touch/frames/number_text.hpp"
 #include "dermis/touch/preprocessing/conditioner.hpp"
 #include "dermis/touch/preprocessing/temperature_unit.hpp"
 
@@ -18,7 +17,12 @@ constexpr const char* kPowered = "is the array connected and powered?";
 /// By the number of the frame where the source has no place.
 std::string place_of(const std::string& prefix, const FrameSource* source, std::size_t number) {
   const std::string place = source != nullptr ? source->place() : "";
-  return place.empty() ? fmt::format("{}frame {}", prefix, number) : place;
+  return place.empty() ? prefix + "frame " + std::to_string(number) : place;
+}
+
+/// "3 of 4 frames".
+std::string share_of(std::size_t some, std::size_t all) {
+  return std::to_string(some) + " of " + std::to_string(all) + " frames";
 }
 
 }  // namespace
@@ -49,29 +53,28 @@ void FrameTroubles::add(const RawFrame& raw, const ForceFrame& force, const Pipe
   add_doubts(raw, force, pipeline);
   if (!is_rejected) return;
   if (rejected_.frames++ > 0) return;
-  rejected_.first = fmt::format("{}: {}", place_of(prefix_, source, number_), pipeline.why_rejected());
+  rejected_.first = place_of(prefix_, source, number_) + ": " + pipeline.why_rejected();
 }
 
 void FrameTroubles::add_doubts(const RawFrame& raw, const ForceFrame& force, const Pipeline& pipeline) {
   const bool is_supply_doubted = has(force.status, FrameStatus::supply_clamped | FrameStatus::supply_implausible);
   if (is_supply_doubted && supply_.frames++ == 0) {
     const auto& [least_v, most_v] = pipeline.supply_bounds().trusted();
-    supply_.first = fmt::format(
-        "with a supply outside of the calibration, the first: {:.3g} V, where {:.3g} to {:.3g} V are trusted",
-        *raw.supply_v, least_v, most_v);
+    supply_.first = "with a supply outside of the calibration, the first: " + significant_digits(*raw.supply_v, 3) +
+                    " V, where " + significant_digits(least_v, 3) + " to " + significant_digits(most_v, 3) +
+                    " V are trusted";
   }
   const std::optional<double> kelvin = preprocessing::kelvin_in(raw);
   if (has(force.status, FrameStatus::temperature_clamped) && kelvin && kelvin_.frames++ == 0) {
-    kelvin_.first = fmt::format(
-        "with a temperature that no sheet has, the first: {:.1f} C: it looks like kelvin, give degrees Celsius",
-        *kelvin);
+    kelvin_.first = "with a temperature that no sheet has, the first: " + tenths(*kelvin) +
+                    " C: it looks like kelvin, give degrees Celsius";
   }
   if (raw.sensor_celsius.size() != sensors_ && other_sensors_.frames++ == 0) {
-    other_sensors_.first = fmt::format("with temperatures of {} sensors, where array.temperature_sensors has {} places",
-                                       raw.sensor_celsius.size(), sensors_);
+    other_sensors_.first = "with temperatures of " + std::to_string(raw.sensor_celsius.size()) +
+                           " sensors, where array.temperature_sensors has " + std::to_string(sensors_) + " places";
   }
   if (is_silent(raw, force, pipeline) && silent_.frames++ == 0) {
-    silent_.first = fmt::format("with all readings 0, where untouched taxels read more: {}", kPowered);
+    silent_.first = std::string("with all readings 0, where untouched taxels read more: ") + kPowered;
   }
 }
 
@@ -90,7 +93,8 @@ std::optional<std::string> FrameTroubles::silent_frames() const {
 
 std::optional<std::string> FrameTroubles::silence() const {
   if (!zero_ || *zero_ < frames_ || frames_ == 0 || silent_.frames > 0) return std::nullopt;
-  return fmt::format("all readings of all {} frames are 0: nothing touches the array, or it is not connected", frames_);
+  return "all readings of all " + std::to_string(frames_) +
+         " frames are 0: nothing touches the array, or it is not connected";
 }
 
 std::optional<std::string> FrameTroubles::impossible() const {
@@ -101,27 +105,27 @@ std::optional<std::string> FrameTroubles::impossible() const {
 }
 
 std::string FrameTroubles::cause() const {
-  if (2 * lost_.zero > lost_.frames) return fmt::format("all readings are 0: {}", kPowered);
+  if (2 * lost_.zero > lost_.frames) return std::string("all readings are 0: ") + kPowered;
   if (2 * lost_.outside > lost_.frames) return *missing_.describe_range();
   if (rejected_.frames > unsolved_.frames) return "the first is rejected, " + rejected_.first;
-  return fmt::format("their readings {}, the first at {}", kMisfit, unsolved_.first);
+  return std::string("their readings ") + kMisfit + ", the first at " + unsolved_.first;
 }
 
 std::vector<std::string> FrameTroubles::describe() const {
   std::vector<std::string> lines;
   if (rejected_.frames > 0) {
-    lines.push_back(fmt::format("{} of {} frames rejected, the first: {}", rejected_.frames, frames_, rejected_.first));
+    lines.push_back(share_of(rejected_.frames, frames_) + " rejected, the first: " + rejected_.first);
   }
   if (missing_.any()) lines.push_back(missing_.describe());
   if (const auto range = missing_.describe_range()) lines.push_back(*range);
   if (unsolved_.frames > 0) {
-    lines.push_back(fmt::format("{} of {} frames without forces: their readings {}, the first at {}", unsolved_.frames,
-                                frames_, 2 * lost_.outside > lost_.frames ? "lie outside of the ADC" : kMisfit,
-                                unsolved_.first));
+    lines.push_back(share_of(unsolved_.frames, frames_) + " without forces: their readings " +
+                    (2 * lost_.outside > lost_.frames ? "lie outside of the ADC" : kMisfit) + ", the first at " +
+                    unsolved_.first);
   }
   if (faulty_ > 0) {
-    lines.push_back(fmt::format(
-        "{} of {} frames with faulty lines or taxels, which are masked: a diagnosis tells which", faulty_, frames_));
+    lines.push_back(share_of(faulty_, frames_) +
+                    " with faulty lines or taxels, which are masked: a diagnosis tells which");
   }
   for (const Trouble* trouble : {&supply_, &kelvin_, &other_sensors_, &silent_}) {
     if (trouble->frames > 0) lines.push_back(describe(*trouble));
@@ -131,13 +135,13 @@ std::vector<std::string> FrameTroubles::describe() const {
 }
 
 std::string FrameTroubles::describe(const Trouble& trouble) const {
-  return fmt::format("{} of {} frames {}", trouble.frames, frames_, trouble.first);
+  return share_of(trouble.frames, frames_) + " " + trouble.first;
 }
 
 Status FrameTroubles::verdict() const {
   if (const auto why = impossible()) return failed(prefix_ + *why);
   if (2 * lost_.frames <= frames_) return Done{};
-  return failed(fmt::format("{}{} of {} frames have no force: {}", prefix_, lost_.frames, frames_, cause()));
+  return failed(prefix_ + share_of(lost_.frames, frames_) + " have no force: " + cause());
 }
 
 }  // namespace dermis::touch::pipeline

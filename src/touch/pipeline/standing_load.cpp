@@ -2,13 +2,12 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/touch/pipeline/standing_load.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 
 #include "dermis/touch/compensation/offset_drift.hpp"
+#include "dermis/touch/frames/number_text.hpp"
 
 namespace dermis::touch::pipeline {
 namespace {
@@ -37,8 +36,9 @@ std::size_t taxels_of(const StandingLoad& load) {
   return static_cast<std::size_t>(std::count(load.bears.begin(), load.bears.end(), std::uint8_t{1}));
 }
 
-const char* reads(const StandingLoad& load) {
-  return taxels_of(load) == 1 ? "reads" : "read";
+/// "reads 1.2 N".
+std::string reads(const StandingLoad& load) {
+  return (taxels_of(load) == 1 ? "reads " : "read ") + significant_digits(load.newtons, 2) + " N";
 }
 
 }  // namespace
@@ -51,16 +51,16 @@ std::string place_name(const StandingLoad& load, const ArrayDescription& array) 
   if (taxels == 1) return first;
   const std::string last = taxel_name(box.last_row, box.last_col);
   if (taxels == box.area()) return first + " to " + last;
-  return fmt::format("{} taxels between {} and {}", taxels, first, last);
+  return std::to_string(taxels) + " taxels between " + first + " and " + last;
 }
 
 std::string describe(const StandingLoad& load, const ArrayDescription& array) {
-  return fmt::format("{} {} {:.2g} N", place_name(load, array), reads(load), load.newtons);
+  return place_name(load, array) + " " + reads(load);
 }
 
 std::string describe_never_released(const StandingLoad& load, const ArrayDescription& array) {
-  return fmt::format("{} {} never released and {} {:.2g} N: take off what lies there, or tare if the array was put on",
-                     place_name(load, array), taxels_of(load) == 1 ? "was" : "were", reads(load), load.newtons);
+  return place_name(load, array) + (taxels_of(load) == 1 ? " was" : " were") + " never released and " + reads(load) +
+         ": take off what lies there, or tare if the array was put on";
 }
 
 StandingLoadWatch::StandingLoadWatch(const Model& model)

@@ -2,16 +2,17 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "touch/pipeline/tare_judge.hpp"
 
-#include <fmt/core.h>
-
 #include <cmath>
 #include <utility>
+
+#include "dermis/touch/frames/number_text.hpp"
 
 namespace dermis::touch::pipeline {
 std::string describe(const Tare& tare, const ArrayDescription& array) {
   if (tare.state == Tare::State::refused) return describe(tare.load, array) + ": take it off and tare again";
   if (tare.state != Tare::State::taken || tare.load.newtons < kLeastStandingNewtons) return "";
-  return fmt::format("the tare takes {:.2g} N on {} as zero", tare.load.newtons, place_name(tare.load, array));
+  return "the tare takes " + significant_digits(tare.load.newtons, 2) + " N on " + place_name(tare.load, array) +
+         " as zero";
 }
 
 TareJudge::TareJudge(const UnloadedLaw& unloaded) : unloaded_(unloaded) {

@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/touch/preprocessing/missing_readings.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include "dermis/touch/frames/number_text.hpp"
 
 namespace dermis::touch::preprocessing {
 
@@ -42,8 +42,9 @@ bool MissingReadings::any() const noexcept {
 
 std::optional<std::string> MissingReadings::describe_range() const {
   if (frames_outside_ == 0) return std::nullopt;
-  return fmt::format("readings of {} to {}, but the ADC gives 0 to {} (adc_bits = {})", least_counts_, most_counts_,
-                     array_.readout.full_scale_counts(), array_.readout.adc_bits);
+  return "readings of " + shortest_text(least_counts_) + " to " + shortest_text(most_counts_) +
+         ", but the ADC gives 0 to " + std::to_string(std::llround(array_.readout.full_scale_counts())) +
+         " (adc_bits = " + std::to_string(array_.readout.adc_bits) + ")";
 }
 
 std::string MissingReadings::describe() const {

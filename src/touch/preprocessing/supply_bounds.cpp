@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/touch/preprocessing/supply_bounds.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
+
+#include "dermis/touch/frames/number_text.hpp"
 
 namespace dermis::touch::preprocessing {
 namespace {
@@ -59,8 +59,9 @@ bool SupplyBounds::is_in_millivolts(double supply_v) const noexcept {
 }
 
 std::string SupplyBounds::describe_impossible(double supply_v) const {
-  std::string text = fmt::format("a supply of {:.4g} V ({:.3g} to {:.3g} V are possible)", supply_v, possible_.least_v,
-                                 possible_.most_v);
+  std::string text = "a supply of " + significant_digits(supply_v, 4) + " V (" +
+                     significant_digits(possible_.least_v, 3) + " to " + significant_digits(possible_.most_v, 3) +
+                     " V are possible)";
   text += is_in_millivolts(supply_v) ? ": it looks like millivolts, give volts" : ": check what measures it";
   return text;
 }
