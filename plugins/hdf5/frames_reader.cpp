@@ -5,6 +5,7 @@
 
 #include "columns.hpp"
 #include "dermis/bytes/files/text.hpp"
+#include "dermis/touch/frames/array_description.hpp"
 #include "frame_fields.hpp"
 #include "frames.hpp"
 
