@@ -15,7 +15,7 @@ constexpr std::size_t kMostCharacters = std::numeric_limits<double>::max_exponen
 
 template <typename... Format>
 std::string text_of(Format... format) {
-  std::array<char, kMostCharacters> text;
+  std::array<char, kMostCharacters> text{};
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), format...).ptr};
 }
 
