@@ -108,24 +108,13 @@ const CLI::App& chosen_command(const CLI::App& app) {
   return named.empty() ? app : chosen_command(*named.back());
 }
 
-/// The commands at and below `command` that take an option, by their whole names in quotes.
-std::vector<std::string> takers_of(const std::string& option, const CLI::App& command, const std::string& name) {
-  std::vector<std::string> takers;
-  if (command.get_option_no_throw(option) != nullptr) takers.push_back(bytes::files::in_quotes(name));
-  for (const CLI::App* each : command.get_subcommands(nullptr)) {
-    const std::vector<std::string> below = takers_of(option, *each, name + " " + each->get_name());
-    takers.insert(takers.end(), below.begin(), below.end());
-  }
-  return takers;
-}
-
-/// The commands below `command` that have a name, by their whole names in quotes.
-std::vector<std::string> commands_named(const std::string& name, const CLI::App& command, const std::string& above) {
+/// The commands at and below `command` that do so, by their whole names in quotes.
+template <typename Does>
+std::vector<std::string> commands_that(const Does& does, const CLI::App& command, const std::string& name) {
   std::vector<std::string> found;
+  if (does(command)) found.push_back(bytes::files::in_quotes(name));
   for (const CLI::App* each : command.get_subcommands(nullptr)) {
-    const std::string whole = above + " " + each->get_name();
-    if (each->get_name() == name) found.push_back(bytes::files::in_quotes(whole));
-    const std::vector<std::string> below = commands_named(name, *each, whole);
+    const std::vector<std::string> below = commands_that(does, *each, name + " " + each->get_name());
     found.insert(found.end(), below.begin(), below.end());
   }
   return found;
@@ -140,13 +129,15 @@ std::string unknown(const std::string& argument, const CLI::App& command, const 
   const std::string name = argument.substr(0, argument.find('='));
   const std::string nearest = nearest_name(name, known);
   std::string what = fmt::format("unknown {} '{}'", is_option ? "option" : "command", name);
-  if (!is_option) {
-    const std::vector<std::string> elsewhere = commands_named(name, app, app.get_name());
-    if (!elsewhere.empty()) return fmt::format("{}; there is {}", what, fmt::join(elsewhere, " and "));
-  }
+  const auto has_name = [&](const CLI::App& each) { return each.get_name() == name; };
+  const auto takes_it = [&](const CLI::App& each) { return each.get_option_no_throw(name) != nullptr; };
+  const std::vector<std::string> named =
+      is_option ? std::vector<std::string>() : commands_that(has_name, app, app.get_name());
+  if (!named.empty()) return fmt::format("{}; there is {}", what, fmt::join(named, " and "));
   if (!nearest.empty()) return fmt::format("{}; did you mean '{}'?", what, nearest);
   constexpr std::size_t kFew = 2;
-  const std::vector<std::string> takers = is_option ? takers_of(name, app, app.get_name()) : std::vector<std::string>();
+  const std::vector<std::string> takers =
+      is_option ? commands_that(takes_it, app, app.get_name()) : std::vector<std::string>();
   if (takers.empty() || takers.size() > kFew) return what;
   return fmt::format("{}; it is one of {}", what, fmt::join(takers, " and "));
 }
