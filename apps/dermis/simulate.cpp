@@ -13,6 +13,7 @@
 #include "dermis/bytes/files/atomic_file.hpp"
 #include "dermis/bytes/files/frames_csv.hpp"
 #include "dermis/bytes/files/loads_csv.hpp"
+#include "dermis/bytes/files/npy.hpp"
 #include "dermis/bytes/files/origin_toml.hpp"
 #include "dermis/learn/simulation/simulator.hpp"
 #include "interruption.hpp"
@@ -21,9 +22,12 @@
 namespace dermis::app {
 namespace {
 
+constexpr const char* kField = "field";  // the scene of --field
+
 struct SimulateOptions {
   std::string array;
   std::string scene;
+  std::string field;
   std::string out;
   std::string physics;
   std::uint64_t seed = 1;
@@ -47,6 +51,21 @@ Status set_memory(const SimulateOptions& options, learn::simulation::RubberOptio
   return Done{};
 }
 
+/// Newtons of an array of NumPy (frames, rows, cols).
+Result<std::vector<float>> read_field(const std::string& path, const ArrayDescription& array) {
+  const bytes::files::NpyInput input{.rate_hz = 1.0, .shape = FrameShape{array.rows, array.cols}};
+  const Result<std::unique_ptr<bytes::files::NpyReader>> file = bytes::files::NpyReader::open(path, input);
+  if (!file) return file.error();
+  std::vector<float> newtons;
+  RawFrame frame;
+  while (true) {
+    const Result<bool> more = (*file)->next(frame);
+    if (!more) return more.error();
+    if (!*more) return newtons;
+    newtons.insert(newtons.end(), frame.counts.begin(), frame.counts.end());
+  }
+}
+
 Result<std::unique_ptr<learn::simulation::Simulator>> create_simulator(const SimulateOptions& options,
                                                                        const ArrayDescription& array) {
   learn::simulation::SimulationOptions physics;
@@ -57,10 +76,15 @@ Result<std::unique_ptr<learn::simulation::Simulator>> create_simulator(const Sim
   }
   if (Status set = set_memory(options, physics.rubber); !set) return set.error();
   physics.scene = {options.rate_hz, options.taxels};
+  if (!options.field.empty()) {
+    Result<std::vector<float>> newtons = read_field(options.field, array);
+    if (!newtons) return newtons.error();
+    physics.scene.field_n = *std::move(newtons);
+  }
   return learn::simulation::Simulator::create(array, physics, options.scene, options.seed, options.frames);
 }
 
-/// The name of the same frames among sources, without other options.
+/// The name of the same frames among sources, without other options; a field has none.
 std::string source_of(const SimulateOptions& options) {
   return fmt::format("sim:{}?seed={}", options.scene, options.seed);
 }
@@ -135,14 +159,15 @@ void add_simulate(Command& command) {
   command.input("--array", options->array, "array.toml: size, pitch and readout circuit").required();
   std::vector<std::string> scenes;
   for (const learn::simulation::SceneKind& scene : learn::simulation::scene_kinds()) scenes.emplace_back(scene.name);
-  command.option("--scene", options->scene, "What happens to the array").one_of(scenes).required();
+  command.option("--scene", options->scene, "What happens to the array").one_of(scenes);
+  command.input("--field", options->field, "In place of a scene: newtons of each taxel, .npy [frames, rows, cols]");
   command
       .output_folder("--out", options->out, {"frames.csv", "loads.csv", "contacts.csv", "origin.toml"},
                      "Folder for frames.csv, loads.csv, contacts.csv and origin.toml")
       .required();
   command.option("--seed", options->seed, "Seed of contacts, temperatures, supply and noise").shows_default();
   command.option("--frames", options->frames, "Length of the scenes multitouch, contacts, idle and touches");
-  command.option("--rate", options->rate_hz, "Frames a second of the scenes touches and two_weights, 10 to 1000");
+  command.option("--rate", options->rate_hz, "Frames a second of touches, two_weights and a field, 10 to 1000");
   command.option("--taxels", options->taxels, "How many taxels the scene two_weights presses");
   command.option("--memory", options->memory, "What the material remembers; simple: as physics.toml says")
       .one_of({"simple", "rubber"});
@@ -150,8 +175,10 @@ void add_simulate(Command& command) {
                  "rubber: growth of a held reading in ten times the time, 0.02 to 0.30");
   command.option("--touch-gain", options->touch_gain, "rubber: standard deviation from touch to touch, 0 to 0.3");
   command.input("--physics", options->physics, "physics.toml: material and surroundings (docs/simulation.md)");
-  command.action([options] {
+  command.action([options]() -> Status {
     end_when_interrupted();
+    if (options->scene.empty() == options->field.empty()) return bad_input("give either --scene or --field");
+    if (options->scene.empty()) options->scene = kField;
     return simulate(*options);
   });
 }

@@ -118,6 +118,7 @@ MODULES_OF_OTHERS = {
     "mcap",
     "mcap_ros2",
     "pandas",
+    "mujoco",
     "pyarrow",
     "ray",
     "rosbags",

@@ -3,9 +3,11 @@
 """Every source of src/touch is compiled for WebAssembly, and gives there the forces that it gives here. Usage:
 wasm_test.py BUILD_FOLDER HIGHWAY_INCLUDES EIGEN_INCLUDES SIMULATE_FRAMES PROCESS_FRAMES"""
 
+import os
 import shutil
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy
@@ -43,17 +45,25 @@ def node():
 
 
 def build(folder, highway, eigen):
-    """zig keeps objects in its cache, so only what has changed is compiled."""
-    folder.mkdir(parents=True, exist_ok=True)
+    """zig keeps objects in its cache, so only what has changed is compiled; it compiles one source after the other."""
+    objects = folder / "objects"
+    objects.mkdir(parents=True, exist_ok=True)
     for library, place in {"hwy": highway, "Eigen": eigen}.items():  # nothing else of this machine's headers
         link = folder / library
         link.unlink(missing_ok=True)
         link.symlink_to(place / library)
     sources = sorted((PROJECT / "src/touch").rglob("*.cpp")) + [HERE / "process_frames.cpp", HERE / "thread_exit.cpp"]
-    program = folder / "process_frames.wasm"
     includes = [f"-I{PROJECT / 'include'}", f"-I{PROJECT / 'src'}", "-isystem", folder]
-    compiler = [sys.executable, "-m", "ziglang", "c++", *OPTIONS, *includes]
-    run([*compiler, *sources, "-o", program], cwd=PROJECT)
+    compiler = [sys.executable, "-m", "ziglang", "c++", *OPTIONS]
+
+    def compiled(source):
+        made = objects / ("_".join(source.relative_to(PROJECT).parts) + ".o")
+        run([*compiler, *includes, "-c", source, "-o", made], cwd=PROJECT)
+        return made
+
+    program = folder / "process_frames.wasm"
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        run([*compiler, *pool.map(compiled, sources), "-o", program], cwd=PROJECT)
     return program
 
 

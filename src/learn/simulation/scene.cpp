@@ -34,6 +34,7 @@ constexpr std::array kScenes = {
     SceneKind{"idle", ScenePace::step, true, false},
     SceneKind{"touches", ScenePace::any_rate, true, false},
     SceneKind{"two_weights", ScenePace::any_rate, false, false},
+    SceneKind{"field", ScenePace::any_rate, false, false},  // the last one: nobody can play it without its forces
 };
 
 constexpr double kDefaultSupplyV = 5.0;
@@ -74,6 +75,7 @@ constexpr double kWeightRateHz = 50.0;
 constexpr std::size_t kDefaultTouchFrames = 6000;
 constexpr std::size_t kDefaultWeightTaxels = 4;
 constexpr double kRoomCelsius = 22.0;
+constexpr float kMostFieldN = 10'000.0F;  // of field
 
 double step_in_equal_ratios(double first, double last, std::size_t level) {
   if (level + 1 == kLevels) return last;
@@ -86,13 +88,13 @@ double calibration_celsius(std::size_t index) {
 
 std::string known_names() {
   std::string names;
-  for (const SceneKind& scene : kScenes) names += (names.empty() ? "" : ", ") + std::string(scene.name);
+  for (const SceneKind& scene : scene_kinds()) names += (names.empty() ? "" : ", ") + std::string(scene.name);
   return names;
 }
 
 std::string what_is_known(const std::string& name) {
   std::set<std::string> names;
-  for (const SceneKind& scene : kScenes) names.emplace(scene.name);
+  for (const SceneKind& scene : scene_kinds()) names.emplace(scene.name);
   const std::string nearest = nearest_name(name, names);
   return nearest.empty() ? "unknown; there are " + known_names() : "unknown; did you mean \"" + nearest + "\"?";
 }
@@ -108,7 +110,7 @@ const char* to_string(PatchShape shape) noexcept {
 }
 
 std::span<const SceneKind> scene_kinds() noexcept {
-  return kScenes;
+  return std::span(kScenes).first(kScenes.size() - 1);
 }
 
 const SceneKind* find_scene(std::string_view name) noexcept {
@@ -152,6 +154,23 @@ Status Scene::set_options(const SceneOptions& options) {
   if (kind_ == Kind::two_weights && (weighed_taxels_ < 1 || weighed_taxels_ > most)) {
     return bad_input("needs 1 to " + std::to_string(most) + " taxels");
   }
+  if (kind_ == Kind::field) return set_field(options.field_n);
+  return Done{};
+}
+
+Status Scene::set_field(const std::vector<float>& field_n) {
+  const std::size_t taxels = array_.taxel_count();
+  if (field_n.empty() || field_n.size() % taxels != 0) {
+    return bad_input("needs the forces of " + std::to_string(taxels) + " taxels a frame");
+  }
+  const auto is_none = [](float force_n) { return !(force_n >= 0.0F && force_n <= kMostFieldN); };
+  const auto none = std::ranges::find_if(field_n, is_none);
+  if (none != field_n.end()) {
+    const auto place = static_cast<std::size_t>(none - field_n.begin());
+    return bad_input("frame " + std::to_string(place / taxels) + ", taxel " + std::to_string(place % taxels) + ": " +
+                     std::to_string(*none) + " is no force of 0 to 10000 N");
+  }
+  field_n_ = std::make_shared<const std::vector<float>>(field_n);
   return Done{};
 }
 
@@ -162,9 +181,10 @@ Status Scene::set_length(std::optional<std::size_t> frames) {
     return bad_input("needs 1 to " + std::to_string(kMostFrames) + " frames");
   }
   frame_count_ = frames.value_or(default_frame_count());
-  if (kind_ == Kind::two_weights && frame_count_ > kMostFrames) {
+  if (!frames && frame_count_ > kMostFrames) {
+    const char* const advice = kind_ == Kind::field ? "" : "; ask for fewer taxels or fewer frames a second";
     return bad_input("has " + std::to_string(frame_count_) + " frames, more than " + std::to_string(kMostFrames) +
-                     "; ask for fewer taxels or fewer frames a second");
+                     advice);
   }
   return Done{};
 }
@@ -198,6 +218,7 @@ std::size_t Scene::default_frame_count() const {
     case Kind::touches: return kDefaultTouchFrames;
     case Kind::two_weights:
       return static_cast<std::size_t>(std::llround(WeightScript::seconds(weighed_taxels_) * rate_hz_));
+    case Kind::field: return field_n_->size() / array_.taxel_count();
     case Kind::multitouch:
     case Kind::idle: break;
   }
@@ -237,6 +258,7 @@ void Scene::frame(std::size_t index, SceneFrame& out) const {
     case Kind::idle: leave_alone(index, out); break;
     case Kind::touches: press_and_let_go(index, out); break;
     case Kind::two_weights: is_known = lay_weights(index, out); break;
+    case Kind::field: press_as_given(index, out); break;
   }
   if (is_known && out.loads.empty()) label_forces(index, out);
 }
@@ -304,6 +326,13 @@ double Scene::go_on(std::size_t index, SceneFrame& out) const {
 
 void Scene::press_and_let_go(std::size_t index, SceneFrame& out) const {
   touches_->add_forces(go_on(index, out), out.force_n);
+  for (const std::size_t taxel : array_.absent) out.force_n[taxel] = 0.0;
+}
+
+void Scene::press_as_given(std::size_t index, SceneFrame& out) const {
+  go_on(index, out);
+  const auto taxels = static_cast<std::ptrdiff_t>(array_.taxel_count());
+  std::copy_n(field_n_->begin() + static_cast<std::ptrdiff_t>(index) * taxels, taxels, out.force_n.begin());
   for (const std::size_t taxel : array_.absent) out.force_n[taxel] = 0.0;
 }
 

@@ -302,6 +302,20 @@ TEST(Scene, frames_depend_on_seed_and_index_alone) {
   EXPECT_NE(play("multitouch", array, 6, 50)[31].force_n, frames[31].force_n);
 }
 
+TEST(Scene, a_field_presses_as_given_but_where_no_taxel_is) {
+  ArrayDescription array = reference_array(2, 2);
+  array.absent = {3};
+  const SceneOptions options{.field_n = {0.0F, 1.5F, 0.0F, 2.0F, 3.0F, 0.0F, 0.0F, 4.0F}};
+  const Scene scene = Scene::create("field", array, EnvironmentOptions{}, 1, {}, options).value();
+  ASSERT_EQ(scene.frame_count(), 2U);
+  SceneFrame frame;
+  scene.frame(0, frame);
+  EXPECT_EQ(frame.force_n, (std::vector{0.0, 1.5, 0.0, 0.0}));
+  EXPECT_EQ(frame.hold_s, 0.01);
+  scene.frame(1, frame);
+  EXPECT_EQ(frame.force_n, (std::vector{3.0, 0.0, 0.0, 0.0}));
+}
+
 TEST(Scene, refuses_what_it_cannot_play) {
   ArrayDescription array = reference_array(3, 3);
   const auto message = [&](std::string_view name, std::optional<std::size_t> frames = {}) {
@@ -325,6 +339,13 @@ TEST(Scene, refuses_what_it_cannot_play) {
   EXPECT_EQ(refusal("two_weights", {.taxels = 10}), "scene \"two_weights\": needs 1 to 9 taxels");
   EXPECT_NE(refusal("two_weights", {.rate_hz = 1000.0}).find("ask for fewer taxels or fewer frames a second"),
             std::string::npos);
+  const std::string unfit = "scene \"field\": needs the forces of 9 taxels a frame";
+  EXPECT_EQ(refusal("field", {}), unfit);
+  EXPECT_EQ(refusal("field", {.field_n = std::vector<float>(10)}), unfit);
+  std::vector<float> below(18);
+  below[11] = -1.0F;
+  EXPECT_EQ(refusal("field", {.field_n = below}),
+            "scene \"field\": frame 1, taxel 2: -1.000000 is no force of 0 to 10000 N");
   array.taxel_area_m2.reset();
   EXPECT_NE(message("uniform").find("array.taxel_area_mm2"), std::string::npos);
   EnvironmentOptions environment;

@@ -65,8 +65,9 @@ struct SceneFrame {
 
 /// The options that some scenes leave open.
 struct SceneOptions {
-  std::optional<double> rate_hz{};      ///< touches (100), two_weights (50): frames a second, 10 ... 1000.
+  std::optional<double> rate_hz{};      ///< touches, field (100), two_weights (50): frames a second, 10 ... 1000.
   std::optional<std::size_t> taxels{};  ///< two_weights (4, or all of fewer): how many are pressed, 1 ... all.
+  std::vector<float> field_n{};         ///< field: newtons, 0 ... 10,000, [frames, rows, cols].
 };
 
 /// How the frames of a scene follow each other.
@@ -84,7 +85,7 @@ struct SceneKind {
   bool has_contacts;      ///< Fills SceneFrame::contacts.
 };
 
-/// All scenes.
+/// All scenes that need no forces given: all but "field".
 [[nodiscard]] std::span<const SceneKind> scene_kinds() noexcept;
 /// Null where there is none of that name.
 [[nodiscard]] const SceneKind* find_scene(std::string_view name) noexcept;
@@ -119,13 +120,15 @@ class WeightScript;
 /// two_weights        10 s unloaded; then 5, 5 + 10, 5 N for 15 s each and 10 s off on 4 taxels  (10 + 110 taxels)
 ///                    or as asked, one after another, two rounds; 0.2 s, which have no label,    x rate
 ///                    for each change; 22 C
+/// field              the forces of SceneOptions::field_n, as another simulator gives them; 22 C  as many as given
 ///
 /// A press is 1 s of rest and 1 s of hold. uniform and multitouch change the load without rest, every 1 s. idle takes a
 /// frame every 10 s. The patches of contacts stay 2.5 pitches apart from centre to centre and a pitch from rim to rim.
 /// A taxel is a disc of taxel_area_m2 or of 0.7 pitches, and carries the pressure on it. Each temperature of
-/// calibration, paper_calibration and uniform starts with 600 s of rest. touches and two_weights are continuous in time
-/// at their rate: all their frames are history of one piece. Thread-safe, because frame() only reads. A frame depends
-/// only on the seed and its index (contacts: also on the number of frames; touches and two_weights: on the options).
+/// calibration, paper_calibration and uniform starts with 600 s of rest. touches, two_weights and field are continuous
+/// in time at their rate: all their frames are history of one piece. Thread-safe, because frame() only reads. A frame
+/// depends only on the seed and its index (contacts: also on the number of frames; touches and two_weights: on the
+/// options).
 class Scene {
  public:
   /// Fails on an unknown name, on options out of range or of other scenes, and on a frame count for a scene of fixed
@@ -140,11 +143,23 @@ class Scene {
   void frame(std::size_t index, SceneFrame& out) const;
 
  private:
-  enum class Kind { calibration, uniform, paper_calibration, paper, multitouch, contacts, idle, touches, two_weights };
+  enum class Kind {
+    calibration,
+    uniform,
+    paper_calibration,
+    paper,
+    multitouch,
+    contacts,
+    idle,
+    touches,
+    two_weights,
+    field
+  };
 
   Scene(Kind kind, const ArrayDescription& array, const EnvironmentOptions& environment, std::uint64_t seed);
   [[nodiscard]] Status check_array() const;
   [[nodiscard]] Status set_options(const SceneOptions& options);
+  [[nodiscard]] Status set_field(const std::vector<float>& field_n);
   [[nodiscard]] Status set_length(std::optional<std::size_t> frames);
   void write_script();
   [[nodiscard]] std::size_t default_frame_count() const;
@@ -157,6 +172,7 @@ class Scene {
   void leave_alone(std::size_t index, SceneFrame& out) const;
   double go_on(std::size_t index, SceneFrame& out) const;
   void press_and_let_go(std::size_t index, SceneFrame& out) const;
+  void press_as_given(std::size_t index, SceneFrame& out) const;
   [[nodiscard]] bool lay_weights(std::size_t index, SceneFrame& out) const;
   void add_contact(Random& random, std::vector<double>& force_n) const;
   void label_forces(std::size_t index, SceneFrame& out) const;
@@ -166,12 +182,13 @@ class Scene {
   double supply_variation_;
   std::uint64_t seed_;
   std::size_t frame_count_ = 0;
-  double rate_hz_ = 0.0;                   // touches, two_weights
+  double rate_hz_ = 0.0;                   // touches, two_weights, field
   std::size_t weighed_taxels_ = 0;         // two_weights
   std::vector<std::size_t> paper_taxels_;  // [3 forces, 16]
   std::shared_ptr<const ContactScript> contacts_;
   std::shared_ptr<const TouchScript> touches_;
   std::shared_ptr<const WeightScript> weights_;
+  std::shared_ptr<const std::vector<float>> field_n_;
 };
 
 [[nodiscard]] const char* to_string(PatchShape shape) noexcept;
