@@ -160,6 +160,8 @@ class Strangers(unittest.TestCase):
         self.expect(f"{bag}#/left", COUNTS)
         self.expect(f"{bag}#/right", COUNTS + 1)
         self.expect_refusal(f"{bag}#/middle", "has no array", "/left")
+        deep = [multi_array("Float32", numpy.zeros((2, 5, 4), "float32")) for _ in COUNTS]
+        self.expect_refusal(self.write_bag({"/deep": deep}, "deep"), "'/deep'", "more than two dimensions")
         alone = self.write_bag({"/camera": camera, "/left": left}, "alone")
         self.expect(alone, COUNTS)
         self.expect(f"{alone}#/left", COUNTS)

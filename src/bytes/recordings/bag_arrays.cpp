@@ -43,6 +43,7 @@ class Search {
     leave_cameras();
     return std::move(arrays_);
   }
+  [[nodiscard]] const std::string& why() const { return why_; }
 
  private:
   [[nodiscard]] bool has_all() const { return missing_ && missing_->empty(); }
@@ -51,7 +52,13 @@ class Search {
     if (!seen_.insert(message.channel).second) return;
     if (missing_) missing_->erase(message.channel);
     const McapChannel& channel = mcap_.channels().at(message.channel);
-    if (!may_be_readings(channel) || !read_readings(channel, message.data, readings_)) return;
+    if (!may_be_readings(channel)) return;
+    if (const Status read = read_readings(channel, message.data, readings_); !read) {
+      if (why_.empty()) {
+        why_ = "the first message of " + printable(channel.topic) + " cannot be read: " + read.error().message;
+      }
+      return;
+    }
     for (const BagReading& reading : readings_) {
       if (arrays_.size() == kMostArrays) return;
       arrays_.push_back({message.channel, reading.part, topic_of(channel.topic, reading.part)});
@@ -71,6 +78,7 @@ class Search {
   std::optional<std::set<std::uint16_t>> missing_;  // topics by the summary that have not come
   std::vector<BagReading> readings_;
   std::vector<BagArray> arrays_;
+  std::string why_;
 };
 
 }  // namespace
@@ -80,6 +88,12 @@ std::vector<BagArray> find_bag_arrays(McapReader& mcap) {
   std::vector<BagArray> arrays = Search(mcap).arrays();
   mcap.rewind();
   return arrays;
+}
+
+std::string why_no_array(McapReader& mcap) {
+  Search search(mcap);
+  static_cast<void>(search.arrays());
+  return search.why();
 }
 
 }  // namespace dermis::bytes::recordings

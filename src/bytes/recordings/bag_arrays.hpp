@@ -21,4 +21,8 @@ struct BagArray {
 /// cameras, and none of them. Empty for a recording of dermis. Goes back to the beginning.
 [[nodiscard]] std::vector<BagArray> find_bag_arrays(McapReader& mcap);
 
+/// "the first message of '/touch' cannot be read: ..." of the first topic that should be an array and is none; empty:
+/// all are.
+[[nodiscard]] std::string why_no_array(McapReader& mcap);
+
 }  // namespace dermis::bytes::recordings

@@ -53,10 +53,14 @@ class Found {
     if (is_matrix(value)) return matrices_.push_back(matrix_reading(value, part));
     if (is_row(value)) return rows_.push_back(row_reading(value, part));
     if (value.is_array()) {
-      for (std::size_t k = 0; k < value.size(); ++k) add(value[k], part + '[' + std::to_string(k) + ']', depth + 1);
+      for (std::size_t k = 0; k < value.size(); ++k) {
+        add(value[k], std::string(part).append("[").append(std::to_string(k)).append("]"), depth + 1);
+      }
     }
     if (!value.is_object()) return;
-    for (const auto& [key, member] : value.items()) add(member, part.empty() ? key : part + '.' + key, depth + 1);
+    for (const auto& [key, member] : value.items()) {
+      add(member, part.empty() ? key : std::string(part).append(".").append(key), depth + 1);
+    }
   }
 
   [[nodiscard]] std::vector<BagReading> readings() && { return std::move(matrices_.empty() ? rows_ : matrices_); }

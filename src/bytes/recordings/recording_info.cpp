@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "bytes/recordings/bag_arrays.hpp"
 #include "bytes/recordings/message_kind.hpp"
 #include "bytes/recordings/recording_counts.hpp"
 #include "bytes/recordings/recording_description.hpp"
@@ -233,6 +234,10 @@ Result<RecordingInfo> recording_info(const std::string& path) {
     if (!reader) return reader.error();
     if (const Status counted = count_all(**reader, path, info); !counted) return counted.error();
     if (const Status counted = count_bag(path, info); !counted) return counted.error();
+    if (frames_of(info) == 0 && info.unread.empty()) {
+      (*reader)->rewind();
+      info.unread = why_no_array(**reader);
+    }
   }
   info.complete = (*reader)->complete();
   info.compression = compression_text((*reader)->compressions());

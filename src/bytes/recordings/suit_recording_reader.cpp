@@ -283,8 +283,8 @@ Status SuitRecordingReader::Implementation::read_bag_message(const McapMessage& 
 Result<bool> SuitRecordingReader::Implementation::read_frame(std::size_t& array, RawFrame& frame) {
   McapMessage message;
   while (true) {
-    const Result<bool> taken = take_reading(array, frame);
-    if (!taken || *taken) return taken;
+    Result<bool> next_reading = take_reading(array, frame);
+    if (!next_reading || *next_reading) return next_reading;
     Result<bool> got_message = mcap_->next(message);
     if (!got_message || !*got_message) return got_message;
     if (arrays_.empty()) describe();

@@ -38,15 +38,20 @@ struct Side {
 };
 constexpr std::array<Side, 2> kSides{{{"-right", "0x27"}, {"-left", "0x28"}}};
 
+/// `name = "thumb"`, `begins = "B1"` and so on.
+std::string keys_of(const Hand& hand, const Finger& finger) {
+  const std::string command(finger.command);
+  std::string keys = "name = \"" + std::string(finger.name) + "\"\n";
+  keys.append("begins = \"" + command + "\"\n");
+  keys.append("request = \"" + command + std::string(hand.request) + "\"\n");
+  return keys.append(hand.finger);
+}
+
 std::string map_of(const Hand& hand, const Side& side) {
   const std::string head = "[[can.array]]\nid = " + std::string(side.id) + "\n";
   std::string map;
-  for (const Finger& finger : kFingers) {
-    const std::string command(finger.command);
-    map += head + "name = \"" + std::string(finger.name) + "\"\nbegins = \"" + command + "\"\nrequest = \"" + command +
-           std::string(hand.request) + "\"\n" + std::string(hand.finger);
-  }
-  return hand.palm.empty() ? map : map + head + std::string(hand.palm);
+  for (const Finger& finger : kFingers) map.append(head).append(keys_of(hand, finger));
+  return hand.palm.empty() ? map : map.append(head).append(hand.palm);
 }
 
 }  // namespace
