@@ -127,6 +127,12 @@ class Strangers(unittest.TestCase):
         recorded = dermis("record", "--from", f"file:{none}?rows={ROWS}&cols={COLS}", "--out", self.work / "a.mcap")
         self.assertEqual(recorded.returncode, 0, recorded.stderr)
         self.assertIn("5x4", dermis("info", self.work / "a.mcap").stdout)
+        column = self.write_bag({"/t": [multi_array("UInt16", frame.reshape(-1, 1)) for frame in frames]}, "column")
+        self.assertIn("20x1", dermis("info", column).stdout)
+        large = numpy.arange(3 * 48 * 48).reshape(3, 48, 48)
+        flat = self.write_bag({"/t": [multi_array("Float32", one.astype("float32"), ()) for one in large]}, "flat")
+        self.expect(flat, large, "--rows", 48, "--cols", 48)
+        self.expect_refusal(flat, "2304 numbers", "how many rows and cols")
         done, _ = self.convert(none, "--rows", 3, "--cols", 3)
         self.assertIn("has 1x20 taxels, the array is 3x3", done.stderr)
 

@@ -16,6 +16,7 @@
 #include "dermis/bytes/formats/imports.hpp"
 #include "dermis/bytes/formats/matlab.hpp"
 #include "dermis/bytes/recordings/recording.hpp"
+#include "dermis/touch/frames/array_description.hpp"
 
 namespace dermis::bytes::recordings {
 namespace {
@@ -78,6 +79,9 @@ Source open_mcap(const std::string& path, const FrameFileInput& input) {
   const RecordingPlace place = recording_place(path);
   auto reader = RecordingReader::open(place.path, place.array);
   const std::optional<FrameShape> found = reader ? (*reader)->shape() : std::nullopt;
+  if (found && !input.shape && found->cols > kMaxLines) {
+    return bad_input(path + ": has frames of " + std::to_string(found->cols) + " numbers; say how many rows and cols");
+  }
   if (!found || !input.shape || *found == *input.shape) return as<FrameSource>(std::move(reader));
   if (found->rows == 1 && found->cols == input.shape->taxel_count()) {
     return std::unique_ptr<FrameSource>(std::make_unique<Folded>(*std::move(reader), *input.shape));

@@ -18,12 +18,12 @@ constexpr std::size_t kMostParts = 256;
 constexpr int kDeepest = 8;
 
 bool is_row(const json& value) {
-  return value.is_array() && !value.empty() && value.size() <= kMaxLines &&
+  return value.is_array() && !value.empty() && value.size() <= kMaxLines * kMaxLines &&
          std::ranges::all_of(value, [](const json& one) { return one.is_number() || one.is_null(); });
 }
 
 bool is_matrix(const json& value) {
-  return value.is_array() && !value.empty() && value.size() <= kMaxLines &&
+  return value.is_array() && !value.empty() && value.size() <= kMaxLines && value[0].size() <= kMaxLines &&
          std::ranges::all_of(value, [&](const json& row) { return is_row(row) && row.size() == value[0].size(); });
 }
 

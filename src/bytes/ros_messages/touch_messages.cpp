@@ -144,14 +144,16 @@ Status decode_frame_reading(Message message, std::span<TouchReading> readings) {
   return Done{};
 }
 
-/// The shape of rows and columns behind dimensions of size 1. Values without dimensions are one row.
+/// The shape of two dimensions, or of those that are not 1. Values without dimensions are one row, of any length.
 Result<FrameShape> shape_of(std::span<const std::size_t> sizes, std::size_t values) {
   FrameShape shape{1, values};
   std::vector<std::size_t> lines;
   std::copy_if(sizes.begin(), sizes.end(), std::back_inserter(lines), [](std::size_t size) { return size != 1; });
   if (lines.size() == 2) shape = {lines[0], lines[1]};
+  if (sizes.size() == 2) shape = {sizes[0], sizes[1]};
   if (lines.size() > 2) return bad_input("the message has more than two dimensions");
-  const bool is_possible = shape.rows >= 1 && shape.rows <= kMaxLines && shape.cols >= 1 && shape.cols <= kMaxLines;
+  const bool is_possible = shape.rows >= 1 && shape.rows <= kMaxLines && shape.cols >= 1 &&
+                           shape.cols <= (sizes.empty() ? kMaxLines * kMaxLines : kMaxLines);
   if (!is_possible || shape.taxel_count() != values) {
     return bad_input("the message has " + std::to_string(values) + " values, which its dimensions do not give");
   }
