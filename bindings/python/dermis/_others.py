@@ -6,6 +6,7 @@ library as an archive of NumPy, which knows axes and times."""
 import contextlib
 import importlib
 import json
+import os
 import tempfile
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from dermis import BadInput, Failed
 
 TIMES = ("time_ns", "time_s", "timestamps", "timestamp", "time", "t")
 INFO = "meta/info.json"  # of a dataset of LeRobot
+ZARR = ("zarr.json", ".zgroup", ".zarray")  # one of them is in its folder
 
 
 def module_of(name, package):
@@ -28,17 +30,17 @@ def module_of(name, package):
 
 def split(text):
     """ "data.parquet#touch[..., 2]" as ("data.parquet", "touch", "[..., 2]")."""
-    path, _, choice = text.partition("#") if not Path(text).exists() else (text, "", "")
+    path, _, choice = text.partition("#") if not os.path.exists(text) else (text, "", "")
     name, bracket, axes = choice.partition("[")
     return path.rstrip("/"), name.strip("/"), bracket + axes
 
 
 def reader_of(text):
     """The function that reads the numbers of a file; None: the library reads it."""
-    path = Path(split(text)[0])
-    if path.suffix == ".parquet" or (path / INFO).is_file():
+    path = split(text)[0]
+    if path.endswith(".parquet") or os.path.isfile(os.path.join(path, INFO)):
         return numbers_in_parquet
-    if path.suffix == ".zarr" or any((path / name).is_file() for name in ("zarr.json", ".zgroup", ".zarray")):
+    if path.endswith(".zarr") or any(os.path.isfile(os.path.join(path, name)) for name in ZARR):
         return numbers_in_zarr
     return None
 
@@ -161,8 +163,8 @@ def read_others(recording):
     library = recording.read
 
     def read(path, *, rate_hz=None, episode=None):
-        text = str(path)
-        reader = reader_of(text)
+        text = os.fspath(path) if isinstance(path, (str, os.PathLike)) else ""
+        reader = reader_of(text) if isinstance(text, str) else None
         if reader is not None:
             return read_by(reader, library, text, rate_hz, episode)
         if episode is not None:
