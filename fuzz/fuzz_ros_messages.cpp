@@ -21,6 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (const auto shape = messages::decode_raw_frame(message, frame)) {
     if (frame.counts.size() != shape->taxel_count()) std::abort();
   }
+  static_cast<void>(messages::decode_text(message));
   static_cast<void>(messages::decode_acquisition(message, frame));
   static_cast<void>(messages::decode_temperature(message));
   if (messages::JointNumbers joints; messages::decode_joint_state(message, joints)) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "dermis/bytes/devices/device_source.hpp"
+#include "dermis/live/buses/bus_address.hpp"
 #include "dermis/live/fleet/stream_address.hpp"
 #include "dermis/live/sources/open_source.hpp"
 #include "lost_input.hpp"
@@ -24,10 +25,12 @@ bytes::devices::SourceUri uri_of_path(const std::string& name) {
   return uri;
 }
 
-/// The frames of a robot, of which a file is to be made or told.
+/// The frames of a robot or of the log of a bus, of which a file is to be made or told.
 Result<std::unique_ptr<FrameSource>> open_stream(const std::string& name) {
   Result<std::unique_ptr<FrameSource>> stream =
       live::sources::open_source(name, {.stop = &stop_flag(), .notice = print_notice});
+  const bool is_bus = live::buses::is_bus_address(name);
+  if (stream && (*stream)->is_live() && is_bus) return live::sources::has_no_end(name);
   if (stream && (*stream)->is_live()) return bad_input("'" + name + "': has no end; add from=1&to=last");
   return stream;
 }
@@ -35,11 +38,11 @@ Result<std::unique_ptr<FrameSource>> open_stream(const std::string& name) {
 }  // namespace
 
 bool DescribedFile::is_described() const {
-  return !layout.empty() || bytes::devices::is_source_uri(name);
+  return !layout.empty() || bytes::devices::is_source_uri(name) || live::buses::is_bus_address(name);
 }
 
 Result<std::unique_ptr<FrameSource>> DescribedFile::open() const {
-  if (live::fleet::is_stream_address(name)) return open_stream(name);
+  if (live::fleet::is_stream_address(name) || live::buses::is_bus_address(name)) return open_stream(name);
   const bool is_uri = bytes::devices::is_source_uri(name);
   Result<bytes::devices::SourceUri> uri = is_uri ? bytes::devices::parse_source_uri(name) : uri_of_path(name);
   if (!uri) return uri.error();

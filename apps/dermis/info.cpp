@@ -18,6 +18,7 @@
 #include "dermis/bytes/models/model_file.hpp"
 #include "dermis/bytes/recordings/frame_file_info.hpp"
 #include "dermis/bytes/recordings/frame_files.hpp"
+#include "dermis/live/buses/bus_address.hpp"
 #include "dermis/live/fleet/stream_address.hpp"
 #include "dermis/out/report/model_facts.hpp"
 #include "dermis/touch/pipeline/model.hpp"
@@ -222,7 +223,10 @@ Status print_info(const InfoOptions& options, const DescribedFile& file) {
   if (!source) return source.error();
   const Result<FrameFileInfo> info = bytes::recordings::frame_source_info(**source);
   if (!info) return info.error();
-  print(options, live::fleet::is_stream_address(options.file) ? "frames of a stream" : "bytes of a layout", *info);
+  const char* const what = live::fleet::is_stream_address(options.file) ? "frames of a stream"
+                           : live::buses::is_bus_address(options.file)  ? "a log of a bus"
+                                                                        : "bytes of a layout";
+  print(options, what, *info);
   return Done{};
 }
 

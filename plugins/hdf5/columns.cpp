@@ -69,6 +69,12 @@ Result<CountsDataset> CountsDataset::open(const Hdf5Input& file, const char* nam
   return CountsDataset(*std::move(dataset), found);
 }
 
+Result<CountsDataset> CountsDataset::open_rows(const Hdf5Input& file, const char* name, FrameShape shape) {
+  Result<Hdf5Dataset> dataset = file.dataset(name);
+  if (!dataset) return dataset.error();
+  return CountsDataset(*std::move(dataset), shape);
+}
+
 Status CountsDataset::read(hsize_t index, std::vector<float>& counts) {
   if (index - first_ >= count_) {
     const hsize_t most = std::max<hsize_t>(kBlockBytes / (shape_.taxel_count() * sizeof(float)), 1);

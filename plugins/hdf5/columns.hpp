@@ -31,6 +31,9 @@ class CountsDataset {
   [[nodiscard]] static Result<CountsDataset> open(const Hdf5Input& file, const char* name,
                                                   std::optional<FrameShape> shape);
 
+  /// The same of any dataset of which an element of the first dimension has as many values as `shape`.
+  [[nodiscard]] static Result<CountsDataset> open_rows(const Hdf5Input& file, const char* name, FrameShape shape);
+
   [[nodiscard]] FrameShape shape() const noexcept { return shape_; }
   [[nodiscard]] hsize_t frame_count() const noexcept { return dataset_.sizes[0]; }
   /// Fails on whole numbers that a float does not hold exactly. `index` < frame_count(), rising.

@@ -11,12 +11,12 @@
 
 namespace dermis::bytes::recordings {
 
-/// A dataset of any name in an HDF5 file: frames x rows x cols, or frames x taxels where the shape is given. Times are
-/// those of time_s or time_ns beside it or at the top, or of the rate. The memory is that of some chunks, at most 200
-/// MiB.
+/// A dataset of any name in an HDF5 file: frames x rows x cols, or frames x taxels where the shape is given. Other axes
+/// are those of dermis/bytes/files/array_frames.hpp. Times are those of its names beside the dataset or at the top,
+/// or of the rate. The memory is that of some chunks, at most 200 MiB; of all where frames do not stand first.
 class Hdf5DatasetReader final : public FrameSource {
  public:
-  /// `dataset`: "/observations/tactile". `rate_hz` goes before the times of the file.
+  /// `dataset`: "/observations/tactile", "tactile[..., 2]". `rate_hz` goes before the times of the file.
   [[nodiscard]] static Result<std::unique_ptr<Hdf5DatasetReader>> open(const std::string& path,
                                                                        const std::string& dataset,
                                                                        const std::optional<FrameShape>& shape,

@@ -216,10 +216,10 @@ std::string Hdf5Input::datasets_text() const {
   std::string names;
   std::size_t named = 0;
   for (const Hdf5DatasetName& dataset : datasets()) {
-    if (dataset.sizes.size() < 2 || dataset.sizes.size() > 3 || named++ == kMostNames) continue;
+    if (dataset.sizes.size() < 2 || named++ == kMostNames) continue;
     names += (names.empty() ? "" : ", ") + files::in_quotes(dataset.path) + " (" + sizes_text(dataset.sizes) + ")";
   }
-  return names.empty() ? "; it has none of two or three dimensions" : "; it has: " + names;
+  return names.empty() ? "; it has none of two dimensions or more" : "; it has: " + names;
 }
 
 Result<Hdf5Dataset> Hdf5Input::dataset(const char* name) const {

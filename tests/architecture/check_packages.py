@@ -108,8 +108,10 @@ BARE = set(
 esac exec exit export fi find flock for git grep id if install ldd local ls make mkdir mktemp mount nproc printf
 return rm sed set sh sudo tail tar then touch trap umount while xargs""".split()
 )
-# Our own package and what makes its wheel, what ROS 2 brings to a launch file, and what tests/requirements.txt names.
+# Our own package and what makes its wheel, what ROS 2 brings to a launch file, what an example asks of PyPI, and what
+# tests/requirements.txt names.
 MODULES_OF_OTHERS = {
+    "bleak",
     "build_backend",
     "datasets",
     "dermis",

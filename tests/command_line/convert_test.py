@@ -210,8 +210,9 @@ class Convert(FrameFiles):
         out = self.work / "a.h5"
         npy = self.work / "f.npy"
         np.save(npy, np.zeros((2, 6), "u1"))
-        fortran = self.work / "fortran.npy"
-        np.save(fortran, np.asfortranarray(np.zeros((2, 3, 4))))
+        axes, last = self.work / "axes.npy", self.work / "last.npy"
+        np.save(axes, np.zeros((2, 3, 4, 5)))
+        np.save(last, np.zeros((3, 4, 50)))
         cut = self.written("cut.csv", "time_s,r0c0\n0,1\n1,x\n")
         for arguments, places in (
             ((frames, self.work / "a.txt"), ["a.txt", ".csv, .mcap, .h5"]),
@@ -226,7 +227,12 @@ class Convert(FrameFiles):
             ((npy, out, "--rate", "10", "--rows", "-2", "--cols", "6"), ["--rows", "must not be negative"]),
             ((npy, out, "--rate", "10", "--rows", "2", "--cols", "2"), ["6 numbers, the array is 2x2"]),
             ((npy, out, "--rate", "10", "--rows", "2", "--cols", "3", "--array", self.array), ["4x5 taxels"]),
-            ((fortran, out, "--rate", "10"), ["Fortran order", "ascontiguousarray"]),
+            ((axes, out, "--rate", "10"), ["2 x 3 x 4 x 5", "axes.npy#[:, 0]"]),
+            (
+                (last, out, "--rate", "10"),
+                ["3 frames of 4x50, as", "50 frames of 3x4, as", "last.npy#[rows, cols, frames]"],
+            ),
+            ((f"{last}#[0, frames]", out, "--rate", "10"), ["[0, frames]", "frames, rows and cols"]),
             ((frames, out, "--rate", "10"), ["--rate", "times of its own"]),
             ((cut, out), ["cut.csv:3", "r0c0", "'x'"]),
             ((frames, self.work / "a.mcap", "--rows", "3", "--cols", "3"), ["has 4x5 taxels, the array is 3x3"]),

@@ -87,11 +87,13 @@ from dermis._dermis import (
     read_model,
     serve,
 )
+from dermis._others import read_others as _read_others
 from dermis._shown import show_well as _show_well
 from dermis._suit import Suit, SuitArray
 
 _copy_well()
 _show_well()
+_read_others(Recording)
 
 
 async def _next_frame(source):

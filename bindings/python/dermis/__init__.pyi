@@ -154,7 +154,9 @@ class Recording:
         array: ArrayDescription | _Path | None = None,
     ) -> None: ...
     @staticmethod
-    def read(path: _Path, *, rate_hz: float | None = None) -> Recording: ...
+    def read(path: _Path, *, rate_hz: float | None = None, episode: int | None = None) -> Recording:
+        """Also of Parquet and datasets of LeRobot (pyarrow) and of zarr (zarr), with their column or array behind '#'.
+        `episode`: which of several."""
     def write(self, path: _Path, *, force: bool = False) -> None:
         """Raises BadInput where the file exists, unless `force`."""
 

@@ -15,10 +15,11 @@ struct Kind {
   std::string_view name;
 };
 
-constexpr std::array kKinds = {Kind{"\x89MCAP", kMcapKind},        Kind{"\x89HDF", kHdf5Kind},
-                               Kind{"\x93NUMPY", kNpyKind},        Kind{"PK\x03\x04", kZipKind},
-                               Kind{"\x89PNG", "a PNG picture"},   Kind{"BZh", "packed by bzip2"},
-                               Kind{"\x1f\x8b", "packed by gzip"}, Kind{"<?xml", "an XML file"}};
+constexpr std::array kKinds = {
+    Kind{"\x89MCAP", kMcapKind},        Kind{"\x89HDF", kHdf5Kind},       Kind{"\x93NUMPY", kNpyKind},
+    Kind{"PK\x03\x04", kZipKind},       Kind{"\x89PNG", "a PNG picture"}, Kind{"BZh", "packed by bzip2"},
+    Kind{"\x1f\x8b", "packed by gzip"}, Kind{"<?xml", "an XML file"},     Kind{"\x80\x02", kPickleKind},
+    Kind{"\x80\x03", kPickleKind},      Kind{"\x80\x04", kPickleKind},    Kind{"\x80\x05", kPickleKind}};
 
 /// Eight bytes of a length, of which the last are 0 in every file that can be read, and an object of JSON.
 bool is_safetensors(std::string_view bytes) {

@@ -9,16 +9,17 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "bytes/files/npy_header.hpp"
+#include "dermis/bytes/files/array_frames.hpp"
 #include "dermis/bytes/files/atomic_file.hpp"
 #include "dermis/bytes/files/input.hpp"
 #include "dermis/bytes/files/taxel_text.hpp"
 #include "dermis/bytes/files/text.hpp"
 #include "dermis/bytes/files/u16_counts.hpp"
-#include "dermis/touch/frames/array_description.hpp"
 
 namespace dermis::bytes::files {
 namespace {
@@ -34,10 +35,10 @@ T item_at(const char* bytes, bool is_big_endian) {
 }
 
 /// False where a float does not hold the number exactly; floats are rounded.
-template <typename T>
-bool to_count(T item, float& count) {
-  count = static_cast<float>(item);
-  if constexpr (std::is_integral_v<T>) {
+template <typename T, typename Number>
+bool to_number(T item, Number& number) {
+  number = static_cast<Number>(item);
+  if constexpr (std::is_integral_v<T> && std::is_same_v<Number, float>) {
     constexpr std::int64_t kLargestExact = std::int64_t{1} << std::numeric_limits<float>::digits;
     return std::cmp_less_equal(item, kLargestExact) && std::cmp_greater_equal(item, -kLargestExact);
   }
@@ -45,48 +46,87 @@ bool to_count(T item, float& count) {
 }
 
 /// Converts all items; the index of the first that cannot be, or the number of items.
-template <typename T>
-std::size_t convert(const std::vector<char>& bytes, bool is_big_endian, std::vector<float>& counts) {
-  for (std::size_t i = 0; i < counts.size(); ++i) {
-    if (!to_count(item_at<T>(bytes.data() + i * sizeof(T), is_big_endian), counts[i])) return i;
+template <typename T, typename Number>
+std::size_t convert(const std::vector<char>& bytes, bool is_big_endian, std::vector<Number>& numbers) {
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (!to_number(item_at<T>(bytes.data() + i * sizeof(T), is_big_endian), numbers[i])) return i;
   }
-  return counts.size();
+  return numbers.size();
 }
 
-using Convert = std::size_t (*)(const std::vector<char>&, bool, std::vector<float>&);
+template <typename Number>
+using Convert = std::size_t (*)(const std::vector<char>&, bool, std::vector<Number>&);
 
-Convert conversion_of(const NpyHeader& header) {
+template <typename Number>
+Convert<Number> conversion_of(const NpyHeader& header) {
   const bool is_signed = header.kind == 'i';
-  if (header.kind == 'f') return header.item_bytes == 4 ? convert<float> : convert<double>;
+  if (header.kind == 'f') return header.item_bytes == 4 ? convert<float, Number> : convert<double, Number>;
   switch (header.item_bytes) {
-    case 1: return is_signed ? convert<std::int8_t> : convert<std::uint8_t>;
-    case 2: return is_signed ? convert<std::int16_t> : convert<std::uint16_t>;
-    case 4: return is_signed ? convert<std::int32_t> : convert<std::uint32_t>;
-    default: return is_signed ? convert<std::int64_t> : convert<std::uint64_t>;
+    case 1: return is_signed ? convert<std::int8_t, Number> : convert<std::uint8_t, Number>;
+    case 2: return is_signed ? convert<std::int16_t, Number> : convert<std::uint16_t, Number>;
+    case 4: return is_signed ? convert<std::int32_t, Number> : convert<std::uint32_t, Number>;
+    default: return is_signed ? convert<std::int64_t, Number> : convert<std::uint64_t, Number>;
   }
 }
 
-/// The shape of a frame, or why there is none.
-Result<FrameShape> frame_shape(const NpyHeader& header, const std::optional<FrameShape>& wanted) {
-  const std::vector<std::uint64_t>& sizes = header.shape;
-  if (header.is_fortran_order) return bad_input("is in Fortran order; save numpy.ascontiguousarray of it");
-  if (sizes.size() == 2) {
-    if (!wanted) return bad_input("has frames of " + std::to_string(sizes[1]) + " numbers; say how many rows and cols");
-    if (sizes[1] == wanted->taxel_count()) return *wanted;
-    return bad_input("has frames of " + std::to_string(sizes[1]) + " numbers, the array is " + size_text(*wanted));
+NumberArray array_of(const NpyHeader& header) {
+  std::vector<std::size_t> sizes(header.shape.begin(), header.shape.end());
+  return header.is_fortran_order ? NumberArray::first_fastest(std::move(sizes))
+                                 : NumberArray::last_fastest(std::move(sizes));
+}
+
+/// All numbers of an array, as they stand in the file.
+template <typename Number>
+Result<std::vector<Number>> read_all(std::istream& in, const NpyHeader& header) {
+  const std::size_t count = array_of(header).value_count();
+  if (count > kMostArrayValues) return bad_input("has more than 67 million values; save it in parts");
+  constexpr std::size_t kPiece = std::size_t{1} << 16U;
+  std::vector<Number> numbers;
+  std::vector<char> bytes;
+  std::vector<Number> piece;
+  while (numbers.size() < count) {
+    piece.resize(std::min(kPiece, count - numbers.size()));
+    bytes.resize(piece.size() * header.item_bytes);
+    in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    if (static_cast<std::size_t>(in.gcount()) != bytes.size()) return bad_input("is cut short; save it again");
+    if (conversion_of<Number>(header)(bytes, header.is_big_endian, piece) != piece.size()) {
+      return bad_input("has a count beyond 16777216, which cannot be held exactly");
+    }
+    numbers.insert(numbers.end(), piece.begin(), piece.end());
   }
-  if (sizes.size() != 3) {
-    return bad_input("has " + std::to_string(sizes.size()) + " dimensions; frames x rows x cols is expected");
+  if (in.peek() == std::istream::traits_type::eof()) return numbers;
+  return bad_input("has bytes after its " + std::to_string(count) + " values; save it again");
+}
+
+/// The numbers, where they must be seen to find the frames, and these.
+struct Plan {
+  FrameAxes axes;
+  std::vector<float> values;  // empty: frames are read one by one
+};
+
+Result<Plan> plan_of(std::istream& in, const NpyHeader& header, const std::string& name, const NpyInput& input) {
+  const NumberArray array = array_of(header);
+  const ArrayHints hints{name + (name.find('#') == std::string::npos ? "#" : ""), input.axes, input.shape,
+                         input.seconds.size()};
+  Plan plan;
+  const auto read_values = [&]() -> Status {
+    Result<std::vector<float>> values = read_all<float>(in, header);
+    if (!values) return values.error();
+    plan.values = *std::move(values);
+    return Done{};
+  };
+  if (needs_values(array, hints)) {
+    if (Status done = read_values(); !done) return done.error();
   }
-  if (sizes[1] == 0 || sizes[2] == 0 || sizes[1] > kMaxLines || sizes[2] > kMaxLines) {
-    return bad_input("has frames of " + std::to_string(sizes[1]) + "x" + std::to_string(sizes[2]) +
-                     " taxels; 1x1 to 1024x1024 can be read");
+  const Result<FrameAxes> axes = frame_axes(array, hints, plan.values);
+  if (!axes) return axes.error();
+  plan.axes = *axes;
+  const NumberArray taken = NumberArray::last_fastest({axes->frames, axes->shape.rows, axes->shape.cols});
+  const bool is_whole = taken.value_count() == array.value_count();
+  if (plan.values.empty() && !(axes->is_in_order() && is_whole)) {
+    if (Status done = read_values(); !done) return done.error();
   }
-  const FrameShape shape{sizes[1], sizes[2]};
-  if (wanted && *wanted != shape) {
-    return bad_input("has " + size_text(shape) + " taxels, the array is " + size_text(*wanted));
-  }
-  return shape;
+  return plan;
 }
 
 }  // namespace
@@ -95,25 +135,28 @@ struct NpyReader::State {
   std::unique_ptr<std::istream> in;
   std::string name;
   NpyHeader header;
-  FrameShape shape;
-  double rate_hz;
-  Convert convert;
+  FrameAxes axes;
+  NpyInput input;
+  Convert<float> convert;
+  std::unique_ptr<FrameSource> loaded{};  // instead of the stream
   std::uint64_t next = 0;
   std::vector<char> bytes{};
 
   Error error(const std::string& message) const { return bad_input(name + ": " + message); }
-  std::string place() const { return "frame " + std::to_string(next) + " of " + std::to_string(header.shape[0]); }
+  std::string place() const { return "frame " + std::to_string(next) + " of " + std::to_string(axes.frames); }
   Status read(RawFrame& frame);
 };
 
 Status NpyReader::State::read(RawFrame& frame) {
+  const FrameShape shape = axes.shape;
   bytes.resize(shape.taxel_count() * header.item_bytes);
   in->read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   if (in->bad()) return read_failure(name);
   if (static_cast<std::size_t>(in->gcount()) != bytes.size()) {
     return error("is cut short in " + place() + "; save it again");
   }
-  const std::optional<Nanos> time = nanos_from_seconds(static_cast<double>(next) / rate_hz);
+  const std::optional<Nanos> time =
+      nanos_from_seconds(input.seconds.empty() ? static_cast<double>(next) / input.rate_hz : input.seconds[next]);
   if (!time) return error(place() + " would be later than 9e9 seconds; give a higher rate");
   frame.time = *time;
   frame.counts.resize(shape.taxel_count());
@@ -138,19 +181,29 @@ Result<std::unique_ptr<NpyReader>> NpyReader::open(const std::string& path, cons
 
 Result<std::unique_ptr<NpyReader>> NpyReader::open(std::unique_ptr<std::istream> in, const std::string& name,
                                                    const NpyInput& input) {
-  assert(input.rate_hz > 0.0);
+  assert(input.rate_hz > 0.0 || !input.seconds.empty());
   Result<NpyHeader> header = read_npy_header(*in);
   if (in->bad()) return read_failure(name);
   if (!header) return bad_input(name + ": " + header.error().message);
-  const Result<FrameShape> shape = frame_shape(*header, input.shape);
-  if (!shape) return bad_input(name + ": " + shape.error().message);
-  const Convert convert = conversion_of(*header);
-  return std::unique_ptr<NpyReader>(new NpyReader(
-      std::make_unique<State>(State{std::move(in), name, *std::move(header), *shape, input.rate_hz, convert})));
+  Result<Plan> plan = plan_of(*in, *header, name, input);
+  if (in->bad()) return read_failure(name);
+  if (!plan) return bad_input(name + ": " + plan.error().message);
+  if (!input.seconds.empty() && input.seconds.size() != plan->axes.frames) {
+    return bad_input(name + ": has " + std::to_string(plan->axes.frames) + " frames and " +
+                     std::to_string(input.seconds.size()) + " times; give a rate");
+  }
+  const Convert<float> convert = conversion_of<float>(*header);
+  auto state = std::make_unique<State>(State{std::move(in), name, *std::move(header), plan->axes, input, convert});
+  if (!plan->values.empty()) {
+    FrameTimes times{input.seconds, input.seconds.empty() ? std::optional(input.rate_hz) : std::nullopt};
+    state->loaded = frames_of_array(name, plan->axes, std::move(plan->values), std::move(times));
+  }
+  return std::unique_ptr<NpyReader>(new NpyReader(std::move(state)));
 }
 
 Result<bool> NpyReader::next(RawFrame& frame) {
-  if (state_->next == state_->header.shape[0]) {
+  if (state_->loaded) return state_->loaded->next(frame);
+  if (state_->next == state_->axes.frames) {
     if (state_->in->peek() == std::istream::traits_type::eof()) return false;
     return state_->error("has bytes after its " + std::to_string(state_->next) + " frames; save it again");
   }
@@ -160,7 +213,7 @@ Result<bool> NpyReader::next(RawFrame& frame) {
 }
 
 std::optional<FrameShape> NpyReader::shape() const {
-  return state_->shape;
+  return state_->axes.shape;
 }
 
 Result<NpyTable> read_npy_table(const std::string& path) {
@@ -174,16 +227,17 @@ Result<NpyTable> read_npy_table(std::unique_ptr<std::istream> in, const std::str
   const Result<NpyHeader> header = read_npy_header(*in);
   if (in->bad()) return read_failure(name);
   if (!header) return bad_input(name + ": " + header.error().message);
-  std::optional<FrameShape> shape;  // of three dimensions, that in the file
+  NpyInput input{.rate_hz = 1.0};
+  if (header->shape.size() == 3) input.axes = "frames, rows, cols";
   if (header->shape.size() == 2) {
     if (header->shape[1] == 0 || header->shape[1] > kMaxTableColumns) {
       return bad_input(name + ": has " + std::to_string(header->shape[1]) + " columns; 1 to 1048576 can be read");
     }
-    shape = {1, static_cast<std::size_t>(header->shape[1])};
+    input.shape = {1, static_cast<std::size_t>(header->shape[1])};
   }
   in->clear();
   in->seekg(start);
-  Result<std::unique_ptr<NpyReader>> reader = NpyReader::open(std::move(in), name, {.rate_hz = 1.0, .shape = shape});
+  Result<std::unique_ptr<NpyReader>> reader = NpyReader::open(std::move(in), name, input);
   if (!reader) return reader.error();
   NpyTable table{0, (*reader)->shape()->taxel_count(), {}};
   RawFrame frame;
@@ -194,6 +248,12 @@ Result<NpyTable> read_npy_table(std::unique_ptr<std::istream> in, const std::str
     table.values.insert(table.values.end(), frame.counts.begin(), frame.counts.end());
     ++table.rows;
   }
+}
+
+Result<std::vector<double>> read_npy_numbers(std::istream& in) {
+  const Result<NpyHeader> header = read_npy_header(in);
+  if (!header) return header.error();
+  return read_all<double>(in, *header);
 }
 
 struct NpyWriter::State {

@@ -106,6 +106,10 @@ Status parse_type(std::string_view type, NpyHeader& header) {
     if ((header.kind == 'u' || header.kind == 'i') && is_one_of({1, 2, 4, 8})) return Done{};
     if (header.kind == 'f' && is_one_of({4, 8})) return Done{};
   }
+  if (type.ends_with('O')) {
+    return bad_input("holds objects of Python (a pickle), which may run any program when they are read; save numbers " +
+                     std::string("alone, by numpy.save of a plain array"));
+  }
   return bad_input("has elements of type " + in_quotes(type) +
                    "; whole numbers of 8 to 64 bits and floats of 32 or 64 bits can be read: use astype");
 }

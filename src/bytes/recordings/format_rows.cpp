@@ -7,6 +7,7 @@
 
 #include "bytes/recordings/described_sensors.hpp"
 #include "bytes/recordings/hdf5_plugin.hpp"
+#include "dermis/bytes/files/array_frames.hpp"
 #include "dermis/bytes/files/file_kind.hpp"
 #include "dermis/bytes/files/frames_csv.hpp"
 #include "dermis/bytes/files/input.hpp"
@@ -15,6 +16,7 @@
 #include "dermis/bytes/formats/imports.hpp"
 #include "dermis/bytes/formats/matlab.hpp"
 #include "dermis/bytes/recordings/recording.hpp"
+#include "dermis/touch/frames/array_description.hpp"
 
 namespace dermis::bytes::recordings {
 namespace {
@@ -50,18 +52,40 @@ Sink create_csv(const std::string& path, FrameShape shape, const FrameNotes& not
 }
 
 Source open_npy(const std::string& path, const FrameFileInput& input) {
-  return as<FrameSource>(files::NpyReader::open(path, {*input.rate_hz, input.shape}));
+  const RecordingPlace place = recording_place(path);
+  return as<FrameSource>(
+      files::NpyReader::open(place.path, {*input.rate_hz, input.shape, files::array_choice(place.array).axes}));
 }
 
 Sink create_npy(const std::string& path, FrameShape shape, const FrameNotes&) {
   return as<FrameSink>(files::NpyWriter::create(path, shape));
 }
 
+/// Messages without dimensions are one row of numbers: rows and columns that were told.
+class Folded final : public FrameSource {
+ public:
+  Folded(std::unique_ptr<FrameSource> frames, FrameShape shape) : frames_(std::move(frames)), shape_(shape) {}
+
+  Result<bool> next(RawFrame& frame) override { return frames_->next(frame); }
+  [[nodiscard]] std::optional<FrameShape> shape() const override { return shape_; }
+  [[nodiscard]] SourceStatistics statistics() const override { return frames_->statistics(); }
+
+ private:
+  std::unique_ptr<FrameSource> frames_;
+  FrameShape shape_;
+};
+
 Source open_mcap(const std::string& path, const FrameFileInput& input) {
   const RecordingPlace place = recording_place(path);
   auto reader = RecordingReader::open(place.path, place.array);
   const std::optional<FrameShape> found = reader ? (*reader)->shape() : std::nullopt;
+  if (found && !input.shape && found->cols > kMaxLines) {
+    return bad_input(path + ": has frames of " + std::to_string(found->cols) + " numbers; say how many rows and cols");
+  }
   if (!found || !input.shape || *found == *input.shape) return as<FrameSource>(std::move(reader));
+  if (found->rows == 1 && found->cols == input.shape->taxel_count()) {
+    return std::unique_ptr<FrameSource>(std::make_unique<Folded>(*std::move(reader), *input.shape));
+  }
   return bad_input(path + ": has " + files::size_text(*found) + " taxels, the array is " +
                    files::size_text(*input.shape));
 }
@@ -137,7 +161,7 @@ const std::vector<FormatRow>& format_rows() {
        create_wiresens},
       {hdf5, "HDF5", {".h5", ".hdf5"}, files::kHdf5Kind, {}, always, all, open_hdf5, create_hdf5},
       {npy, "NumPy", {".npy"}, files::kNpyKind, {}, never, counts, open_npy, create_npy},
-      {npz, "NumPy archive", {".npz"}, files::kZipKind, {}, never, counts, imported<formats::open_npz>},
+      {npz, "NumPy archive", {".npz"}, files::kZipKind, {}, sometimes, counts, imported<formats::open_npz>},
       {dsa, "Weiss DSA", {".dsa", ".dsa3"}, {}, {}, always, counts, imported<formats::open_dsa>},
       {tekscan,
        "Tekscan ASCII",

@@ -97,7 +97,8 @@ Result<FrameFileInfo> info_of_one_array(const std::string& path, const std::opti
 
 Result<FrameFileInfo> info_of(const std::string& path, FrameFormat format, const std::optional<FrameShape>& shape) {
   if (format != FrameFormat::mcap) return info_of_frames(path, format, shape);
-  return recording_place(path).array.empty() ? info_of_recording(path) : info_of_one_array(path, shape);
+  const RecordingPlace place = recording_place(path);
+  return place.array.empty() ? info_of_recording(place.path) : info_of_one_array(path, shape);
 }
 
 }  // namespace
@@ -113,6 +114,9 @@ Result<FrameFileInfo> frame_file_info(const std::string& path, const std::option
   if (!format) return format.error();
   Result<FrameFileInfo> info = info_of(path, *format, shape);
   if (!info) return info;
+  const bool is_folded =
+      *format == FrameFormat::mcap && shape && info->shape && *info->shape == FrameShape{1, shape->taxel_count()};
+  if (is_folded) info->shape = shape;
   if (shape && info->shape && *info->shape != *shape) {
     return bad_input(path + ": has frames of " + files::size_text(*info->shape) + " taxels");
   }

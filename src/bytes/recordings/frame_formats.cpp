@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 #include <system_error>
 
+#include "bytes/recordings/bag_folder.hpp"
 #include "bytes/recordings/format_rows.hpp"
 #include "bytes/recordings/hdf5_plugin.hpp"
 #include "dermis/bytes/files/file_kind.hpp"
@@ -34,6 +37,30 @@ Result<FrameFormat> hdf5_format(const std::string& path) {
   if (found->has_wiresens) return FrameFormat::wiresens;
   return bad_input(path + ": has neither the dataset 'counts' (dermis) nor 'pressure' and 'frame_count' (WiReSens): " +
                    "name one, as " + files::in_quotes(path + "#/observations/tactile") + found->datasets);
+}
+
+/// Files of others that this library does not read, and the way out.
+struct Elsewhere {
+  std::string_view ending;
+  std::string_view mend;
+};
+constexpr std::string_view kInPython = "is read by the Python package: dermis.Recording.read()";
+constexpr std::string_view kPickle =
+    "is a pickle, which may run any program when it is read; save its numbers by numpy.save";
+constexpr std::string_view kRosBag =
+    "is a bag that is no MCAP; make it one by rosbags-convert of PyPI (docs/recordings.md)";
+constexpr std::array<Elsewhere, 6> kElsewhere{{{".parquet", kInPython},
+                                               {".zarr", kInPython},
+                                               {".pkl", kPickle},
+                                               {".pickle", kPickle},
+                                               {".bag", kRosBag},
+                                               {".db3", kRosBag}}};
+
+std::string_view read_elsewhere(std::string_view name) {
+  while (name.ends_with('/')) name.remove_suffix(1);
+  const auto* const found =
+      std::ranges::find_if(kElsewhere, [&](const Elsewhere& one) { return name.ends_with(one.ending); });
+  return found == kElsewhere.end() ? std::string_view() : found->mend;
 }
 
 /// A folder that 'dermis simulate' has written.
@@ -92,7 +119,15 @@ Result<FrameFormat> frame_format(const std::string& path) {
   if (found != format_rows().end()) return found->format;
   if (is_stream(path)) return FrameFormat::csv;
   std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) return FrameFormat::png_stack;
+  const bool is_folder = std::filesystem::is_directory(path, ignored);
+  if (const std::optional<BagFolder> bag = is_folder ? bag_folder(path) : std::nullopt) {
+    if (!bag->file.empty()) return FrameFormat::mcap;
+    return bad_input(path + ": " + bag->objection);
+  }
+  if (is_folder && read_elsewhere(name).empty()) return FrameFormat::png_stack;
+  if (const std::string_view other = read_elsewhere(name); !other.empty()) {
+    return bad_input(path + ": " + std::string(other));
+  }
   return bad_input(files::in_quotes(path) + ": the ending of its name tells no format of frames; known: " + kWritten +
                    ", and to read .npz, .dsa, .dsa3, .asf, .lst, .asc, .mat, .txt, .png and .packed10");
 }

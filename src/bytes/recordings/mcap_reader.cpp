@@ -345,6 +345,13 @@ void McapReader::read_as_written() {
   state_->goes_by_chunks = false;
 }
 
+void McapReader::rewind() {
+  state_->ended = false;
+  state_->chunk_records = {};
+  state_->next_chunk = 0;
+  state_->scanner.go_to(state_->data_place, state_->data_crc);
+}
+
 void McapReader::seek(std::uint64_t log_time) {
   State& state = *state_;
   state.ended = false;

@@ -2,14 +2,17 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <utility>
 
+#include "bytes/recordings/bag_arrays.hpp"
 #include "bytes/recordings/message_kind.hpp"
 #include "bytes/recordings/recording_counts.hpp"
 #include "bytes/recordings/recording_description.hpp"
 #include "bytes/recordings/recording_format.hpp"
 #include "dermis/bytes/files/text.hpp"
 #include "dermis/bytes/recordings/recording.hpp"
+#include "dermis/bytes/recordings/suit_recording.hpp"
 #include "dermis/bytes/ros_messages/ros_messages.hpp"
 
 namespace dermis::bytes::recordings {
@@ -176,6 +179,31 @@ Status count_all(McapReader& reader, const std::string& name, RecordingInfo& inf
   return Done{};
 }
 
+/// Arrays of a file of others that are more than one topic of images, by reading all frames.
+Status count_bag(const std::string& path, RecordingInfo& info) {
+  const Result<std::unique_ptr<SuitRecordingReader>> bag = SuitRecordingReader::open(path);
+  if (!bag || (*bag)->arrays().front().topic.empty()) return Done{};
+  const std::vector<RecordedArray>& arrays = (*bag)->arrays();
+  if (arrays.size() == 1 && info.arrays.front().frames > 0) return Done{};
+  info.arrays.assign(arrays.size(), {});
+  for (std::size_t k = 0; k < arrays.size(); ++k) info.arrays[k].name = arrays.size() > 1 ? arrays[k].name : "";
+  std::uint64_t first = 0;
+  std::uint64_t last = 0;
+  RawFrame frame;
+  std::size_t array = 0;
+  Result<bool> more = true;
+  for (bool is_first = true; (more = (*bag)->next(array, frame)) && *more; is_first = false) {
+    last = static_cast<std::uint64_t>(frame.acquisition.arrival_utc.count());
+    if (is_first) first = last;
+    info.arrays[array].shape = arrays[array].shape;
+    ++info.arrays[array].frames;
+  }
+  if (!more) return more.error();
+  set_times(first, last, info);
+  info.unread.clear();
+  return Done{};
+}
+
 /// The totals may be those of a file that was written again by others.
 bool begins_with_frame(McapReader& reader) {
   McapMessage message;
@@ -205,6 +233,11 @@ Result<RecordingInfo> recording_info(const std::string& path) {
     reader = McapReader::open(path);
     if (!reader) return reader.error();
     if (const Status counted = count_all(**reader, path, info); !counted) return counted.error();
+    if (const Status counted = count_bag(path, info); !counted) return counted.error();
+    if (frames_of(info) == 0 && info.unread.empty()) {
+      (*reader)->rewind();
+      info.unread = why_no_array(**reader);
+    }
   }
   info.complete = (*reader)->complete();
   info.compression = compression_text((*reader)->compressions());

@@ -2,9 +2,11 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 #include <utility>
 
+#include "bytes/recordings/bag_folder.hpp"
 #include "bytes/recordings/recording_description.hpp"
 #include "dermis/bytes/files/input.hpp"
 #include "dermis/bytes/recordings/recording.hpp"
@@ -24,6 +26,17 @@ std::string names_of(const std::vector<RecordedArray>& arrays) {
   return names;
 }
 
+/// "bag#/touch" where `bag` is a folder of rosbag2: its file.
+RecordingPlace place_in_folder(const std::string& text) {
+  const std::size_t mark = text.rfind('#');
+  for (const std::size_t end : {text.size(), mark}) {
+    if (end == std::string::npos) continue;
+    const std::optional<BagFolder> folder = bag_folder(text.substr(0, end));
+    if (folder && !folder->file.empty()) return {folder->file, end == mark ? text.substr(mark + 1) : ""};
+  }
+  return {text, ""};
+}
+
 }  // namespace
 
 Result<std::size_t> find_array(const std::vector<RecordedArray>& arrays, const std::string& path,
@@ -33,8 +46,9 @@ Result<std::size_t> find_array(const std::vector<RecordedArray>& arrays, const s
     return bad_input(path + ": holds " + std::to_string(arrays.size()) + " arrays; name one, as " +
                      printable(path + "#" + arrays.front().name) + ": " + names_of(arrays));
   }
-  const auto found =
-      std::find_if(arrays.begin(), arrays.end(), [&](const RecordedArray& array) { return array.name == name; });
+  const auto found = std::find_if(arrays.begin(), arrays.end(), [&](const RecordedArray& array) {
+    return array.name == name || array.topic == name;
+  });
   if (found != arrays.end()) return static_cast<std::size_t>(found - arrays.begin());
   return bad_input(path + ": has no array " + printable(name) + "; it has: " + names_of(arrays));
 }
@@ -42,13 +56,13 @@ Result<std::size_t> find_array(const std::vector<RecordedArray>& arrays, const s
 RecordingPlace recording_place(const std::string& text) {
   std::error_code ignored;
   for (const std::string_view mark :
-       {".mcap#", ".dsa#", ".dsa3#", ".csv#", ".txt#", ".npz#", ".mat#", ".h5#", ".hdf5#"}) {
+       {".mcap#", ".dsa#", ".dsa3#", ".csv#", ".txt#", ".npy#", ".npz#", ".mat#", ".h5#", ".hdf5#"}) {
     const std::size_t at = text.rfind(mark);
     if (at == std::string::npos || std::filesystem::exists(text, ignored)) continue;
     const std::size_t end = at + mark.size();
     return {text.substr(0, end - 1), text.substr(end)};
   }
-  return {text, ""};
+  return place_in_folder(text);
 }
 
 RecordingReader::RecordingReader(std::unique_ptr<SuitRecordingReader> suit, std::size_t array)

@@ -5,8 +5,11 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <set>
 #include <utility>
 
+#include "bytes/recordings/bag_arrays.hpp"
+#include "bytes/recordings/bag_messages.hpp"
 #include "bytes/recordings/message_kind.hpp"
 #include "bytes/recordings/recording_description.hpp"
 #include "dermis/bytes/files/input.hpp"
@@ -58,7 +61,7 @@ void ReadArray::add_to(RawFrame& frame, std::uint64_t log_time) {
 /// The meaning of a channel's messages for the frames.
 struct Use {
   MessageKind kind = MessageKind::none;
-  std::size_t array = 0;
+  std::size_t array = 0;  ///< The first, where a message holds several.
 };
 
 }  // namespace
@@ -76,12 +79,17 @@ class SuitRecordingReader::Implementation {
 
  private:
   void describe();
-  void describe_arrays();
   [[nodiscard]] Use use_of(const McapMessage& message);
   [[nodiscard]] Use find_use(std::uint16_t id, const McapChannel& channel);
+  void describe_bag();
+  [[nodiscard]] Status read_bag_message(const McapMessage& message);
+  [[nodiscard]] Use find_use_in_bag(std::uint16_t id, const McapChannel& channel) const;
   [[nodiscard]] Result<bool> read_frame(std::size_t& array, RawFrame& frame);
+  [[nodiscard]] Result<bool> take_reading(std::size_t& array, RawFrame& frame);
+  [[nodiscard]] std::optional<std::size_t> bag_array(std::uint16_t channel, const std::string& part) const;
   [[nodiscard]] Status read_other(const Use& use, const McapMessage& message);
   [[nodiscard]] Status read_image(const Use& use, const McapMessage& message, RawFrame& frame);
+  [[nodiscard]] Status check_shape(const McapMessage& message, std::size_t array, FrameShape shape);
   [[nodiscard]] Error error(const McapMessage& message, const Error& what) const;
 
   std::unique_ptr<McapReader> mcap_;
@@ -90,6 +98,10 @@ class SuitRecordingReader::Implementation {
   std::vector<ReadArray> read_;
   std::map<std::string, std::size_t, std::less<>> folders_;  ///< Folders of the arrays' topics; empty: not known yet.
   std::map<std::uint16_t, Use> uses_;
+  std::vector<BagArray> bag_;         ///< Of a file of others.
+  McapMessage bag_message_;           ///< Without its data.
+  std::vector<BagReading> readings_;  ///< Of that message.
+  std::size_t next_reading_ = 0;
   std::optional<std::size_t> only_;
   std::uint64_t begin_time_ = 0;  ///< Frames of earlier log times are left out.
 
@@ -99,6 +111,7 @@ class SuitRecordingReader::Implementation {
 };
 
 Status SuitRecordingReader::Implementation::begin() {
+  bag_ = find_bag_arrays(*mcap_);
   if (mcap_->complete() && descriptions_of(*mcap_).size() > 1) mcap_->read_as_written();
   const Result<bool> got_first = read_frame(first_array_, first_);
   if (!got_first) return got_first.error();
@@ -109,6 +122,7 @@ Status SuitRecordingReader::Implementation::begin() {
 
 /// A recording of one array is not asked for the name of its topics: it may have been made by others.
 void SuitRecordingReader::Implementation::describe() {
+  if (!bag_.empty()) return describe_bag();
   const std::vector<RecordingDescription> descriptions = descriptions_of(*mcap_);
   const std::size_t count = std::max<std::size_t>(descriptions.size(), 1);
   arrays_.resize(count);
@@ -125,8 +139,42 @@ void SuitRecordingReader::Implementation::describe() {
   for (std::size_t i = 0; i < count; ++i) arrays_[i].shape = read_[i].shape.value_or(FrameShape{});
 }
 
+/// Each has its topic as its name, but for an only one.
+void SuitRecordingReader::Implementation::describe_bag() {
+  arrays_.resize(bag_.size());
+  read_.resize(bag_.size());
+  std::map<std::string, std::set<std::uint16_t>, std::less<>> channels;
+  for (std::size_t i = 0; i < bag_.size(); ++i) {
+    arrays_[i].topic = bag_[i].topic;
+    if (bag_.size() > 1) arrays_[i].name = bag_[i].topic;
+    const std::string folder(topic_folder(mcap_->channels().at(bag_[i].channel).topic));
+    channels[folder].insert(bag_[i].channel);
+    folders_.emplace(folder, i);
+  }
+  std::erase_if(folders_, [&](const auto& folder) { return channels[folder.first].size() > 1; });
+}
+
+std::optional<std::size_t> SuitRecordingReader::Implementation::bag_array(std::uint16_t channel,
+                                                                          const std::string& part) const {
+  const auto found =
+      std::ranges::find_if(bag_, [&](const BagArray& array) { return array.channel == channel && array.part == part; });
+  if (found == bag_.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - bag_.begin());
+}
+
+/// Times and temperatures of a frame stand in the folder of its topic.
+Use SuitRecordingReader::Implementation::find_use_in_bag(std::uint16_t id, const McapChannel& channel) const {
+  const auto array = std::ranges::find(bag_, id, &BagArray::channel);
+  if (array != bag_.end()) return {MessageKind::image, static_cast<std::size_t>(array - bag_.begin())};
+  const Use use{kind_of(channel), 0};
+  const auto folder = folders_.find(topic_folder(channel.topic));
+  if (use.kind == MessageKind::image || folder == folders_.end()) return {};
+  return {use.kind, folder->second};
+}
+
 /// The first topic of images is taken where the arrays are not said; images beside sensors of touch are of cameras.
 Use SuitRecordingReader::Implementation::find_use(std::uint16_t id, const McapChannel& channel) {
+  if (!bag_.empty()) return find_use_in_bag(id, channel);
   Use use{kind_of(channel), 0};
   const std::string_view folder = topic_folder(channel.topic);
   if (folders_.empty()) {
@@ -184,31 +232,74 @@ Status SuitRecordingReader::Implementation::read_image(const Use& use, const Mca
   ReadArray& array = read_[use.array];
   const Result<FrameShape> decoded = decode_counts(mcap_->channels().at(message.channel), message.data, frame);
   if (!decoded) return error(message, decoded.error());
-  if (array.shape && *decoded != *array.shape) {
-    return error(message, bad_input("the image is " + files::size_text(*decoded) + ", the first " +
-                                    files::size_text(*array.shape)));
-  }
-  array.shape = *decoded;
+  if (Status same = check_shape(message, use.array, *decoded); !same) return same;
   array.add_to(frame, message.log_time);
+  return Done{};
+}
+
+Status SuitRecordingReader::Implementation::check_shape(const McapMessage& message, std::size_t array,
+                                                        FrameShape shape) {
+  std::optional<FrameShape>& first = read_[array].shape;
+  if (first && shape != *first) {
+    return error(message,
+                 bad_input("the image is " + files::size_text(shape) + ", the first " + files::size_text(*first)));
+  }
+  first = shape;
+  arrays_[array].shape = shape;
+  return Done{};
+}
+
+/// The next array of the message that was read last; false: there is none.
+Result<bool> SuitRecordingReader::Implementation::take_reading(std::size_t& array, RawFrame& frame) {
+  while (next_reading_ < readings_.size()) {
+    const BagReading& reading = readings_[next_reading_++];
+    const std::optional<std::size_t> found = bag_array(bag_message_.channel, reading.part);
+    if (!found || (only_ && *only_ != *found)) continue;
+    array = *found;
+    if (const Status same = check_shape(bag_message_, array, reading.shape); !same) return same.error();
+    frame = reading.frame;
+    if (kind_of(mcap_->channels().at(bag_message_.channel)) == MessageKind::image) {
+      read_[array].add_to(frame, bag_message_.log_time);
+    } else if (!reading.has_times) {
+      frame.time = time_of(bag_message_.log_time);
+      frame.acquisition = {};
+      frame.acquisition.arrival_utc = frame.time;
+    }
+    return true;
+  }
+  return false;
+}
+
+/// Topics of which no array is wanted are passed over unread.
+Status SuitRecordingReader::Implementation::read_bag_message(const McapMessage& message) {
+  if (only_ && bag_[*only_].channel != message.channel) return Done{};
+  bag_message_ = message;
+  next_reading_ = 0;
+  const Status read = read_readings(mcap_->channels().at(message.channel), message.data, readings_);
+  if (!read) return error(message, read.error());
   return Done{};
 }
 
 Result<bool> SuitRecordingReader::Implementation::read_frame(std::size_t& array, RawFrame& frame) {
   McapMessage message;
   while (true) {
+    Result<bool> next_reading = take_reading(array, frame);
+    if (!next_reading || *next_reading) return next_reading;
     Result<bool> got_message = mcap_->next(message);
     if (!got_message || !*got_message) return got_message;
     if (arrays_.empty()) describe();
     const Use use = use_of(message);
-    const bool is_wanted = !only_ || *only_ == use.array;
+    const bool is_wanted = !only_ || *only_ == use.array || !bag_.empty();
     if (use.kind == MessageKind::none || !is_wanted || message.log_time < begin_time_) continue;
-    if (use.kind == MessageKind::image) {
+    if (use.kind == MessageKind::image && !bag_.empty()) {
+      if (const Status read = read_bag_message(message); !read) return read.error();
+    } else if (use.kind == MessageKind::image) {
       if (const Status taken = read_image(use, message, frame); !taken) return taken.error();
-      arrays_[use.array].shape = *read_[use.array].shape;
       array = use.array;
       return true;
+    } else if (const Status other = read_other(use, message); !other) {
+      return other.error();
     }
-    if (const Status taken = read_other(use, message); !taken) return taken.error();
   }
 }
 
@@ -223,6 +314,7 @@ Result<bool> SuitRecordingReader::Implementation::next(std::size_t& array, RawFr
 void SuitRecordingReader::Implementation::seek(Nanos time) {
   begin_time_ = static_cast<std::uint64_t>(std::max<std::int64_t>(time.count(), 0));
   has_first_ = false;
+  readings_.clear();
   mcap_->seek(begin_time_);
   for (ReadArray& array : read_) {
     array.acquisition_time.reset();

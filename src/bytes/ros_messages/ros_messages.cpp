@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/bytes/ros_messages/ros_messages.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cassert>
@@ -49,18 +50,36 @@ std::span<std::uint8_t> write_image(Nanos time, const FrameShape& shape, std::st
   return writer.write_bytes(shape.taxel_count() * taxel_bytes);
 }
 
-void read_words(std::span<const std::uint8_t> row, bool big_endian, std::span<float> counts) {
-  if (!big_endian) return uint16_to_counts(row.data(), counts.size(), counts.data());
+template <typename T>
+void read_numbers(std::span<const std::uint8_t> row, bool big_endian, std::span<float> counts) {
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    counts[i] = static_cast<float>(256U * row[2 * i] + row[2 * i + 1]);
+    std::array<std::uint8_t, sizeof(T)> bytes{};
+    std::copy_n(row.data() + i * sizeof(T), sizeof(T), bytes.data());
+    if (big_endian) std::reverse(bytes.begin(), bytes.end());
+    counts[i] = static_cast<float>(std::bit_cast<T>(bytes));
   }
 }
 
-void read_floats(std::span<const std::uint8_t> row, bool big_endian, std::span<float> counts) {
-  std::memcpy(counts.data(), row.data(), 4 * counts.size());
-  if (!big_endian) return;
-  for (float& count : counts) count = std::bit_cast<float>(__builtin_bswap32(std::bit_cast<std::uint32_t>(count)));
+void read_words(std::span<const std::uint8_t> row, bool big_endian, std::span<float> counts) {
+  if (!big_endian) return uint16_to_counts(row.data(), counts.size(), counts.data());
+  read_numbers<std::uint16_t>(row, big_endian, counts);
 }
+
+/// How the pixels of an image stand in its bytes.
+struct PixelType {
+  std::string_view encoding;
+  std::size_t bytes;
+  void (*read)(std::span<const std::uint8_t> row, bool big_endian, std::span<float> counts);
+};
+constexpr std::array<PixelType, 9> kPixelTypes{{{"16UC1", 2, read_words},
+                                                {"mono16", 2, read_words},
+                                                {"32FC1", 4, read_numbers<float>},
+                                                {"mono8", 1, read_numbers<std::uint8_t>},
+                                                {"8UC1", 1, read_numbers<std::uint8_t>},
+                                                {"8SC1", 1, read_numbers<std::int8_t>},
+                                                {"16SC1", 2, read_numbers<std::int16_t>},
+                                                {"32SC1", 4, read_numbers<std::int32_t>},
+                                                {"64FC1", 8, read_numbers<double>}}};
 
 constexpr std::array<GridField, 3> kGridFields{GridField{"newtons", 0, PackedElementType::float32},
                                                {"sigma_newtons", kSigmaOffset, PackedElementType::float32},
@@ -145,23 +164,31 @@ Result<FrameShape> decode_image(std::span<const std::uint8_t> message, RawFrame&
   const std::size_t step = reader.read<std::uint32_t>();
   const std::span<const std::uint8_t> data = reader.read_bytes();
   if (!reader.good()) return not_whole(image_type());
-  const bool is_words = encoding == "16UC1" || encoding == "mono16";
-  if (!is_words && encoding != "32FC1") {
-    return bad_input("the image is " + std::string(encoding.substr(0, 20)) + "; 16UC1, mono16 and 32FC1 can be read");
+  const auto* const pixel = std::ranges::find(kPixelTypes, encoding, &PixelType::encoding);
+  if (pixel == kPixelTypes.end()) {
+    return bad_input("the image is " + std::string(encoding.substr(0, 20)) +
+                     "; mono8, mono16, 32FC1 and others of one channel can be read");
   }
   if (!is_possible(rows, cols)) {
     return bad_input("the image has " + std::to_string(rows) + "x" + std::to_string(cols) +
                      " pixels; 1x1 to 1024x1024 can be read");
   }
-  const std::size_t row_bytes = cols * (is_words ? 2 : 4);
+  const std::size_t row_bytes = cols * pixel->bytes;
   if (step < row_bytes || data.size() / step < rows) return bad_input("the image is shorter than its size says");
   frame.counts.resize(rows * cols);
   for (std::size_t row = 0; row < rows; ++row) {
     const std::span<float> counts = std::span<float>(frame.counts).subspan(row * cols, cols);
     const std::span<const std::uint8_t> bytes = data.subspan(row * step, row_bytes);
-    is_words ? read_words(bytes, big_endian, counts) : read_floats(bytes, big_endian, counts);
+    pixel->read(bytes, big_endian, counts);
   }
   return FrameShape{rows, cols};
+}
+
+Result<std::string_view> decode_text(std::span<const std::uint8_t> message) {
+  CdrReader reader(message);
+  const std::string_view text = reader.read_text();
+  if (!reader.good()) return not_whole("std_msgs/msg/String");
+  return text;
 }
 
 Result<FrameShape> decode_tactile_state(std::span<const std::uint8_t> message, RawFrame& frame) {

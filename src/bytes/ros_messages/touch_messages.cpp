@@ -3,12 +3,14 @@
 #include "dermis/bytes/ros_messages/touch_messages.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <set>
 #include <span>
+#include <type_traits>
 
 #include "bytes/ros_messages/cdr.hpp"
 #include "dermis/bytes/ros_messages/ros_messages.hpp"
@@ -29,6 +31,7 @@ constexpr std::size_t kModuleTaxels = 12;
 constexpr float kAbsentPressure = 30000.0F;  // the hand sends it where it has no sensor
 constexpr float kColdest = -40.0F;           // [C] what a sensor can measure
 constexpr float kWarmest = 125.0F;
+constexpr float kLargestExact = 16777216.0F;  // up to here a float holds every whole number
 
 Error not_whole(const char* name) {
   return bad_input(std::string("the message is no whole ") + name + " in CDR");
@@ -141,41 +144,72 @@ Status decode_frame_reading(Message message, std::span<TouchReading> readings) {
   return Done{};
 }
 
-/// The shape of rows and columns behind dimensions of size 1. Values without dimensions are one row.
+/// The shape of two dimensions, or of those that are not 1. Values without dimensions are one row, of any length.
 Result<FrameShape> shape_of(std::span<const std::size_t> sizes, std::size_t values) {
   FrameShape shape{1, values};
   std::vector<std::size_t> lines;
   std::copy_if(sizes.begin(), sizes.end(), std::back_inserter(lines), [](std::size_t size) { return size != 1; });
   if (lines.size() == 2) shape = {lines[0], lines[1]};
+  if (sizes.size() == 2) shape = {sizes[0], sizes[1]};
   if (lines.size() > 2) return bad_input("the message has more than two dimensions");
-  const bool is_possible = shape.rows >= 1 && shape.rows <= kMaxLines && shape.cols >= 1 && shape.cols <= kMaxLines;
+  const bool is_possible = shape.rows >= 1 && shape.rows <= kMaxLines && shape.cols >= 1 &&
+                           shape.cols <= (sizes.empty() ? kMaxLines * kMaxLines : kMaxLines);
   if (!is_possible || shape.taxel_count() != values) {
     return bad_input("the message has " + std::to_string(values) + " values, which its dimensions do not give");
   }
   return shape;
 }
 
-Status decode_float_array(Message message, std::span<TouchReading> readings) {
-  constexpr const char* kName = "std_msgs/msg/Float32MultiArray";
-  CdrReader reader(message);
+/// "std_msgs/msg/UInt16MultiArray"
+template <typename T>
+std::string multi_array_name() {
+  const char* const kind = std::is_floating_point_v<T> ? "Float" : std::is_signed_v<T> ? "Int" : "UInt";
+  return std::string("std_msgs/msg/") + kind + std::to_string(8 * sizeof(T)) + "MultiArray";
+}
+
+/// Sizes of the dimensions; empty where there are too many.
+std::optional<std::vector<std::size_t>> read_dimensions(CdrReader& reader) {
+  std::vector<std::size_t> sizes;
   const std::size_t dimensions = reader.read<std::uint32_t>();
-  if (!reader.good() || dimensions > kMostDimensions) return not_whole(kName);
-  std::array<std::size_t, kMostDimensions> sizes{};
-  for (std::size_t k = 0; k < dimensions; ++k) {
+  if (dimensions > kMostDimensions) return std::nullopt;
+  for (std::size_t k = 0; k < dimensions && reader.good(); ++k) {
     static_cast<void>(reader.read_text());
-    sizes[k] = reader.read<std::uint32_t>();
+    sizes.push_back(reader.read<std::uint32_t>());
     skip<std::uint32_t>(reader);  // stride
   }
-  if (reader.read<std::uint32_t>() != 0) return bad_input("the message has a data_offset; 0 can be read");
+  return sizes;
+}
+
+template <typename T>
+Status decode_multi_array(Message message, std::span<TouchReading> readings) {
+  CdrReader reader(message);
+  const std::optional<std::vector<std::size_t>> sizes = read_dimensions(reader);
+  const std::size_t offset = reader.read<std::uint32_t>();
   const std::size_t count = reader.read<std::uint32_t>();
-  if (!reader.good() || count > message.size() / sizeof(float)) return not_whole(kName);
-  const Result<FrameShape> shape = shape_of(std::span(sizes).first(dimensions), count);
+  if (!sizes || !reader.good() || count > message.size() / sizeof(T)) return not_whole(multi_array_name<T>().c_str());
+  if (offset > count) return bad_input("the message has a data_offset behind its values");
+  skip<T>(reader, offset);
+  const Result<FrameShape> shape = shape_of(*sizes, count - offset);
   if (!shape) return shape.error();
   readings.front().shape = *shape;
-  readings.front().frame.counts.resize(count);
-  for (float& value : readings.front().frame.counts) value = reader.read<float>();
-  if (!reader.good()) return not_whole(kName);
+  std::vector<float>& counts = readings.front().frame.counts;
+  counts.resize(shape->taxel_count());
+  for (float& value : counts) {
+    const T number = reader.read<T>();
+    value = static_cast<float>(number);
+    if (std::is_integral_v<T> && std::abs(value) > kLargestExact) {
+      return bad_input("the message has a value beyond 16777216, which cannot be held exactly");
+    }
+  }
+  if (!reader.good()) return not_whole(multi_array_name<T>().c_str());
   return Done{};
+}
+
+template <typename T>
+TouchType multi_array() {
+  const std::string name = multi_array_name<T>();
+  const std::string in_dds = "std_msgs::msg::dds_::" + name.substr(name.rfind('/') + 1) + "_";
+  return {name, in_dds, {TouchArray{}}, decode_multi_array<T>};
 }
 
 /// "unitree_hg/HandState" and "unitree_hg/msg/HandState" are the same.
@@ -192,10 +226,14 @@ const std::vector<TouchType>& touch_types() {
       {"inspire/inspire_hand_touch", "inspire::inspire_hand_touch", inspire_regions(), decode_inspire_touch},
       {"dermis_msgs/msg/RawFrame", "dermis_msgs::msg::dds_::RawFrame_", {TouchArray{}}, decode_frame_reading, true},
       {"sensor_msgs/msg/Image", "sensor_msgs::msg::dds_::Image_", {TouchArray{}}, decode_image_reading},
-      {"std_msgs/msg/Float32MultiArray",
-       "std_msgs::msg::dds_::Float32MultiArray_",
-       {TouchArray{}},
-       decode_float_array}};
+      multi_array<float>(),
+      multi_array<double>(),
+      multi_array<std::uint8_t>(),
+      multi_array<std::int8_t>(),
+      multi_array<std::uint16_t>(),
+      multi_array<std::int16_t>(),
+      multi_array<std::uint32_t>(),
+      multi_array<std::int32_t>()};
   return kTypes;
 }
 

@@ -3,6 +3,7 @@
 #include "dermis/live/buses/bus_address.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 #include <utility>
@@ -17,6 +18,8 @@ constexpr std::size_t kMostCharacters = 4096;
 constexpr std::string_view kTcp = "modbus-tcp:";
 constexpr std::string_view kRtu = "modbus-rtu:";
 constexpr std::string_view kDds = "dds:";
+constexpr std::string_view kCan = "can:";
+constexpr std::string_view kCandump = "candump:";
 
 /// An address on its way; the first error is kept.
 class Parser {
@@ -34,6 +37,10 @@ class Parser {
     for (const auto& [name, value] : values_) address.connection.append("&").append(name).append("=").append(value);
     if (text_.starts_with(kDds)) {
       address.place = read_topic(place);
+    } else if (text_.starts_with(kCan)) {
+      address.place = read_can(place);
+    } else if (text_.starts_with(kCandump)) {
+      address.place = read_log(place);
     } else {
       address.place = read_modbus(place);
     }
@@ -85,15 +92,35 @@ class Parser {
     if (is_tcp) read_host(where, place);
     if (!is_tcp) place.path = where;
     if (!is_tcp && where.empty()) fail("name the serial line, as modbus-rtu:///dev/ttyUSB0");
-    place.map = take("map");
-    if (place.map.empty()) fail("lacks map=NAME, the registers of the device");
+    place.map = take_map("the registers of the device");
     place.unit = take_number<int>("unit", 1, 247, "1 to 247").value_or(0);
-    place.rate_hz = take_number<double>("rate", 1e-3, 1e4, "0.001 to 10000 frames a second");
+    place.rate_hz = take_rate();
     if (!is_tcp) place.baud = take_number<unsigned>("baud", 50, 20'000'000, "50 to 20000000").value_or(place.baud);
-    if (const auto seconds = take_number<double>("reconnect_s", 0.0, 1e6, "0 to 1e6 seconds")) {
-      place.reconnect = std::chrono::duration_cast<Nanos>(std::chrono::duration<double>(*seconds));
-    }
+    place.reconnect = take_reconnect();
     return place;
+  }
+
+  std::string take_map(const char* of) {
+    std::string map = take("map");
+    if (map.empty()) fail(std::string("lacks map=NAME, ") + of);
+    return map;
+  }
+
+  std::optional<double> take_rate() { return take_number<double>("rate", 1e-3, 1e4, "0.001 to 10000 frames a second"); }
+
+  Nanos take_reconnect() {
+    const double seconds = take_number<double>("reconnect_s", 0.0, 1e6, "0 to 1e6 seconds").value_or(10.0);
+    return std::chrono::duration_cast<Nanos>(std::chrono::duration<double>(seconds));
+  }
+
+  CanInterface read_can(const std::string& where) {
+    if (where.empty() || where.find('/') != std::string::npos) fail("name the interface, as can://can0");
+    return {where, take_map("the frames of the arrays"), take_rate(), take_reconnect()};
+  }
+
+  CanLog read_log(const std::string& where) {
+    if (where.empty()) fail("name the log, as candump:hand.log");
+    return {where, take_map("the frames of the arrays"), take("interface"), take_rate()};
   }
 
   void read_host(const std::string& where, ModbusPlace& place) {
@@ -134,7 +161,8 @@ class Parser {
 }  // namespace
 
 bool is_bus_address(std::string_view text) {
-  return text.starts_with(kTcp) || text.starts_with(kRtu) || text.starts_with(kDds);
+  return std::ranges::any_of(std::array{kTcp, kRtu, kDds, kCan, kCandump},
+                             [&](std::string_view scheme) { return text.starts_with(scheme); });
 }
 
 Result<BusAddress> parse_bus_address(const std::string& text) {

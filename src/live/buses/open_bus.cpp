@@ -8,11 +8,14 @@
 #include <set>
 #include <utility>
 
+#include "dermis/bytes/files/input.hpp"
 #include "dermis/bytes/files/taxel_text.hpp"
 #include "dermis/bytes/ros_messages/touch_messages.hpp"
+#include "dermis/live/buses/candump.hpp"
 #include "dermis/touch/frames/nearest_name.hpp"
 #include "live/buses/array_feed.hpp"
 #include "live/buses/bus.hpp"
+#include "live/buses/can_bus.hpp"
 #include "live/buses/register_bus.hpp"
 #include "live/buses/topic_bus.hpp"
 
@@ -97,23 +100,29 @@ class Buses {
     if (const auto known = buses_.find(address.connection); known != buses_.end()) {
       if (std::shared_ptr<Bus> bus = known->second.lock()) return bus;
     }
-    const bool is_topic = std::holds_alternative<TopicPlace>(address.place);
-    Result<std::shared_ptr<Bus>> bus = is_topic ? TopicBus::open(address) : RegisterBus::open(address);
+    Result<std::shared_ptr<Bus>> bus = open(address);
     if (bus) buses_[address.connection] = *bus;
     return bus;
   }
 
  private:
+  static Result<std::shared_ptr<Bus>> open(const BusAddress& address) {
+    if (std::holds_alternative<TopicPlace>(address.place)) return TopicBus::open(address);
+    if (std::holds_alternative<CanInterface>(address.place)) return CanBus::open(address);
+    return RegisterBus::open(address);
+  }
+
   std::mutex mutex_;
   std::map<std::string, std::weak_ptr<Bus>> buses_;
 };
 
-Result<std::size_t> find_array(const Bus& bus, const BusAddress& address) {
+template <typename Array>
+Result<std::size_t> find_array(const std::vector<Array>& arrays, const BusAddress& address) {
   std::set<std::string> names;
   std::string all;
-  for (std::size_t k = 0; k < bus.arrays().size(); ++k) {
-    const std::string& name = bus.arrays()[k].name;
-    if (name == address.array || (address.array.empty() && bus.arrays().size() == 1)) return k;
+  for (std::size_t k = 0; k < arrays.size(); ++k) {
+    const std::string& name = arrays[k].name;
+    if (name == address.array || (address.array.empty() && arrays.size() == 1)) return k;
     names.insert(name);
     all += (all.empty() ? "" : ", ") + name;
   }
@@ -123,6 +132,23 @@ Result<std::size_t> find_array(const Bus& bus, const BusAddress& address) {
   if (!nearest.empty())
     return bad_input(place + "has no array '" + address.array + "'; did you mean '" + nearest + "'?");
   return bad_input(place + "has no array '" + address.array + "'" + (all.empty() ? "" : "; there are " + all));
+}
+
+Status check_shape(FrameShape shape, const BusAddress& address, const BusOptions& options) {
+  if (!options.shape || shape == FrameShape{} || shape == *options.shape) return Done{};
+  return bad_input("'" + address.text + "': frames are " + bytes::files::size_text(shape) + ", the array is " +
+                   bytes::files::size_text(*options.shape));
+}
+
+Result<std::unique_ptr<FrameSource>> open_log(const BusAddress& address, const CanLog& log, const BusOptions& options) {
+  const Result<CanMap> map = read_can_map(log.map);
+  if (!map) return bad_input("'" + address.text + "': " + map.error().message);
+  const Result<std::size_t> array = find_array(map->arrays, address);
+  if (!array) return array.error();
+  if (Status same = check_shape(map->arrays[*array].shape, address, options); !same) return same.error();
+  Result<std::unique_ptr<std::istream>> in = bytes::files::open_input(log.path);
+  if (!in) return in.error();
+  return open_candump(*std::move(in), log.path, map->arrays[*array], {log.interface, log.rate_hz});
 }
 
 }  // namespace
@@ -135,16 +161,13 @@ bool sends_turned_frames(const BusAddress& address) {
 }
 
 Result<std::unique_ptr<FrameSource>> open_bus(const BusAddress& address, const BusOptions& options) {
+  if (const auto* const log = std::get_if<CanLog>(&address.place)) return open_log(address, *log, options);
   static Buses buses;
   Result<std::shared_ptr<Bus>> bus = buses.find(address);
   if (!bus) return bus.error();
-  const Result<std::size_t> array = find_array(**bus, address);
+  const Result<std::size_t> array = find_array((*bus)->arrays(), address);
   if (!array) return array.error();
-  const FrameShape shape = (*bus)->arrays()[*array].shape;
-  if (options.shape && shape != FrameShape{} && shape != *options.shape) {
-    return bad_input("'" + address.text + "': frames are " + bytes::files::size_text(shape) + ", the array is " +
-                     bytes::files::size_text(*options.shape));
-  }
+  if (Status same = check_shape((*bus)->arrays()[*array].shape, address, options); !same) return same.error();
   return std::unique_ptr<FrameSource>(std::make_unique<BusSource>(address.text, *std::move(bus), *array, options));
 }
 

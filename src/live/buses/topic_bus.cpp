@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "dermis/touch/frames/array_description.hpp"
+
 namespace dermis::live::buses {
 namespace {
 
@@ -42,6 +44,7 @@ void TopicBus::hear(const dds::Sample& sample) {
   for (bytes::ros_messages::TouchReading& reading : readings_) reading.frame.acquisition = {};
   const Status decoded = type_.decode(sample.message, readings_);
   if (!decoded) return count_damaged(decoded.error());
+  if (readings_.front().shape.cols > kMaxLines) return count_damaged(bad_input("has one row of more than 1024 values"));
   has_come_ = true;
   if (type_.is_raw_frame) {
     const std::string_view objection = sender_.objection(sample.writer, readings_.front().frame.time, arrival.steady);

@@ -21,8 +21,9 @@ bool is_file_of_frames(const bytes::devices::SourceUri& uri) {
   const Result<bytes::recordings::FrameFormat> format =
       bytes::recordings::frame_format(bytes::recordings::recording_place(uri.path).path);
   if (!format) return false;
-  const bool needs_shape =
-      bytes::recordings::may_have_times(*format) || *format == bytes::recordings::FrameFormat::novel_asc;
+  const bool needs_shape = bytes::recordings::may_have_times(*format) ||
+                           *format == bytes::recordings::FrameFormat::novel_asc ||
+                           *format == bytes::recordings::FrameFormat::mcap;
   return uri.rate_hz || !uri.order.is_plain() || (uri.protocol.shape && needs_shape);
 }
 
@@ -51,7 +52,9 @@ Result<SourceName> SourceName::parse(const std::string& text) {
   if (buses::is_bus_address(text)) {
     Result<buses::BusAddress> address = buses::parse_bus_address(text);
     if (!address) return address.error();
-    name.kind = SourceKind::bus;
+    const auto* const log = std::get_if<buses::CanLog>(&address->place);
+    name.kind = log != nullptr ? SourceKind::file : SourceKind::bus;
+    if (log != nullptr) name.file = log->path;
     name.bus = *std::move(address);
     return name;
   }

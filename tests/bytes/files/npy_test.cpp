@@ -127,6 +127,29 @@ TEST(Npy, spaces_frames_by_the_rate) {
   EXPECT_EQ(frames->at(3).acquisition, Acquisition{});
 }
 
+TEST(Npy, in_fortran_order_is_read_as_numpy_reads_it) {
+  const auto frames = parse(npy(dictionary("|u1", "(2, 1, 3)", "True"), "adbecf"));
+  ASSERT_TRUE(frames);
+  ASSERT_EQ(frames->size(), 2U);
+  EXPECT_EQ(frames->at(0).counts, (std::vector<float>{'a', 'b', 'c'}));
+  EXPECT_EQ(frames->at(1).counts, (std::vector<float>{'d', 'e', 'f'}));
+}
+
+TEST(Npy, takes_the_axes_that_are_named) {
+  const std::string file = npy(dictionary("|u1", "(2, 3, 4)"), "abcdefghijklmnopqrstuvwx");
+  const auto reader = NpyReader::open(std::make_unique<std::istringstream>(file), "f.npy",
+                                      {.rate_hz = 10.0, .axes = "rows, cols, frames"});
+  ASSERT_TRUE(reader);
+  const auto frames = support::read_all(**reader);
+  ASSERT_TRUE(frames);
+  ASSERT_EQ(frames->size(), 4U);
+  EXPECT_EQ(frames->at(1).counts, (std::vector<float>{'b', 'f', 'j', 'n', 'r', 'v'}));
+  EXPECT_EQ(
+      error_of(npy(dictionary("|u1", "(2, 3, 40)"), std::string(240, 'a'))),
+      "f.npy: is 2 x 3 x 40, which can be read in two ways: 2 frames of 3x40, as 'f.npy#[frames, rows, cols]', or "
+      "40 frames of 2x3, as 'f.npy#[rows, cols, frames]'");
+}
+
 TEST(Npy, of_two_dimensions_needs_the_shape) {
   const std::string file = npy(dictionary("|u1", "(1, 6)"), "abcdef");
   const auto frames = parse(file, FrameShape{2, 3});
@@ -141,13 +164,15 @@ TEST(Npy, names_what_cannot_be_read) {
   EXPECT_EQ(error_of(""), "f.npy: is no .npy file; write it with numpy.save");
   EXPECT_EQ(error_of(npy(dictionary("<u2", "(1, 1, 1)"), "ab", 4)),
             "f.npy: is of a version of .npy that is not known; known: 1.0 to 3.0");
-  EXPECT_EQ(error_of(npy(dictionary("<u2", "(1, 1, 1)", "True"), "ab")),
-            "f.npy: is in Fortran order; save numpy.ascontiguousarray of it");
-  for (const std::string type : {"<c8", "|b1", "<f2", "|S5", "<U1", "<u3", "u2", "|O", "<M8[ns]"}) {
+  for (const std::string type : {"<c8", "|b1", "<f2", "|S5", "<U1", "<u3", "u2", "<M8[ns]"}) {
     EXPECT_EQ(error_of(npy(dictionary(type, "(1, 1, 1)"), "ab")),
               "f.npy: has elements of type '" + type +
                   "'; whole numbers of 8 to 64 bits and floats of 32 or 64 bits can be read: use astype");
   }
+  EXPECT_EQ(
+      error_of(npy(dictionary("|O", "(1, 1, 1)"), "ab")),
+      "f.npy: holds objects of Python (a pickle), which may run any program when they are read; save numbers alone, "
+      "by numpy.save of a plain array");
   EXPECT_EQ(error_of(npy("{'descr': [('a', '<u2')], 'fortran_order': False, 'shape': (1,), }", "ab")),
             "f.npy: has elements of several numbers; save the counts alone");
   EXPECT_EQ(error_of(npy(dictionary("<u2", "(1,)"), "ab")),

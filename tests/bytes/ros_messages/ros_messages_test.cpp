@@ -131,6 +131,16 @@ TEST(Image, decodes_big_endian_and_padded_rows) {
   EXPECT_EQ(frame.counts, std::vector<float>{1.0F});
 }
 
+TEST(Image, decodes_every_number_of_one_channel) {
+  RawFrame frame;
+  ASSERT_TRUE(decode_image(image_with("mono8", 0, 1, 2, 2, {0, 255}), frame));
+  EXPECT_EQ(frame.counts, (std::vector<float>{0, 255}));
+  ASSERT_TRUE(decode_image(image_with("16SC1", 0, 1, 2, 4, {0xFF, 0xFF, 0, 0x80}), frame));
+  EXPECT_EQ(frame.counts, (std::vector<float>{-1, -32768}));
+  ASSERT_TRUE(decode_image(image_with("64FC1", 1, 1, 1, 8, {0x3F, 0xF8, 0, 0, 0, 0, 0, 0}), frame));
+  EXPECT_EQ(frame.counts, std::vector<float>{1.5F});
+}
+
 TEST(Image, what_is_no_image_is_refused) {
   RawFrame frame;
   const auto refusal = [&](const Bytes& message) {

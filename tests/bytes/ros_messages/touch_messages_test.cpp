@@ -138,6 +138,21 @@ TEST(TouchMessages, arrays_of_floats_have_rows_and_columns) {
             "the message has 6 values, which its dimensions do not give");
 }
 
+TEST(TouchMessages, arrays_of_other_numbers_may_begin_behind_an_offset) {
+  std::vector<std::uint8_t> message;
+  CdrWriter writer(message);
+  writer.write(std::uint32_t{0});
+  writer.write(std::uint32_t{1});  // data_offset
+  writer.write(std::uint32_t{4});
+  for (const int value : {99, -1, 300, 5}) writer.write(static_cast<std::int16_t>(value));
+  const TouchType& type = type_of("std_msgs/Int16MultiArray");
+  std::vector<TouchReading> readings = readings_of(type);
+  ASSERT_TRUE(type.decode(message, readings));
+  EXPECT_EQ(readings.front().shape, (FrameShape{1, 3}));
+  EXPECT_EQ(readings.front().frame.counts, (std::vector<float>{-1, 300, 5}));
+  EXPECT_EQ(type_of("std_msgs/msg/UInt16MultiArray").dds_name, "std_msgs::msg::dds_::UInt16MultiArray_");
+}
+
 TEST(TouchMessages, no_bytes_are_trusted) {
   for (const TouchType& type : touch_types()) {
     std::vector<TouchReading> readings = readings_of(type);

@@ -13,6 +13,7 @@ inline constexpr std::string_view kHdf5Kind = "an HDF5 file";
 inline constexpr std::string_view kNpyKind = "a NumPy array (.npy)";
 inline constexpr std::string_view kZipKind = "a zip archive (.npz)";
 inline constexpr std::string_view kSafetensorsKind = "a safetensors file";
+inline constexpr std::string_view kPickleKind = "a pickle of Python, which may run any program when it is read";
 inline constexpr std::string_view kTomlKind = "a TOML file";
 inline constexpr std::string_view kTableKind = "a table (CSV)";
 

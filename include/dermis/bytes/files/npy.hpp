@@ -20,11 +20,14 @@ namespace dermis::bytes::files {
 struct NpyInput {
   double rate_hz = 0.0;               ///< Frames a second, > 0: frame k is at k / rate_hz.
   std::optional<FrameShape> shape{};  ///< Required shape of the frames; needed for arrays of two dimensions.
+  std::string axes{};                 ///< As ArrayHints::axes.
+  std::vector<double> seconds{};      ///< When each frame was taken; goes before the rate.
 };
 
-/// Reads (frames, rows, cols), or (frames, rows * cols) of a given shape. The numbers are whole, of 8 to 64 bits, or
-/// floats of 32 or 64 bits. Either byte order is accepted, and C order only. Fails on whole numbers that a float does
-/// not hold exactly. The memory is that of one frame. Not thread-safe.
+/// Reads (frames, rows, cols), (frames, rows * cols) of a given shape, or what else array_frames.hpp finds frames in.
+/// The numbers are whole, of 8 to 64 bits, or floats of 32 or 64 bits, of either byte order. Fails on whole numbers
+/// that a float does not hold exactly. The memory is that of one frame; of all where frames do not stand first, or
+/// where that is in doubt. Not thread-safe.
 class NpyReader final : public FrameSource {
  public:
   [[nodiscard]] static Result<std::unique_ptr<NpyReader>> open(const std::string& path, const NpyInput& input);
@@ -53,6 +56,9 @@ struct NpyTable {
 [[nodiscard]] Result<NpyTable> read_npy_table(const std::string& path);
 /// The same from a stream; `name` stands for the path in messages.
 [[nodiscard]] Result<NpyTable> read_npy_table(std::unique_ptr<std::istream> in, const std::string& name);
+
+/// All numbers of an array, such as times.
+[[nodiscard]] Result<std::vector<double>> read_npy_numbers(std::istream& in);
 
 /// Writes the counts of frames as (frames, rows, cols), as u16. If a count needs f32, all frames are written as f32,
 /// and earlier ones are rewritten. Nothing else of a frame is kept. Without commit(), no file remains. Not thread-safe.

@@ -41,8 +41,8 @@ namespace dermis::bytes::formats {
                                                                   const ImportOptions& options);
 
 /// Arrays of NumPy in a zip archive. If there are several, options.array names the one with the frames. It is read as
-/// files/npy.hpp does, without times. The memory is that of a frame and of the archive's list of contents, at most 16
-/// MiB. `in` must be able to seek.
+/// files/npy.hpp does, with the times of another that files/array_frames.hpp names, or the rate. The memory is that of
+/// a frame and of the archive's list of contents, at most 16 MiB. `in` must be able to seek.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_npz(std::unique_ptr<std::istream> in, const std::string& name,
                                                             const ImportOptions& options);
 

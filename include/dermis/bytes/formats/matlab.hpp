@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "dermis/bytes/files/array_frames.hpp"
 #include "dermis/bytes/formats/import_options.hpp"
 #include "dermis/touch/frames/frame_source.hpp"
 #include "dermis/touch/frames/result.hpp"
@@ -23,9 +24,6 @@ struct MatlabVariable {
   [[nodiscard]] std::string sizes_text() const;  ///< "12 x 30 x 14"
 };
 
-/// Most values of a variable that is read.
-inline constexpr std::size_t kMostMatlabValues = std::size_t{1} << 26U;
-
 /// The variables of real numbers at the top of a file of MATLAB.
 class MatlabFile {
  public:
@@ -36,7 +34,7 @@ class MatlabFile {
 
   [[nodiscard]] const std::vector<MatlabVariable>& variables() const noexcept { return variables_; }
 
-  /// All values of variables()[index], of which there are at most kMostMatlabValues, in the order of the file.
+  /// All values of variables()[index], of which there are at most files::kMostArrayValues, in the order of the file.
   [[nodiscard]] virtual Status read(std::size_t index, std::vector<float>& values) = 0;
   [[nodiscard]] virtual Status read(std::size_t index, std::vector<double>& values) = 0;
 
@@ -47,8 +45,9 @@ class MatlabFile {
 /// The frames in files of MATLAB (.mat). options.array names their variable; empty: the only one that can be, or
 /// 'data'. It has three dimensions. options.shape tells which of them counts the frames, or the number of times does.
 /// Else it is the one along which readings change clearly least. Two dimensions are frames and taxels, row by row,
-/// where options.shape is given. Times are those of a variable t, time, time_s or timestamps [s], or of the rate fs;
-/// options.rate_hz goes before both. The whole variable is kept in memory. `name` stands for the path in messages.
+/// where options.shape is given. With more dimensions, options.array says which are taken (files/array_frames.hpp).
+/// Times are those of a variable t, time, time_s, timestamps or timestamp [s], or of the rate fs; options.rate_hz goes
+/// before both. The whole variable is kept in memory. `name` stands for the path in messages.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_matlab(MatlabFile& file, const std::string& name,
                                                                const ImportOptions& options);
 

@@ -130,6 +130,8 @@ class McapReader {
 
   /// Reads chunks in the order of the file, whatever their times. Call it before next().
   void read_as_written();
+  /// next() begins again.
+  void rewind();
   /// next() continues at a message after which all messages of this log time and later still come, and few earlier
   /// ones. With indexed chunks it is the first of a chunk, otherwise the first of the file.
   void seek(std::uint64_t log_time);

@@ -28,6 +28,7 @@ struct RecordedArray {
   std::string model_hash{};     ///< content_hash() of the model that gave the forces; empty: none.
   ros_messages::Pitch pitch{};  ///< For the forces.
   std::string simulation{};     ///< As FrameNotes::simulation.
+  std::string topic{};          ///< "/touch" or "/touch.thumb_matrix" of a file of others; empty: dermis wrote it.
 };
 
 /// A message that belongs to no frame: a recognition or a threat.
@@ -79,8 +80,9 @@ class SuitRecordingWriter {
 [[nodiscard]] Result<std::size_t> find_array(const std::vector<RecordedArray>& arrays, const std::string& path,
                                              const std::string& name);
 
-/// Reads every RawFrame of all arrays of a recording, in the order of the file. Other MCAP files give one array: the
-/// first topic of images (RecordingReader). Not thread-safe.
+/// Reads every RawFrame of all arrays of a recording, in the order of the file. In other MCAP files each topic of
+/// readings is an array, or several (docs/recordings.md). Where there is more than one, its topic is its name. Not
+/// thread-safe.
 class SuitRecordingReader {
  public:
   [[nodiscard]] static Result<std::unique_ptr<SuitRecordingReader>> open(const std::string& path);

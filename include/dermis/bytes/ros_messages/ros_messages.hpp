@@ -40,9 +40,12 @@ void encode_image(const RawFrame& frame, const FrameShape& shape, std::string_vi
 /// One value of each taxel, such as newtons, as an image "32FC1".
 void encode_value_image(std::span<const float> values, Nanos time, const FrameShape& shape, std::string_view frame_id,
                         std::vector<std::uint8_t>& message);
-/// Sets counts, and time to the stamp. Accepts the encodings 16UC1, mono16 and 32FC1, with 1x1 ... 1024x1024 taxels, in
-/// either byte order.
+/// Sets counts, and time to the stamp. Accepts the encodings of one channel: mono8, mono16, 8UC1, 8SC1, 16UC1, 16SC1,
+/// 32SC1, 32FC1 and 64FC1, with 1x1 ... 1024x1024 taxels, in either byte order.
 [[nodiscard]] Result<FrameShape> decode_image(std::span<const std::uint8_t> message, RawFrame& frame);
+
+/// The text of a std_msgs/msg/String, which stays in the message.
+[[nodiscard]] Result<std::string_view> decode_text(std::span<const std::uint8_t> message);
 
 /// tactile_msgs/msg/TactileState, as other robots have it: the values of sensors. Those of as many values each are the
 /// rows; else all values are one row. Sets counts, and time to the stamp. Accepts 1x1 ... 1024x1024 values.

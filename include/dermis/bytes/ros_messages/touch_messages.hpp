@@ -37,8 +37,8 @@ struct TouchType {
   bool is_raw_frame = false;  ///< Messages are frames of another dermis, with their times and numbers.
 };
 
-/// unitree_hg/msg/HandState, inspire/inspire_hand_touch, dermis_msgs/msg/RawFrame, sensor_msgs/msg/Image and
-/// std_msgs/msg/Float32MultiArray.
+/// unitree_hg/msg/HandState, inspire/inspire_hand_touch, dermis_msgs/msg/RawFrame, sensor_msgs/msg/Image, and
+/// std_msgs/msg/Float32MultiArray, UInt16MultiArray and those of all other numbers of 8 to 32 bits and Float64.
 [[nodiscard]] const std::vector<TouchType>& touch_types();
 
 /// By its name, also without "/msg", or by its name in DDS. Fails on others, with the names that are known.

@@ -12,7 +12,8 @@
 #include "dermis/touch/frames/frames.hpp"
 #include "dermis/touch/frames/result.hpp"
 
-/// Frames of devices that are asked by Modbus, and of topics of DDS: one connection, several arrays (docs/hands.md).
+/// Frames of devices that are asked by Modbus, of topics of DDS and of CAN: one connection, several arrays
+/// (docs/hands.md).
 namespace dermis::live::buses {
 
 /// modbus-tcp://HOST[:PORT]?map=M and modbus-rtu:///dev/ttyUSB0?map=M
@@ -35,14 +36,30 @@ struct TopicPlace {
   bool loopback_only = false;  ///< No other machine is heard.
 };
 
+/// can://INTERFACE?map=M
+struct CanInterface {
+  std::string interface {};                    ///< "can0"
+  std::string map{};                           ///< Name or path of a map (can_map.hpp).
+  std::optional<double> rate_hz{};             ///< Questions to each array a second; empty: as many as are answered.
+  Nanos reconnect = std::chrono::seconds(10);  ///< So long an interface that is down is waited for.
+};
+
+/// candump:PATH?map=M, a log of such a bus.
+struct CanLog {
+  std::string path{};
+  std::string map{};
+  std::string interface {};         ///< Empty: the only one with frames of the array.
+  std::optional<double> rate_hz{};  ///< Frames a second of a log without times.
+};
+
 struct BusAddress {
   std::string text;        ///< As it was given.
   std::string connection;  ///< The same of all arrays that share one.
   std::string array{};     ///< Empty: the only one.
-  std::variant<ModbusPlace, TopicPlace> place{};
+  std::variant<ModbusPlace, TopicPlace, CanInterface, CanLog> place{};
 };
 
-/// True if the text begins as modbus-tcp:, modbus-rtu: or dds:.
+/// True if the text begins as modbus-tcp:, modbus-rtu:, dds:, can: or candump:.
 [[nodiscard]] bool is_bus_address(std::string_view text);
 
 /// Fails, with the mend, on an unknown or a missing part.

@@ -18,9 +18,9 @@ enum class SourceKind {
   device,      ///< By its URI; also the bytes of a device in a file.
   simulation,  ///< sim:SCENE
   recording,   ///< MCAP, of one or several arrays.
-  file,        ///< Any other file of frames, by its path or by file:PATH?rate=...
+  file,        ///< Any other file of frames, by its path, by file:PATH?rate=... or candump:PATH?map=...
   stream,      ///< nats://HUB?robot=...&array=...
-  bus,         ///< modbus-tcp://HOST?map=..., modbus-rtu:///dev/...?map=..., dds://DOMAIN/TOPIC?type=...
+  bus,  ///< modbus-tcp://HOST?map=..., modbus-rtu:///dev/...?map=..., dds://DOMAIN/TOPIC?type=..., can://can0?map=...
 };
 
 /// The name of a source, parsed (docs/devices.md). Opens nothing.
@@ -31,7 +31,7 @@ struct SourceName {
   std::string array{};                             ///< "chest" of "rec.mcap#chest"; empty: none is named.
   std::optional<bytes::devices::SourceUri> uri{};  ///< Empty: the name is the path of a file.
   std::optional<fleet::StreamAddress> stream{};    ///< A stream of NATS; empty: it is none.
-  std::optional<buses::BusAddress> bus{};          ///< Registers or a topic; empty: it is none.
+  std::optional<buses::BusAddress> bus{};          ///< Registers, a topic or CAN; empty: it is none.
 
   /// Fails on what bytes::devices::parse_source_uri(), fleet::parse_stream_address() or buses::parse_bus_address()
   /// refuses. Everything else is the path of a file.
