@@ -196,6 +196,7 @@ class CutDrafts {
   }
 
   void finish(Draft& draft, const ValueSpan& span, const PacketField* turn, const std::string& meaning) {
+    draft.is_weak = draft.is_weak && turn == nullptr;
     PacketWriter(packets_, span, checksum_ ? &*checksum_ : nullptr, draft).write(fields_beside(span), turn, meaning);
     drafts_.push_back(std::move(draft));
   }

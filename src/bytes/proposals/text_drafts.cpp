@@ -51,6 +51,10 @@ class GroupDrafts {
     }
     std::vector<std::size_t> sizes;
     for (const Span& span : fields.spans) sizes.push_back(span.size());
+    const std::size_t taxels = known_.rows.value_or(0) * known_.cols.value_or(0);
+    const auto is_share = [&](std::size_t size) { return size * sizes.size() == taxels; };
+    if (sizes.size() > 1 && fields.ids.empty() && std::ranges::all_of(sizes, is_share))
+      add_arrays(fields, {taxels}, {});  // a clock stands between its readings
     const std::size_t beside = text_.columns.size() - sizes.front();
     if (!text_.group.names.empty()) sizes.clear();
     for (const std::size_t numbers : text_.group.numbers) sizes.push_back(numbers > beside ? numbers - beside : 1);

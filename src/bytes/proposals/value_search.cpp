@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t kMostLeading = 24;  // bytes before the readings
 constexpr std::size_t kMostTrailing = 12;
 constexpr std::size_t kPackets = 24;
-constexpr std::size_t kMostSpans = 4;
+constexpr std::size_t kMostSpans = 8;
 constexpr std::size_t kMostUnexplained = 4;
 constexpr std::size_t kFewest = 4;  // readings
 constexpr double kOfUnexplained = 0.2;
@@ -88,7 +88,7 @@ class ValueSearch {
     }
     if (span.type.front() == 'i' && !has_negative) return;  // the same as without a sign
     span.merit = -0.5 * roughness_along(span.readings) - 0.3 * roughness_in_time(span.readings) -
-                 0.02 * std::log2(1.0 + sum / size) - kOfUnexplained * static_cast<double>(unexplained) -
+                 0.03 * std::log2(1.0 + sum / size) - kOfUnexplained * static_cast<double>(unexplained) -
                  (is_count_known ? 0.0 : strangeness(count));
     const bool is_behind_number = std::ranges::any_of(fields_, [&](const PacketField& field) {
       return !field.numbers.empty() && field.at + field.size == begin && unexplained == 0;
