@@ -274,6 +274,10 @@ Option Command::flag(const std::string& name, bool& value, const std::string& he
   return Option(app_.add_flag(name, value, help));
 }
 
+Option Command::flag(const std::string& name, std::string& value, const std::string& usual, const std::string& help) {
+  return Option(app_.add_flag(name + "{" + usual + "}", value, help));
+}
+
 template <typename Value>
 Option Command::input(const std::string& name, Value& value, const std::string& help) {
   places_->files.add_input(name, value);

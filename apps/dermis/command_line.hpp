@@ -49,6 +49,8 @@ class Command {
   template <typename Value>
   Option option(const std::string& name, Value& value, const std::string& help);
   Option flag(const std::string& name, bool& value, const std::string& help);
+  /// A flag that may have a text, as --ask=r; without one it has `usual`.
+  Option flag(const std::string& name, std::string& value, const std::string& usual, const std::string& help);
 
   /// An option that names a file or a source to read; "-" is the standard input. `Value`: std::string, or a std::vector
   /// of them.

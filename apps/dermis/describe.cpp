@@ -13,8 +13,10 @@
 #include <string>
 #include <vector>
 
+#include "asking.hpp"
 #include "commands.hpp"
 #include "dermis/bytes/files/atomic_file.hpp"
+#include "dermis/bytes/files/text.hpp"
 #include "dermis/bytes/proposals/proposals.hpp"
 #include "dermis/touch/frames/array_description.hpp"
 #include "interruption.hpp"
@@ -33,6 +35,7 @@ struct DescribeOptions {
   std::optional<std::uint64_t> cols;
   std::string unit;
   std::string out;
+  std::string asks;
   bool json = false;
 };
 
@@ -72,6 +75,7 @@ void print_json(const DescribeOptions& options, const SourceBytes& source, const
     json["proposals"].push_back({{"layout", proposal.toml},
                                  {"summary", proposal.summary},
                                  {"reasons", proposal.reasons},
+                                 {"doubts", proposal.doubts},
                                  {"left_over", proposal.left_over},
                                  {"left_share", proposal.left_share},
                                  {"open", proposal.open},
@@ -139,8 +143,10 @@ Result<std::size_t> chosen_of(const std::vector<Proposal>& proposals) {
 Status describe(const DescribeOptions& options) {
   Result<bytes::proposals::Known> known = known_of(options);
   if (!known) return known.error();
-  const Result<SourceBytes> source = read_source_bytes(options.source);
+  const Result<SourceBytes> source = read_source_bytes(options.source, options.asks);
   if (!source) return source.error();
+  if (!source->start.empty()) known->start = bytes::files::bytes_toml(source->start);
+  if (!source->request.empty()) known->request = bytes::files::bytes_toml(source->request);
   const bool is_file_that_is_known = !source->known.empty() && !source->is_stream;
   std::vector<Proposal> proposals;
   if (!is_file_that_is_known) proposals = bytes::proposals::propose(source->bytes, *known);
@@ -181,6 +187,8 @@ void add_describe(Command& command) {
   command.option("--rows", options->rows, "Rows of the array, where they are known");
   command.option("--cols", options->cols, "Columns of the array, where they are known");
   command.option("--unit", options->unit, "What a reading is").one_of(units());
+  command.flag("--ask", options->asks, std::string(kUsualAsks),
+               "Send a silent device what boards usually wait for, or --ask=BYTES, until it answers");
   command.output("--out", options->out,
                  "layout.toml to write: the first layout, or the one that is chosen on a terminal");
   command.flag("--json", options->json, "As JSON");

@@ -56,6 +56,7 @@ std::string proposal_text(const bytes::proposals::Proposal& proposal, std::size_
   std::string text = fmt::format("{}. {}\n   {} frames, {:.1f} % of the bytes left over\n", place, proposal.summary,
                                  proposal.frames, 100.0 * proposal.left_share);
   for (const std::string& reason : proposal.reasons) text += "   + " + reason + "\n";
+  for (const std::string& doubt : proposal.doubts) text += "   ? " + doubt + "\n";
   for (const std::string& left : proposal.left_over) text += "   - " + left + "\n";
   if (!proposal.open.empty()) text += fmt::format("   ? {}: not in the bytes\n", fmt::join(proposal.open, ", "));
   text += "\n";

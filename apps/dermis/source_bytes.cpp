@@ -11,6 +11,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "asking.hpp"
 #include "dermis/bytes/devices/byte_stream.hpp"
 #include "dermis/bytes/devices/protocol.hpp"
 #include "dermis/bytes/files/input.hpp"
@@ -30,13 +31,16 @@ constexpr std::chrono::seconds kListens{3};
 constexpr std::chrono::milliseconds kStep{100};
 constexpr std::size_t kEnough = 65536;
 
-Result<std::vector<std::uint8_t>> bytes_of_stream(bytes::devices::ByteStream& stream, const std::string& source) {
+Status open_stream(bytes::devices::ByteStream& stream, const std::string& source) {
   for (const auto end = steady_clock::now() + kPatience;;) {
     const Result<bool> opened = stream.open(kStep);
     if (!opened) return opened.error();
-    if (*opened) break;
+    if (*opened) return Done{};
     if (steady_clock::now() > end || stop_flag()) return failed("'" + source + "': nobody has connected");
   }
+}
+
+std::vector<std::uint8_t> bytes_of_stream(bytes::devices::ByteStream& stream) {
   std::vector<std::uint8_t> bytes(kEnough);
   std::size_t size = 0;
   for (const auto end = steady_clock::now() + kListens; size < kEnough && steady_clock::now() < end && !stop_flag();) {
@@ -67,26 +71,39 @@ Result<SourceBytes> bytes_of_file(const std::string& path) {
   return found;
 }
 
-Result<SourceBytes> bytes_of_device(const bytes::devices::SourceUri& uri) {
+Result<SourceBytes> bytes_of_device(const bytes::devices::SourceUri& uri, const std::string& asks) {
   const Result<std::unique_ptr<bytes::devices::ByteStream>> stream = bytes::devices::make_source_stream(uri);
   if (!stream) return stream.error();
-  Result<std::vector<std::uint8_t>> bytes = bytes_of_stream(**stream, uri.text);
-  if (!bytes) return bytes.error();
-  SourceBytes found{.bytes = *std::move(bytes), .is_stream = true};
+  if (const Status opened = open_stream(**stream, uri.text); !opened) return opened.error();
+  SourceBytes found;
+  found.is_stream = true;
+  if (asks.empty()) {
+    found.bytes = bytes_of_stream(**stream);
+  } else {
+    Result<Asked> asked = ask_device(**stream, asks);
+    if (!asked) return asked.error();
+    found.bytes = std::move(asked->bytes);
+    found.start = std::move(asked->start);
+    found.request = std::move(asked->request);
+  }
   found.known = bytes::devices::detect_protocol(found.bytes);
   return found;
 }
 
 }  // namespace
 
-Result<SourceBytes> read_source_bytes(const std::string& source) {
+Result<SourceBytes> read_source_bytes(const std::string& source, const std::string& asks) {
   const Result<live::sources::SourceName> name = live::sources::SourceName::parse(source);
   if (!name) return name.error();
   if (name->kind == live::sources::SourceKind::simulation)
     return bad_input("'" + source + "': a simulation needs no layout");
   if (name->stream || name->bus) return bad_input("'" + source + "': has frames, not bytes, and needs no layout");
-  Result<SourceBytes> found = name->uri ? bytes_of_device(*name->uri) : bytes_of_file(source);
-  if (found && found->bytes.empty()) return bad_input("'" + source + "': not a single byte came");
+  if (!name->uri && !asks.empty()) return bad_input("--ask: '" + source + "' is no device");
+  Result<SourceBytes> found = name->uri ? bytes_of_device(*name->uri, asks) : bytes_of_file(source);
+  if (found && found->bytes.empty()) {
+    return bad_input("'" + source + "': not a single byte came" +
+                     (name->uri && asks.empty() ? "; where the device waits to be asked, --ask finds it" : ""));
+  }
   return found;
 }
 

@@ -2,13 +2,16 @@
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """dermis describe: the layout of bytes that nobody has described, from a file or a device."""
 
+import contextlib
 import json
 import os
 import pty
 import re
 import select
+import socket
 import subprocess
 import threading
+import time
 import tty
 from pathlib import Path
 
@@ -22,6 +25,16 @@ SHAPES = {  # where the last axes of NAME.npy are not those of an array
     "python_floats": (1, 8),
 }
 FEWEST_RIGHT = 11
+STRANGERS = Path(__file__).parents[3] / "shared/data/strangers"
+STRANGE = {  # rows, columns, the array whose frames stand beside the file, a word of its doubts
+    "finger25.bin": (5, 5, "", ""),
+    "packets_that_end_in_ff.bin": (16, 16, "", ""),
+    "no_mark_u16be.bin": (8, 8, "", "nothing marks"),
+    "marker_then_numbers.txt": (6, 9, "", ""),
+    "bare_numbers.txt": (3, 3, "", "nothing marks"),
+    "secs_and_nsecs.jsonl": (12, 6, "_thumb", "absent = -1"),
+    "labelled_places.jsonl": (1, 6, "", "'volt'"),
+}
 
 
 def pressed(frames, rows, cols):
@@ -36,6 +49,18 @@ def pressed(frames, rows, cols):
 
 LINES = "".join(" ".join(map(str, frame.ravel())) + "\n" for frame in pressed(40, 4, 6))
 BINARY = b"".join(b"\xaa\x55" + bytes([k]) + frame.astype(">u2").tobytes() for k, frame in enumerate(pressed(60, 4, 4)))
+
+
+def play(board, ask, goes_on, lines):
+    """A board that sends lines over TCP once it was asked, or one for each time."""
+    connection, _ = board.accept()
+    with connection, contextlib.suppress(OSError):
+        for place, line in enumerate(lines * 20):
+            while (place == 0 or not goes_on) and ask not in (heard := connection.recv(64)):
+                if not heard:
+                    return
+            time.sleep(0.02)
+            connection.sendall(line.encode())
 
 
 class Describe(support.SmallArray):
@@ -79,6 +104,52 @@ class Describe(support.SmallArray):
         self.assertGreaterEqual(sum(map(bool, outcomes.values())), FEWEST_RIGHT, outcomes)
         for known in ("time_in_the_middle.mat", "insole.asc"):
             self.assertEqual(outcomes[known], "is known")
+
+    def test_the_first_layout_of_strangers_is_right_and_tells_its_doubt(self):
+        if not STRANGERS.exists():
+            self.skipTest("SKIPPED: ../shared/data/strangers is not there")
+        for name, (rows, cols, array, doubt) in STRANGE.items():
+            with self.subTest(name):
+                sample = STRANGERS / name
+                layout = self.work / "layout.toml"
+                shown = self.succeed(
+                    *("describe", sample, "--rows", rows, "--cols", cols, "--out", layout, "--force"),
+                    stdin=subprocess.DEVNULL,
+                )
+                self.assertIn(doubt, shown)
+                wanted = numpy.load(STRANGERS / f"{sample.stem}{array}.npy").astype(numpy.float32)
+                found = self.frames(layout, sample)
+                numpy.testing.assert_array_equal(found[:, 0] if array else found, wanted)
+
+    def test_two_numbers_of_one_time_are_read_as_it(self):
+        if not STRANGERS.exists():
+            self.skipTest("SKIPPED: ../shared/data/strangers is not there")
+        layout = self.work / "layout.toml"
+        sample = STRANGERS / "secs_and_nsecs.jsonl"
+        self.succeed("describe", sample, "--rows", 12, "--cols", 6, "--out", layout, stdin=subprocess.DEVNULL)
+        said = self.succeed("info", "--layout", layout, f"{sample}#thumb_matrix")
+        for words in ("frames        60", "1.475 s", "40.000 Hz"):
+            self.assertIn(words, said)
+
+    def test_what_a_silent_device_waits_for_is_found(self):
+        frames = pressed(60, 4, 6)
+        lines = [",".join(map(str, frame.ravel())) + "\n" for frame in frames]
+        for key, ask, arguments in (
+            ("start", b"s", ["--ask"]),
+            ("request", b"r", ["--ask"]),
+            ("start", b"\xaa\x07", ["--ask=\\xAA\\x07"]),
+        ):
+            with self.subTest(key=key, ask=ask):
+                board = socket.create_server(("127.0.0.1", 0))
+                source = f"tcp://127.0.0.1:{board.getsockname()[1]}"
+                thread = threading.Thread(target=play, args=(board, ask, key == "start", lines), daemon=True)
+                thread.start()
+                layout = self.work / "asked.toml"
+                self.succeed(*("describe", source, *arguments, "--out", layout, "--force"), stdin=subprocess.DEVNULL)
+                board.close()
+                written = '"s"' if ask == b"s" else '"r"' if ask == b"r" else "[0xAA, 0x07]"
+                self.assertIn(f"\n{key} = {written}\n", layout.read_text())
+        self.refuse(["describe", self.written("it.log", LINES), "--ask"], ["--ask", "no device"])
 
     def test_what_speaks_for_a_layout_is_shown(self):
         source = self.written("it.log", "boot v1\n" + LINES)

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/bytes/devices/device_source.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -30,6 +31,11 @@ constexpr Nanos kPause = 100ms;  // then the decoder gets a pause
 constexpr Nanos kSilence = 2s;   // then the user gets a notice
 constexpr Nanos kRepeatRequest = 1s;
 
+/// Between two requests at least, where a layout says a rate.
+Nanos period_of(const std::optional<double>& rate_hz) {
+  return rate_hz ? Nanos(std::llround(1e9 / *rate_hz)) : Nanos{};
+}
+
 /// Times of frames as a layout describes them.
 struct DescribedTimes {
   bool are_in_file = false;  ///< The file holds the times of its frames.
@@ -46,7 +52,8 @@ class DeviceSource final : public FrameSource {
         options_(options),
         connection_(uri_, std::move(stream), [this](const std::string& text) { notify(text); }),
         decoder_(std::move(decoder)),
-        buffer_(Decoder::kMaxPush) {}
+        buffer_(Decoder::kMaxPush),
+        requests_{.period = period_of(times.rate_hz)} {}
 
   /// Opens the stream; a listener waits for its device in next().
   Status open() {
@@ -65,7 +72,7 @@ class DeviceSource final : public FrameSource {
       if (decoder_->next(frame)) return deliver(frame);
       if (is_stopped()) return false;
       if (connection_.state() == State::over) return finished();
-      const Status step = connection_.state() == State::open ? receive(kTick) : try_open();
+      const Status step = connection_.state() == State::open ? receive(until_due(kTick)) : try_open();
       if (!step) return step.error();
     }
   }
@@ -73,7 +80,7 @@ class DeviceSource final : public FrameSource {
   [[nodiscard]] std::optional<Readiness> readiness() const override {
     const int descriptor = connection_.descriptor();
     if (descriptor < 0) return std::nullopt;
-    return Readiness{descriptor, last_read_.at + kTick};
+    return Readiness{descriptor, last_read_.at + until_due(kTick)};
   }
 
   Result<Polled> poll(RawFrame& frame) override {
@@ -144,11 +151,20 @@ class DeviceSource final : public FrameSource {
     request();
   }
 
+  /// At most so long that a request is not late.
+  [[nodiscard]] Nanos until_due(Nanos longest) const {
+    return requests_.is_due ? std::clamp(requests_.next - now().steady, Nanos{}, longest) : longest;
+  }
+
+  /// The device is asked as soon as the rate allows it.
   void request() {
     const std::string_view text = decoder_->request();
-    if (text.empty()) return;
+    const Nanos time = now().steady;
+    requests_.is_due = !text.empty() && time < requests_.next;
+    if (text.empty() || requests_.is_due) return;
+    requests_.next = (time < requests_.next + requests_.period ? requests_.next : time) + requests_.period;
     connection_.write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-    last_request_ = now().steady;
+    requests_.last = time;
   }
 
   Result<bool> deliver(RawFrame& frame) {
@@ -185,7 +201,7 @@ class DeviceSource final : public FrameSource {
   /// The device has answered, but not with a frame: it waits to be asked again.
   void request_after_damage() {
     const std::uint64_t damaged = decoder_->counts().damaged_frames;
-    if (std::exchange(damaged_frames_, damaged) != damaged) request();
+    if (std::exchange(damaged_frames_, damaged) != damaged || requests_.is_due) request();
   }
 
   Status receive(Nanos timeout) {
@@ -217,7 +233,7 @@ class DeviceSource final : public FrameSource {
       noticed_.is_pause = true;
       decoder_->idle();
     }
-    if (!decoder_->request().empty() && at - last_request_ >= kRepeatRequest) request();
+    if (!decoder_->request().empty() && at - requests_.last >= std::max(kRepeatRequest, requests_.period)) request();
     if (noticed_.is_silence || at - last_activity_ < kSilence) return;
     noticed_.is_silence = true;
     const bool is_serial = uri_.transport == Transport::serial;
@@ -237,7 +253,12 @@ class DeviceSource final : public FrameSource {
   std::uint64_t frames_ = 0;
   std::uint64_t damaged_frames_ = 0;  // when last asked for
   Nanos last_activity_{};
-  Nanos last_request_{};
+  struct {
+    Nanos period{};  // between two, at least
+    Nanos last{};
+    Nanos next{};         // not before
+    bool is_due = false;  // It waits until the rate allows it.
+  } requests_;
   struct {
     bool is_pause = false;  // since the last byte
     bool is_silence = false;

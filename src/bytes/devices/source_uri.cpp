@@ -40,9 +40,9 @@ const std::set<std::string> kProtocolParameters = {
     "bit_shift", "transpose", "flip_rows", "flip_cols", "skip_columns", "row_order",        "col_order"};
 
 /// Keys of [layout] that hold text, and a number.
-const std::set<std::string> kLayoutTexts = {"line",          "line_end",  "separator", "comment",
-                                            "frame_begin",   "frame_end", "digits",    "escape",
-                                            "decimal_point", "unit",      "start",     "request"};
+const std::set<std::string> kLayoutTexts = {"line",      "line_end", "separator", "comment",       "frame_begin",
+                                            "frame_end", "digits",   "escape",    "decimal_point", "unit"};
+const std::set<std::string> kLayoutBytes = {"start", "request"};
 const std::set<std::string> kLayoutNumbers = {"scale", "offset", "absent", "width"};
 
 const std::array<Scheme, 9>& schemes() {
@@ -281,6 +281,7 @@ class Parser {
     std::string keys;
     for (const auto& [name, value] : parameters_) {
       if (kLayoutTexts.contains(name)) keys += name + " = " + files::quoted_toml(value) + "\n";
+      if (kLayoutBytes.contains(name)) keys += name + " = " + files::bytes_toml(value) + "\n";
       if (name == "packet") keys += name + " = " + quoted_list(value) + "\n";
       if (!kLayoutNumbers.contains(name)) continue;
       if (!number_within<double>(value, -1e300, 1e300))
@@ -365,7 +366,7 @@ Result<SourceUri> parse(std::string_view text, bool Scheme::*direction) {
   std::set<std::string> known = scheme->parameters;
   const bool is_decoded = direction == &Scheme::is_source && scheme->transport != Transport::simulation;
   if (is_decoded) {
-    for (const auto& names : {kProtocolParameters, kLayoutTexts, kLayoutNumbers})
+    for (const auto& names : {kProtocolParameters, kLayoutTexts, kLayoutBytes, kLayoutNumbers})
       known.insert(names.begin(), names.end());
     known.insert("packet");
   }

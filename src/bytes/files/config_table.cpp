@@ -55,6 +55,15 @@ std::optional<std::vector<double>> finite_numbers(const toml::array& list, const
   return numbers;
 }
 
+/// A number, or a list of two that rise.
+std::optional<std::pair<double, double>> range_of(const toml::node& node) {
+  if (const std::optional<double> number = finite_number(node)) return std::pair(*number, *number);
+  const toml::array* list = node.as_array();
+  const auto ends = list != nullptr ? finite_numbers(*list, std::nullopt) : std::nullopt;
+  const bool is_range = ends && ends->size() == 2 && (*ends)[0] <= (*ends)[1];
+  return is_range ? std::optional(std::pair((*ends)[0], (*ends)[1])) : std::nullopt;
+}
+
 /// The node of one part of a dotted path: "array", or "array[0]" for a table of a list of tables.
 const toml::node* part_of(const toml::table& table, std::string_view part) {
   const std::size_t bracket = part.find('[');
@@ -230,7 +239,7 @@ Result<ConfigFile> ConfigFile::parse(std::string_view text, const std::string& n
   ConfigFile file;
   file.parsed_->name = name;
   try {
-    file.parsed_->root = toml::parse(text);
+    file.parsed_->root = toml::parse(with_byte_escapes(text));
   } catch (const toml::parse_error& error) {
     const toml::source_position at = error.source().begin;
     return bad_input(name + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ": " +
@@ -331,6 +340,14 @@ void ConfigFile::counts(std::string_view key, std::vector<std::size_t>& values) 
 
 void ConfigFile::texts(std::string_view key, std::vector<std::string>& values) {
   parsed_->read_values(key, "must be a list of texts in quotes", values, text_of);
+}
+
+void ConfigFile::ranges(std::string_view key, std::vector<std::pair<double, double>>& values) {
+  const toml::node* node = parsed_->ask(key);
+  if (node == nullptr) return;
+  if (const auto number = finite_number(*node)) return values.assign(1, {*number, *number});
+  parsed_->read_list_of(*node, key, "must be a number, or a list of numbers and ranges, as [-1, [4090, 4095]]", values,
+                        range_of);
 }
 
 void ConfigFile::text_rows(std::string_view key, std::vector<std::vector<std::string>>& rows) {

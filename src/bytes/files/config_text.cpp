@@ -33,7 +33,46 @@ bool has_too_deep_key(std::string_view line) {
   return dots > kMaxKeyDotsPerLine;
 }
 
+/// Where the text in quotes ends that begins at `at`: behind its last quote.
+std::size_t end_of_quoted(std::string_view text, std::size_t at) {
+  const char quote = text[at];
+  const bool has_three = text.substr(at, 3) == std::string(3, quote);
+  const std::string_view end = text.substr(at, has_three ? 3 : 1);
+  for (std::size_t i = at + end.size(); i < text.size(); ++i) {
+    if (text.substr(i).starts_with(end)) return i + end.size();
+    if (!has_three && text[i] == '\n') return i;
+    if (quote == '"' && text[i] == '\\') ++i;
+  }
+  return text.size();
+}
+
+std::string without_byte_escapes(std::string_view quoted) {
+  std::string result;
+  for (std::size_t i = 0; i < quoted.size(); ++i) {
+    result += quoted[i];
+    if (quoted[i] != '\\' || i + 1 == quoted.size()) continue;
+    const char code = quoted[++i];
+    result += code == 'x' ? "u00" : std::string(1, code);
+  }
+  return result;
+}
+
 }  // namespace
+
+std::string with_byte_escapes(std::string_view text) {
+  std::string result;
+  if (text.find("\\x") == std::string_view::npos) return result.assign(text);
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t next = std::min(text.find_first_of("\"'#", at), text.size());
+    result += text.substr(at, next - at);
+    if (next == text.size()) break;
+    const bool is_comment = text[next] == '#';
+    at = is_comment ? std::min(text.find('\n', next), text.size()) : end_of_quoted(text, next);
+    const std::string_view piece = text.substr(next, at - next);
+    result += text[next] == '"' ? without_byte_escapes(piece) : std::string(piece);
+  }
+  return result;
+}
 
 Result<std::string> read_config_text(const std::string& path) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);

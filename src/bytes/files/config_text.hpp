@@ -15,4 +15,7 @@ namespace dermis::bytes::files {
 /// Bounds that the TOML parser itself does not check: 1 MiB, and the parts of a dotted key. `name` stands for the path.
 [[nodiscard]] Status check_config_text(std::string_view text, const std::string& name);
 
+/// "\xHH" of TOML 1.1 in texts becomes "\u00HH", as TOML 1.0 has it.
+[[nodiscard]] std::string with_byte_escapes(std::string_view text);
+
 }  // namespace dermis::bytes::files

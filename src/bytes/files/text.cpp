@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::int64_t kNanosPerSecond = 1'000'000'000;
 constexpr double kMaxSeconds = 9e9;
+constexpr std::string_view kHexadecimal = "0123456789ABCDEF";
 
 /// digits[.digits], with at most ten and nine digits.
 bool parse_plain_decimal(std::string_view text, std::int64_t& nanos) {
@@ -58,13 +59,34 @@ std::string quoted_toml(std::string_view text) {
     } else if (c == '\r') {
       result += "\\r";
     } else if (byte < 0x20 || byte == 0x7F) {
-      constexpr std::string_view kDigits = "0123456789ABCDEF";
-      result.append("\\u00").append({kDigits[byte >> 4U], kDigits[byte & 15U]});
+      result.append("\\u00").append({kHexadecimal[byte >> 4U], kHexadecimal[byte & 15U]});
     } else {
       result += c;
     }
   }
   return result + '"';
+}
+
+std::string bytes_toml(std::string_view bytes) {
+  const auto is_text = [](char c) { return (c >= ' ' && c <= '~') || c == '\n' || c == '\r'; };
+  if (std::ranges::all_of(bytes, is_text)) return quoted_toml(bytes);
+  std::string list = "[";
+  for (const char c : bytes) {
+    const auto byte = static_cast<unsigned char>(c);
+    list.append(list.size() > 1 ? ", 0x" : "0x").append({kHexadecimal[byte >> 4U], kHexadecimal[byte & 15U]});
+  }
+  return list + "]";
+}
+
+std::string latin_1_bytes(std::string_view utf8) {
+  std::string bytes;
+  for (std::size_t i = 0; i < utf8.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(utf8[i]);
+    const bool is_latin = (byte == 0xC2 || byte == 0xC3) && i + 1 < utf8.size();
+    bytes +=
+        is_latin ? static_cast<char>((byte & 3U) << 6U | (static_cast<unsigned char>(utf8[++i]) & 0x3FU)) : utf8[i];
+  }
+  return bytes;
 }
 
 std::string_view trimmed(std::string_view text) noexcept {

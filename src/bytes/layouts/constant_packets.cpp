@@ -33,8 +33,19 @@ Layout of_one_packet_without_mark(const Layout& layout, Packet packet) {
   return other;
 }
 
-/// The size of a packet that is a whole frame with a mark and without a checksum; else empty.
-std::optional<std::size_t> constant_size(const Layout& layout, const Packet& packet) {
+std::vector<std::size_t> sizes_of(const std::vector<std::shared_ptr<const Layout>>& layouts) {
+  std::vector<std::size_t> sizes;
+  for (const auto& layout : layouts) {
+    for (const Packet& packet : std::get<PacketLayout>(layout->form).packets) {
+      sizes.push_back(*size_of_frame(*layout, packet));
+    }
+  }
+  return sizes;
+}
+
+}  // namespace
+
+std::optional<std::size_t> size_of_frame(const Layout& layout, const Packet& packet) {
   std::size_t size = 0;
   for (const PacketField& field : packet) {
     switch (field.role) {
@@ -57,20 +68,8 @@ std::optional<std::size_t> constant_size(const Layout& layout, const Packet& pac
       default: size += bytes_of(field.type, 1);
     }
   }
-  return mark_of(packet).role == Role::literal ? std::optional(size) : std::nullopt;
+  return size;
 }
-
-std::vector<std::size_t> sizes_of(const std::vector<std::shared_ptr<const Layout>>& layouts) {
-  std::vector<std::size_t> sizes;
-  for (const auto& layout : layouts) {
-    for (const Packet& packet : std::get<PacketLayout>(layout->form).packets) {
-      sizes.push_back(*constant_size(*layout, packet));
-    }
-  }
-  return sizes;
-}
-
-}  // namespace
 
 bool has_constant_sizes(const Layout& layout) {
   const auto* const form = std::get_if<PacketLayout>(&layout.form);
@@ -78,7 +77,8 @@ bool has_constant_sizes(const Layout& layout) {
   const Packet& first = form->packets.front();
   std::set<std::size_t> sizes;
   for (const Packet& packet : form->packets) {
-    const std::optional<std::size_t> size = packet.empty() ? std::nullopt : constant_size(layout, packet);
+    const bool has_mark = !packet.empty() && mark_of(packet).role == Role::literal;
+    const std::optional<std::size_t> size = has_mark ? size_of_frame(layout, packet) : std::nullopt;
     const bool is_another = size && sizes.insert(*size).second;
     if (!is_another || is_at_begin(packet) != is_at_begin(first) || mark_of(packet).literal != mark_of(first).literal) {
       return false;
@@ -89,7 +89,7 @@ bool has_constant_sizes(const Layout& layout) {
 
 ConstantPackets::Form::Form(const Layout& of_packets, const Packet& packet, std::size_t array)
     : layout(of_one_packet_without_mark(of_packets, packet)),
-      size(*constant_size(of_packets, packet)),
+      size(*size_of_frame(of_packets, packet)),
       match(layout, first_packet(layout), array),
       fields(layout, moduli_of(std::get<PacketLayout>(layout.form))) {}
 
@@ -148,8 +148,9 @@ std::string ConstantPackets::advice() const {
   if (counts().frames > 0) return {};
   std::string sizes;
   for (const auto& form : forms_) sizes += (sizes.empty() ? "" : " or ") + std::to_string(form->size);
-  return "the mark " + hexadecimal(mark_of(first_packet(*first_)).literal) + " does not come again after " + sizes +
-         " bytes";
+  const std::string mark = "the mark " + hexadecimal(mark_of(first_packet(*first_)).literal);
+  if (!first_mark_at()) return mark + " does not come";
+  return mark + " of byte " + std::to_string(*first_mark_at()) + " does not come again after " + sizes + " bytes";
 }
 
 }  // namespace dermis::bytes::layouts

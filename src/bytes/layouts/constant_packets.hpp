@@ -18,6 +18,9 @@
 
 namespace dermis::bytes::layouts {
 
+/// The size of a packet that is a whole frame without a checksum, whatever it holds; empty where it is no such one.
+[[nodiscard]] std::optional<std::size_t> size_of_frame(const Layout& layout, const PacketLayout::Packet& packet);
+
 /// Each packet of the layout is a whole frame without a checksum. They have the same mark, and sizes that differ.
 [[nodiscard]] bool has_constant_sizes(const Layout& layout);
 

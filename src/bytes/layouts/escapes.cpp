@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/bytes/layouts/escapes.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 namespace dermis::bytes::layouts {
@@ -24,6 +25,21 @@ bool undo_stuffing(const PacketLayout& layout, std::span<const std::uint8_t> byt
     const bool is_escaped = bytes[i] == layout.escape_byte;
     if (is_escaped && ++i == bytes.size()) return false;
     plain.push_back(is_escaped ? bytes[i] ^ layout.escape_xor : bytes[i]);
+  }
+  return true;
+}
+
+bool undo_substitution(const PacketLayout& layout, std::span<const std::uint8_t> bytes,
+                       std::vector<std::uint8_t>& plain) {
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    if (bytes[i] != layout.escape_byte) {
+      plain.push_back(bytes[i]);
+      continue;
+    }
+    if (++i == bytes.size()) return false;
+    const auto found = std::ranges::find(layout.substitutes, bytes[i], &Substitute::code);
+    if (found == layout.substitutes.end()) return false;
+    plain.push_back(found->byte);
   }
   return true;
 }
@@ -57,7 +73,9 @@ std::optional<std::size_t> undo_cobs(std::span<const std::uint8_t> bytes, std::v
 
 std::uint8_t delimiter_of(const PacketLayout& layout) noexcept {
   if (layout.escape == PacketLayout::Escape::slip) return 0xC0;
-  return layout.escape == PacketLayout::Escape::stuffed ? layout.delimiter : 0;
+  const bool has_delimiter =
+      layout.escape == PacketLayout::Escape::stuffed || layout.escape == PacketLayout::Escape::substituted;
+  return has_delimiter ? layout.delimiter : 0;
 }
 
 bool undo_escapes(const PacketLayout& layout, std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& plain) {
@@ -70,6 +88,7 @@ bool undo_escapes(const PacketLayout& layout, std::span<const std::uint8_t> byte
     }
     case PacketLayout::Escape::slip: return undo_slip(bytes, plain);
     case PacketLayout::Escape::stuffed: return undo_stuffing(layout, bytes, plain);
+    case PacketLayout::Escape::substituted: return undo_substitution(layout, bytes, plain);
     case PacketLayout::Escape::none: break;
   }
   plain.assign(bytes.begin(), bytes.end());

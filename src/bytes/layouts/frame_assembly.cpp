@@ -14,6 +14,11 @@ FrameAssembly::FrameAssembly(const Layout& layout, std::size_t array, const Modu
 
 bool FrameAssembly::add(const Piece& piece, std::span<const float> numbers, std::size_t bytes, RawFrame& frame) {
   if (piece.array != array_) return false;
+  if (piece.first && numbers.size() > 1) {
+    const std::uint64_t inside = readings_.size() - std::min<std::uint64_t>(*piece.first, readings_.size());
+    if (inside == 0) return is_outside(piece);
+    numbers = numbers.first(std::min<std::uint64_t>(numbers.size(), inside));
+  }
   if (filled_ > 0 && piece.frame != first_.frame) end_frame();
   std::optional<std::size_t> begin = begin_of(piece, numbers.size());
   if (begin && is_filled(*begin, numbers.size())) {
@@ -21,14 +26,19 @@ bool FrameAssembly::add(const Piece& piece, std::span<const float> numbers, std:
     begin = begin_of(piece, numbers.size());
   }
   if (!begin) {
-    outside_ = piece;
     damage(bytes);
-    return false;
+    return is_outside(piece);
   }
   if (filled_ == 0) begin_frame(piece);
   fill(*begin, numbers);
   bytes_ += bytes;
   return filled_ == readings_.size() && deliver(frame);
+}
+
+/// A board may have more channels than taxels.
+bool FrameAssembly::is_outside(const Piece& piece) {
+  outside_ = piece;
+  return false;
 }
 
 /// Index of the first taxel; empty where the array does not have all of them.

@@ -21,7 +21,8 @@ class FrameAssembly {
  public:
   FrameAssembly(const Layout& layout, std::size_t array, const Moduli& moduli);
 
-  /// Adds a piece of `bytes` bytes with these numbers. True where it completes a frame, which it then writes.
+  /// Adds a piece of `bytes` bytes with these numbers; those of a run that reach beyond the array are none of it. True
+  /// where it completes a frame, which it then writes.
   [[nodiscard]] bool add(const Piece& piece, std::span<const float> numbers, std::size_t bytes, RawFrame& frame);
 
   /// The next piece begins a frame.
@@ -38,6 +39,7 @@ class FrameAssembly {
  private:
   [[nodiscard]] std::optional<std::size_t> begin_of(const Piece& piece, std::size_t count) const noexcept;
   [[nodiscard]] bool is_filled(std::size_t begin, std::size_t count) const noexcept;
+  bool is_outside(const Piece& piece);
   void begin_frame(const Piece& piece);
   void fill(std::size_t begin, std::span<const float> numbers);
   [[nodiscard]] bool deliver(RawFrame& frame);

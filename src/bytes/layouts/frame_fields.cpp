@@ -18,6 +18,11 @@ constexpr std::int64_t kMostLateFrames = 63;
 constexpr std::int64_t kMostLateNanos = 1'000'000'000;
 constexpr float kAbsent = std::numeric_limits<float>::quiet_NaN();
 
+bool is_in(const std::vector<NumberRange>& ranges, double number) noexcept {
+  return std::any_of(ranges.begin(), ranges.end(),
+                     [&](const NumberRange& range) { return number >= range.least && number <= range.most; });
+}
+
 bool holds(const std::vector<std::uint64_t>& values, const std::optional<std::uint64_t>& flags) {
   return flags && std::find(values.begin(), values.end(), *flags) != values.end();
 }
@@ -43,7 +48,7 @@ void Piece::forget_temperatures() noexcept {
 
 FrameFields::FrameFields(const Layout& layout, const Moduli& moduli)
     : layout_(layout),
-      has_plain_readings_(layout.scale == 1.0 && layout.offset == 0.0 && !layout.absent),
+      has_plain_readings_(layout.scale == 1.0 && layout.offset == 0.0 && layout.absent.empty()),
       frame_number_(moduli.frame),
       time_(moduli.time_ns) {}
 
@@ -51,7 +56,7 @@ void FrameFields::scale(std::span<float> numbers) const noexcept {
   if (has_plain_readings_) return;
   for (float& value : numbers) {
     const auto number = static_cast<double>(value);
-    value = number == layout_.absent ? kAbsent : static_cast<float>(layout_.scale * number + layout_.offset);
+    value = is_in(layout_.absent, number) ? kAbsent : static_cast<float>(layout_.scale * number + layout_.offset);
   }
 }
 

@@ -23,7 +23,8 @@ struct Piece {
   std::optional<std::uint64_t> frame{};
   std::optional<std::uint64_t> flags{};
   std::optional<std::uint64_t> time_ns{};
-  double time_unit = 0.0;  ///< Seconds, of the field that was read last.
+  double time_unit = 0.0;         ///< Seconds, of the field that was read last.
+  bool is_time_of_heads = false;  ///< None of this line was read yet.
   std::optional<double> temperature_celsius{};
   std::vector<float> sensor_celsius{};  ///< Where there are several temperatures; NaN: no reading.
   std::optional<double> supply_v{};
@@ -32,10 +33,12 @@ struct Piece {
   void add_temperature(double celsius);
   void forget_temperatures() noexcept;
 
-  /// A time in a smaller unit than the one before adds to it: seconds and then microseconds.
+  /// Times in different units add up where they stand in a line, or the smaller one in a line behind: secs and nsecs.
   void set_time(std::uint64_t nanos, double unit) noexcept {
-    time_ns = nanos + (unit < time_unit ? time_ns.value_or(0) : 0);
+    const bool adds = unit < time_unit || (unit > time_unit && !is_time_of_heads);
+    time_ns = nanos + (adds ? time_ns.value_or(0) : 0);
     time_unit = unit;
+    is_time_of_heads = false;
   }
 };
 

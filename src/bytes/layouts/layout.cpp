@@ -11,6 +11,7 @@
 #include "bytes/layouts/frames_in_order.hpp"
 #include "bytes/layouts/has_role.hpp"
 #include "bytes/layouts/packet_decoder.hpp"
+#include "bytes/layouts/raw_frames.hpp"
 #include "bytes/layouts/text_decoder.hpp"
 
 namespace dermis::bytes::layouts {
@@ -66,6 +67,8 @@ std::unique_ptr<Decoder> make_decoder(std::shared_ptr<const Layout> layout, std:
   } else if (has_constant_sizes(*layout)) {
     decoder = std::make_unique<ConstantPackets>(std::vector{std::move(layout)}, array,
                                                 ConstantPackets::FirstMark::begins_frame);
+  } else if (is_one_frame(*layout)) {
+    decoder = std::make_unique<RawFrames>(std::move(layout), array);
   } else {
     decoder = std::make_unique<PacketDecoder>(std::move(layout), array);
   }

@@ -9,7 +9,9 @@
 #include "bytes/layouts/has_role.hpp"
 #include "bytes/layouts/line_pattern.hpp"
 #include "bytes/layouts/packet_entry.hpp"
+#include "bytes/layouts/raw_frames.hpp"
 #include "dermis/bytes/files/config_table.hpp"
+#include "dermis/bytes/files/text.hpp"
 #include "dermis/bytes/layouts/layout.hpp"
 #include "dermis/touch/frames/array_description.hpp"
 
@@ -111,7 +113,11 @@ class LayoutReader {
       fail("line", "has no readings: write {values}, or the name of an array, where they stand");
     }
     for (const TextLayout::Pattern& line : text.lines) {
-      check_shares("line", line, !has_role(line, Role::col) && has_role(text.lines, Role::row));
+      if (has_counts(line)) {
+        check_counts("line", line);
+      } else {
+        check_shares("line", line, !has_role(line, Role::col) && has_role(text.lines, Role::row));
+      }
     }
   }
 
@@ -137,6 +143,21 @@ class LayoutReader {
     file_.choice(key("digits"), {"decimal", "hexadecimal"}, digits);
     text.is_hexadecimal = digits == 1;
     layout_.form = std::move(text);
+  }
+
+  /// A field says how many readings it has.
+  template <typename Field>
+  static bool has_counts(const std::vector<Field>& fields) {
+    return std::ranges::any_of(fields,
+                               [](const Field& field) { return field.role == Role::values && field.count > 0; });
+  }
+
+  template <typename Field>
+  void check_counts(const char* name, const std::vector<Field>& fields) {
+    const auto is_too_many = [&](const Field& field) {
+      return field.role == Role::values && field.count > layout_.arrays[field.array].shape.taxel_count();
+    };
+    if (std::ranges::any_of(fields, is_too_many)) fail(name, "x is more than the array has taxels");
   }
 
   /// Fields of one array share its readings.
@@ -184,6 +205,7 @@ class LayoutReader {
     file_.text(key("escape"), escape);
     if (escape.empty()) return;
     const auto bytes = parse_bytes(escape);
+    if (read_substitutes(escape, packet)) return;
     if (escape == "cobs") {
       packet.escape = PacketLayout::Escape::cobs;
     } else if (escape == "slip") {
@@ -194,21 +216,33 @@ class LayoutReader {
       packet.escape_byte = (*bytes)[1];
       packet.escape_xor = (*bytes)[2];
     } else {
-      fail("escape", "must be \"cobs\", \"slip\", or the bytes of delimiter, escape and its XOR, as \"7E 7D 20\"");
+      fail("escape",
+           "must be \"cobs\", \"slip\", or the bytes of delimiter, escape and its XOR, as \"7E 7D 20\", or of "
+           "delimiter, escape and what its codes stand for, as \"C0 DB DC=C0 DD=DB\"");
     }
   }
 
+  /// "C0 DB DC=C0 DD=DB"; false where it is none such.
+  static bool read_substitutes(std::string escape, PacketLayout& packet) {
+    const auto codes = std::ranges::count(escape, '=');
+    std::ranges::replace(escape, '=', ' ');
+    const auto bytes = parse_bytes(escape);
+    if (codes == 0 || !bytes || bytes->size() != 2 + 2 * static_cast<std::size_t>(codes)) return false;
+    packet.escape = PacketLayout::Escape::substituted;
+    packet.delimiter = (*bytes)[0];
+    packet.escape_byte = (*bytes)[1];
+    for (std::size_t k = 2; k < bytes->size(); k += 2) packet.substitutes.push_back({(*bytes)[k], (*bytes)[k + 1]});
+    return true;
+  }
+
   void check(const PacketLayout::Packet& fields) {
-    const bool has_counts = has_role(fields, Role::count) || std::ranges::any_of(fields, [](const PacketField& field) {
-                              return field.role == Role::values && field.count > 0;
-                            });
-    if (!has_counts) check_shares("packet", fields, has_role(fields, Role::row));
+    if (!has_role(fields, Role::count) && !has_counts(fields))
+      check_shares("packet", fields, has_role(fields, Role::row));
     if (!has_role(fields, Role::values)) fail("packet", "has no readings, as \"values u16le\"");
     for (const PacketField& field : fields) {
       if (field.literal.size() > kMostLiteral) fail("packet", "a field has more than 256 bytes");
-      const std::size_t taxels = layout_.arrays[field.array].shape.taxel_count();
-      if (field.role == Role::values && field.count > taxels) fail("packet", "x is more than the array has taxels");
     }
+    check_counts("packet", fields);
     const bool has_ids = std::all_of(layout_.arrays.begin(), layout_.arrays.end(),
                                      [](const LayoutArray& array) { return array.id.has_value(); });
     if (has_role(fields, Role::array) && !has_ids) fail("array", "each array needs an id, which the field array holds");
@@ -221,19 +255,21 @@ class LayoutReader {
     const std::vector<PacketLayout::Packet>& packets = layout.packets;
     if (layout.escape != PacketLayout::Escape::none || std::ranges::any_of(packets, is_empty)) return;
     if (std::ranges::all_of(packets, begins_with_mark)) return;
-    if (has_constant_sizes({layout_.arrays, layout})) return;
+    const Layout whole{layout_.arrays, layout};
+    if (has_constant_sizes(whole) || is_one_frame(whole)) return;
     fail("packet", std::ranges::all_of(packets, ends_with_mark)
                        ? "its size differs, so it must begin with bytes that mark it, or have an escape"
-                       : "must begin or end with bytes that mark it, as \"FF FF\", or have an escape");
+                       : "must begin or end with bytes that mark it, as \"FF FF\", have an escape, or be a whole frame "
+                         "that is always of one size");
   }
 
   void read_readings() {
     file_.number(key("scale"), layout_.scale);
     file_.number(key("offset"), layout_.offset);
     if (layout_.scale == 0.0) fail("scale", "must not be 0");
-    file_.number(key("absent"), layout_.absent);
-    file_.text(key("start"), layout_.start);
-    file_.text(key("request"), layout_.request);
+    read_absent();
+    read_bytes("start", layout_.start);
+    read_bytes("request", layout_.request);
     read_flags("absent", layout_.flags.absent);
     read_flags("late", layout_.flags.late);
     read_flags("corrupt", layout_.flags.corrupt);
@@ -245,6 +281,27 @@ class LayoutReader {
     if (layout_.rate_hz && !(*layout_.rate_hz > 0.0 && *layout_.rate_hz <= 1e6)) {
       fail("rate", "must be above 0 and at most 1e6 frames a second");
     }
+  }
+
+  void read_absent() {
+    std::vector<std::pair<double, double>> ranges;
+    file_.ranges(key("absent"), ranges);
+    for (const auto& [least, most] : ranges) layout_.absent.push_back({least, most});
+  }
+
+  /// A text, each of whose characters up to U+00FF is a byte, or a list of bytes.
+  void read_bytes(const std::string& name, std::string& bytes) {
+    if (file_.holds_text(key(name))) {
+      std::string text;
+      file_.text(key(name), text);
+      bytes = files::latin_1_bytes(text);
+      return;
+    }
+    std::vector<std::size_t> numbers;
+    if (file_.contains(key(name))) file_.counts(key(name), numbers);
+    if (std::ranges::any_of(numbers, [](std::size_t number) { return number > 0xFF; }))
+      fail(name, "must be a text in quotes, or a list of bytes from 0 to 255");
+    for (const std::size_t number : numbers) bytes += static_cast<char>(number);
   }
 
   void read_flags(const std::string& name, std::vector<std::uint64_t>& values) {

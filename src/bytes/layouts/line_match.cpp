@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -66,7 +65,10 @@ bool LineMatch::read(std::span<const std::uint8_t> line, Piece& piece) {
   for (const Pattern& pattern : patterns_) {
     pattern_ = &pattern;
     if (!read_pattern(line, piece)) continue;
-    if (pattern.is_head) heads_ = piece;
+    if (pattern.is_head) {
+      heads_ = piece;
+      heads_.is_time_of_heads = true;
+    }
     return true;
   }
   return false;
@@ -105,7 +107,7 @@ bool LineMatch::fail(const char* why) noexcept {
 
 bool LineMatch::read_field(const TextField& field, const TextField* next, Piece& piece) {
   if (field.role == Role::literal) return read_literal(field.literal);
-  if (field.role == Role::values) return read_readings(names_array_ ? piece.array : field.array, piece);
+  if (field.role == Role::values) return read_readings(field, names_array_ ? piece.array : field.array, piece);
   skip_blanks();
   double number = 0.0;
   switch (field.role) {
@@ -113,14 +115,14 @@ bool LineMatch::read_field(const TextField& field, const TextField* next, Piece&
     case Role::row: return read_counted(field, piece.row);
     case Role::col: return read_counted(field, piece.col);
     case Role::first: return read_counted(field, piece.first);
-    case Role::frame: return read_whole(piece.frame);
-    case Role::flags: return read_whole(piece.flags);
+    case Role::frame: return read_whole(piece.frame, field);
+    case Role::flags: return read_whole(piece.flags, field);
     case Role::array: return read_array(next, piece);
     case Role::clock: piece.set_time(0, 1.0); return read_clock(*piece.time_ns);
     case Role::datetime: piece.set_time(0, 1.0); return read_datetime(*piece.time_ns);
     default: break;
   }
-  if (!read_number(number)) return fail("a number is expected");
+  if (!read_number_of(field, number)) return fail("a number is expected");
   number *= field.unit;
   if (field.role == Role::temperature) piece.add_temperature(number);
   if (field.role == Role::supply && number > 0.0) piece.supply_v = number;
@@ -161,13 +163,14 @@ bool LineMatch::skip_to(const TextField* next) noexcept {
   return found != end_ || fail("more is expected");
 }
 
-bool LineMatch::read_readings(std::size_t array, Piece& piece) {
+bool LineMatch::read_readings(const TextField& field, std::size_t array, Piece& piece) {
   const FrameShape& shape = layout_.arrays[array].shape;
   const std::size_t shares = std::max<std::size_t>(pattern_->shares[names_array_ ? 0 : array], 1);
   const Holds holds = pattern_->holds;
   const bool may_be_row = holds == Holds::row || (holds == Holds::row_or_frame && shares == 1);
-  const std::size_t least = holds == Holds::taxel ? 1 : (may_be_row ? shape.cols : shape.taxel_count()) / shares;
-  const std::size_t most = holds == Holds::row_or_frame ? shape.taxel_count() / shares : least;
+  const std::size_t usual = holds == Holds::taxel ? 1 : (may_be_row ? shape.cols : shape.taxel_count()) / shares;
+  const std::size_t least = field.count > 0 ? field.count : usual;
+  const std::size_t most = field.count == 0 && holds == Holds::row_or_frame ? shape.taxel_count() / shares : least;
   const std::span<float> values = array == array_ ? std::span(numbers_).subspan(count_) : std::span(others_);
   if (values.size() < most) return fail("more readings than the array has");
   if (!read_values(values, 0, least)) return false;
@@ -258,19 +261,33 @@ bool LineMatch::skip_absent() noexcept {
   return false;
 }
 
-bool LineMatch::read_whole(std::optional<std::uint64_t>& value) noexcept {
+bool LineMatch::read_whole(std::optional<std::uint64_t>& value, const TextField& field) noexcept {
+  std::string_view digits = rest();
+  const bool has_prefix = field.is_hexadecimal && (digits.starts_with("0x") || digits.starts_with("0X"));
+  if (has_prefix) digits.remove_prefix(2);
+  if (field.width > 0) digits = digits.substr(0, field.width);
   std::uint64_t whole = 0;
-  const std::size_t size = files::number_at(rest(), whole);
-  if (size == 0) return fail("a whole number is expected");
-  at_ += size;
+  const std::size_t size =
+      field.is_hexadecimal ? files::hexadecimal_at(digits, whole) : files::number_at(digits, whole);
+  if (size == 0 || size < field.width) return fail("a whole number is expected");
+  at_ += size + (has_prefix ? 2 : 0);
   value = whole;
+  return true;
+}
+
+/// One that has digits of its own is whole.
+bool LineMatch::read_number_of(const TextField& field, double& number) noexcept {
+  if (!field.is_hexadecimal && field.width == 0) return read_number(number);
+  std::optional<std::uint64_t> whole;
+  if (!read_whole(whole, field)) return false;
+  number = static_cast<double>(*whole);
   return true;
 }
 
 /// Of rows, columns or taxels, which may be counted from 1 on.
 bool LineMatch::read_counted(const TextField& field, std::optional<std::uint64_t>& value) noexcept {
-  if (!read_whole(value)) return false;
-  if (*value < field.from) return fail("a number of 1 or more is expected");
+  if (!read_whole(value, field)) return false;
+  if (*value < field.from) return fail("a greater number is expected");
   *value -= field.from;
   return true;
 }
@@ -292,67 +309,6 @@ bool LineMatch::read_number(double& value) noexcept {
   }
   if (!files::parse_number(std::string_view(text.data(), size), value)) return false;
   at_ = last;
-  return true;
-}
-
-/// "18:45:00", with a fraction behind a point or comma.
-bool LineMatch::read_clock(std::uint64_t& nanos) noexcept {
-  const auto part = [&](std::uint64_t most, std::uint64_t& value) {
-    std::optional<std::uint64_t> whole;
-    if (!read_whole(whole) || *whole > most) return false;
-    value = *whole;
-    return true;
-  };
-  std::uint64_t hours = 0;
-  std::uint64_t minutes = 0;
-  std::uint64_t seconds = 0;
-  const auto colon = [&] { return at_ != end_ && *at_++ == ':'; };
-  if (!part(23, hours) || !colon() || !part(59, minutes) || !colon() || !part(60, seconds)) {
-    return fail("a time of day is expected, as 18:45:00");
-  }
-  nanos = ((hours * 60 + minutes) * 60 + seconds) * 1'000'000'000;
-  if (at_ == end_ || (*at_ != '.' && *at_ != ',') || at_ + 1 == end_ || digit(at_[1]) > 9) return true;
-  std::uint64_t unit = 100'000'000;
-  for (++at_; at_ != end_ && digit(*at_) <= 9; ++at_, unit /= 10) nanos += unit * digit(*at_);
-  return true;
-}
-
-bool LineMatch::read_datetime(std::uint64_t& nanos) noexcept {
-  std::optional<std::uint64_t> year;
-  std::optional<std::uint64_t> month;
-  std::optional<std::uint64_t> day;
-  const auto dash = [&] { return at_ != end_ && *at_++ == '-'; };
-  if (!read_whole(year) || !dash() || !read_whole(month) || !dash() || !read_whole(day) || at_ == end_) {
-    return fail("a date and time is expected, as 2026-11-27 18:45:00");
-  }
-  ++at_;
-  if (!read_clock(nanos)) return false;
-  std::int64_t east_ns = 0;
-  if (!read_zone(east_ns)) return false;
-  if (*year < 1970 || *year > 2200 || *month > 12 || *day > 31) return fail("a date after 1970 is expected");
-  const std::chrono::year_month_day date{std::chrono::year(static_cast<int>(*year)),
-                                         std::chrono::month(static_cast<unsigned>(*month)),
-                                         std::chrono::day(static_cast<unsigned>(*day))};
-  if (!date.ok()) return fail("there is no such date");
-  nanos += static_cast<std::uint64_t>(Nanos(std::chrono::sys_days(date).time_since_epoch()).count() - east_ns);
-  return true;
-}
-
-/// "Z", "+01:00", "-0330", or nothing.
-bool LineMatch::read_zone(std::int64_t& east_ns) noexcept {
-  if (at_ == end_) return true;
-  if (*at_ == 'Z') return ++at_, true;
-  const bool is_west = *at_ == '-';
-  if (!is_west && *at_ != '+') return true;
-  std::array<std::uint32_t, 4> digits{};
-  ++at_;
-  for (std::size_t k = 0; k < digits.size(); ++k, ++at_) {
-    if (k == 2 && at_ != end_ && *at_ == ':') ++at_;
-    if (at_ == end_ || digit(*at_) > 9) return fail("a time zone is expected, as +01:00");
-    digits[k] = digit(*at_);
-  }
-  const std::int64_t minutes = 60 * (10 * digits[0] + digits[1]) + 10 * digits[2] + digits[3];
-  east_ns = (is_west ? -minutes : minutes) * 60'000'000'000;
   return true;
 }
 

@@ -31,6 +31,8 @@ class LineMatch {
   [[nodiscard]] std::span<const float> numbers() const noexcept { return {numbers_.data(), count_}; }
   /// "at 'xyz': a number is expected", of the last line that did not fit.
   [[nodiscard]] std::string misfit() const;
+  /// "a number is expected"
+  [[nodiscard]] std::string_view why() const noexcept { return why_; }
 
  private:
   /// How many readings of an array stand in a line.
@@ -51,13 +53,14 @@ class LineMatch {
   bool read_field(const TextField& field, const TextField* next, Piece& piece);
   bool read_literal(const std::string& literal) noexcept;
   bool skip_to(const TextField* next) noexcept;
-  bool read_readings(std::size_t array, Piece& piece);
+  bool read_readings(const TextField& field, std::size_t array, Piece& piece);
   bool read_values(std::span<float> values, std::size_t from, std::size_t to) noexcept;
   std::size_t read_plain(std::span<float> values) noexcept;
   bool read_reading(float& value) noexcept;
   bool read_digits(float& value) noexcept;
   bool skip_absent() noexcept;
-  bool read_whole(std::optional<std::uint64_t>& value) noexcept;
+  bool read_whole(std::optional<std::uint64_t>& value, const TextField& field) noexcept;
+  bool read_number_of(const TextField& field, double& number) noexcept;
   bool read_counted(const TextField& field, std::optional<std::uint64_t>& value) noexcept;
   bool read_number(double& value) noexcept;
   bool read_clock(std::uint64_t& nanos) noexcept;

@@ -2,28 +2,62 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "bytes/layouts/line_pattern.hpp"
 
+#include <algorithm>
+
 #include "bytes/layouts/field_names.hpp"
+#include "dermis/bytes/files/numbers.hpp"
 
 namespace dermis::bytes::layouts {
 namespace {
 
 constexpr std::size_t kLongestPattern = 4096;
 
+bool is_counted(Role role) {
+  return role == Role::row || role == Role::col || role == Role::first;
+}
+
+bool may_be_hexadecimal(Role role) {
+  return is_counted(role) || role == Role::frame || role == Role::flags || role == Role::time;
+}
+
+/// " x9" readings, ":x" hexadecimal, ":2x" two digits of it, "-1" where the first row has that number.
+Status read_option(std::string_view option, TextField& field) {
+  const std::string_view rest = option.substr(1);
+  if (option.starts_with(" x") && field.role == Role::values) {
+    if (files::parse_number(option.substr(2), field.count) && field.count > 0) return Done{};
+  } else if (option.starts_with(":") && rest.ends_with("x") && may_be_hexadecimal(field.role)) {
+    field.is_hexadecimal = true;
+    const std::string_view width = rest.substr(0, rest.size() - 1);
+    if (width.empty() || (files::parse_number(width, field.width) && field.width > 0 && field.width <= 16))
+      return Done{};
+  } else if (option.starts_with("-") && is_counted(field.role)) {
+    const bool is_marked = rest.starts_with("0x");
+    if (is_marked ? files::parse_hexadecimal(rest.substr(2), field.from) : files::parse_number(rest, field.from))
+      return Done{};
+  }
+  return bad_input("'" + std::string(option) + "' is no option of it: {values x9}, {row:x}, {row:2x}, {row-1}");
+}
+
 /// "row", or "row-1" where rows are counted from 1 on.
 Result<TextField> field_in(std::string_view name, const std::vector<LayoutArray>& arrays) {
-  const Result<NamedField> field = field_named(name, FieldsOf::line, arrays);
-  if (field) return TextField{.role = field->role, .array = field->array, .unit = field->unit};
-  for (const Role role : {Role::row, Role::col, Role::first}) {
-    const bool is_it = name == (role == Role::row ? "row-1" : role == Role::col ? "col-1" : "first-1");
-    if (is_it) return TextField{.role = role, .from = 1};
+  const Result<NamedField> whole = field_named(name, FieldsOf::line, arrays);
+  if (whole) return TextField{.role = whole->role, .array = whole->array, .unit = whole->unit};
+  std::size_t end = std::min(name.find_first_of(" :-"), name.size());
+  const Result<NamedField> known = field_named(name.substr(0, end), FieldsOf::line, arrays);
+  if (!known) return end < name.size() ? known.error() : whole.error();
+  TextField field{.role = known->role, .array = known->array, .unit = known->unit};
+  while (end < name.size()) {
+    const std::size_t next = std::min(name.find_first_of(" :-", end + 1), name.size());
+    if (Status read = read_option(name.substr(end, next - end), field); !read) return read.error();
+    end = next;
   }
-  return field.error();
+  return field;
 }
 
 Status check_order(const std::vector<TextField>& fields) {
   for (std::size_t k = 0; k < fields.size(); ++k) {
     const bool is_followed_by_field = k + 1 < fields.size() && fields[k + 1].role != Role::literal;
-    if (fields[k].role != Role::literal && is_followed_by_field) {
+    if (fields[k].role != Role::literal && fields[k].width == 0 && is_followed_by_field) {
       return bad_input("two fields need something between them, such as a comma");
     }
   }

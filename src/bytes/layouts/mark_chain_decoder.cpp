@@ -113,6 +113,9 @@ Verdict MarkChainDecoder::search(Bytes bytes, bool ended) {
     in_step_ = true;
     return pass(bytes, Verdict::Kind::noise, start);
   }
+  const auto mark = std::search(bytes.begin(), bytes.end(), mark_.begin(), mark_.end());
+  if (!first_mark_at_ && mark != bytes.end())
+    first_mark_at_ = position() + static_cast<std::size_t>(mark - bytes.begin());
   const bool more_may_tell = std::any_of(chains().begin(), chains().end(),
                                          [&](const Chain& chain) { return chain.is_whole && !is_imitation(chain); });
   if (more_may_tell && frames_compared_ < kMaxFramesCompared) {

@@ -43,6 +43,9 @@ class MarkChainDecoder : public WindowDecoder {
 
   void begin_again() override;
 
+  /// The place in the stream of the first mark that was seen before any chain of them.
+  [[nodiscard]] std::optional<std::uint64_t> first_mark_at() const noexcept { return first_mark_at_; }
+
  private:
   using Bytes = std::span<const std::uint8_t>;
 
@@ -79,6 +82,7 @@ class MarkChainDecoder : public WindowDecoder {
   bool after_mark_ = false;               ///< The bytes taken before the window ended with a mark.
   bool is_at_begin_ = true;               ///< Nothing of the stream was taken, and it may begin with a frame.
   std::size_t frames_compared_ = 0;       ///< Over how many frames chains are followed at present.
+  std::optional<std::uint64_t> first_mark_at_;
   std::vector<std::uint8_t> last_payload_;
   std::vector<std::uint8_t> marks_in_phase_;  ///< Number of marks at each position modulo the frame size.
   std::array<Chain, 8> chains_{};             ///< That may be whole.

@@ -72,7 +72,10 @@ PacketDecoder::Found PacketDecoder::next_packet(RawFrame& frame) {
   const std::span<const std::uint8_t> rest = bytes.subspan(match->size());
   const bool is_decided = rest.size() >= longest_mark(form_) || is_idle_ || has_ended_;
   if (!is_decided) return Found::nothing;
-  return is_followed_by_packet(rest) ? take(match->size(), frame) : skip(1);
+  if (is_followed_by_packet(rest)) return take(match->size(), frame);
+  if (is_further(match->packet().size()))
+    keep_misfit(match->packet().size(), "no packet stands behind these " + std::to_string(match->size()) + " bytes");
+  return skip(1);
 }
 
 /// Tries the packets of the layout. One that may be more than the bytes so far keeps those behind it waiting, but not
@@ -84,7 +87,7 @@ PacketDecoder::Reading PacketDecoder::read(std::span<const std::uint8_t> bytes) 
     if (outcome == PacketMatch::Outcome::whole) return {outcome, &match};
     if (outcome == PacketMatch::Outcome::unfinished && !has_ended_) return {outcome, &match};
     if (outcome == PacketMatch::Outcome::unfinished) continue;
-    if (counts().frames == 0) misfit_ = match.misfit();
+    if (is_further(match.fitted())) keep_misfit(match.fitted(), match.misfit());
     if (outcome == PacketMatch::Outcome::damaged) reading.outcome = outcome;
   }
   return reading;
@@ -132,11 +135,7 @@ PacketDecoder::Found PacketDecoder::next_escaped(RawFrame& frame) {
   if (end == nullptr) return reach == longest_packet_ ? skip(reach) : Found::nothing;
   const auto size = static_cast<std::size_t>(static_cast<const std::uint8_t*>(end) - bytes.data());
   if (size == 0) return skip(1);
-  if (!undo_escapes(form_, bytes.first(size), plain_)) {
-    misfit_ = matches_.front().misfit();
-  } else if (is_one_of_them(plain_)) {
-    return take(size + 1, frame);
-  }
+  if (undo_escapes(form_, bytes.first(size), plain_) && is_one_of_them(plain_)) return take(size + 1, frame);
   if (counts().frames > 0) assembly_.damage(0);
   return skip(size + 1);
 }
@@ -145,15 +144,25 @@ bool PacketDecoder::is_one_of_them(std::span<const std::uint8_t> plain) {
   for (PacketMatch& match : matches_) {
     const bool is_whole = match.read(plain, piece_, numbers_) == PacketMatch::Outcome::whole;
     if (is_whole && match.size() == plain.size()) return true;
-    if (counts().frames == 0) misfit_ = match.misfit();
+    if (is_further(match.fitted())) keep_misfit(match.fitted(), match.misfit());
   }
   return false;
+}
+
+/// The furthest that a packet fitted before the first frame, and of those that came as far the first.
+bool PacketDecoder::is_further(std::size_t fields) const noexcept {
+  return counts().frames == 0 && (misfit_.text.empty() || fields > misfit_.fields);
+}
+
+void PacketDecoder::keep_misfit(std::size_t fields, const std::string& text) {
+  misfit_.fields = fields;
+  misfit_.text = "byte " + std::to_string(window_.position()) + ": " + text;
 }
 
 std::string PacketDecoder::advice() const {
   if (counts().frames > 0) return {};
   const std::string incomplete = assembly_.advice();
-  return misfit_ + (misfit_.empty() || incomplete.empty() ? "" : "; ") + incomplete;
+  return misfit_.text + (misfit_.text.empty() || incomplete.empty() ? "" : "; ") + incomplete;
 }
 
 }  // namespace dermis::bytes::layouts

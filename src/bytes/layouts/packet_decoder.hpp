@@ -50,6 +50,8 @@ class PacketDecoder final : public Decoder {
   [[nodiscard]] Found next_escaped(RawFrame& frame);
   [[nodiscard]] bool is_followed_by_packet(std::span<const std::uint8_t> rest) const noexcept;
   [[nodiscard]] std::size_t distance_to_mark(std::span<const std::uint8_t> bytes) const noexcept;
+  [[nodiscard]] bool is_further(std::size_t fields) const noexcept;
+  void keep_misfit(std::size_t fields, const std::string& text);
   Found skip(std::size_t bytes);
   Found take(std::size_t bytes, RawFrame& frame);
 
@@ -64,7 +66,10 @@ class PacketDecoder final : public Decoder {
   std::vector<float> numbers_;       ///< Of the last packet.
   std::vector<std::uint8_t> plain_;  ///< A packet whose escapes are undone.
   std::uint64_t frame_end_ = 0;
-  std::string misfit_;  ///< Of the last packet before the first frame that did not fit.
+  struct {
+    std::string text{};
+    std::size_t fields = 0;  ///< That did fit.
+  } misfit_;                 ///< Of a packet before the first frame.
   bool has_ended_ = false;
   bool is_sending_ = false;
   bool is_idle_ = false;

@@ -40,6 +40,8 @@ class PacketMatch {
   [[nodiscard]] const PacketLayout::Packet& packet() const noexcept { return packet_; }
   [[nodiscard]] bool has_checksum() const noexcept { return has_checksum_; }
   [[nodiscard]] std::size_t size() const noexcept { return at_; }
+  /// How many fields of the last one did fit.
+  [[nodiscard]] std::size_t fitted() const noexcept { return misfit_; }
   /// "packet[3], a checksum, is 5F where 33 is expected", of the last one that did not fit.
   [[nodiscard]] std::string misfit() const;
 

@@ -43,6 +43,14 @@ TextDecoder::TextDecoder(std::shared_ptr<const Layout> layout, std::size_t array
       match_(*layout_, array),
       assembly_(*layout_, array, moduli_of(text_)) {}
 
+void TextDecoder::push(std::span<const std::uint8_t> bytes) {
+  if (!breaks_are_blanks()) return lines_.push(bytes);
+  unbroken_.assign(bytes.begin(), bytes.end());
+  std::replace_if(
+      unbroken_.begin(), unbroken_.end(), [](std::uint8_t byte) { return byte == '\n' || byte == '\r'; }, ' ');
+  lines_.push(unbroken_);
+}
+
 bool TextDecoder::next(RawFrame& frame) {
   if (read_lines(frame, 0)) return true;
   if (!has_ended_) return false;
@@ -80,12 +88,17 @@ bool TextDecoder::read(std::span<const std::uint8_t> line, std::size_t bytes, Ra
     if (begins_frame) assembly_.end_frame();
     if (match_.read(text, piece_)) return add(bytes, frame);
     if (begins_frame && match_.read(text.subspan(text_.frame_begin.size()), piece_)) return add(bytes, frame);
-    if (counts().frames == 0) {
-      misfit_ = "line " + std::to_string(line_number_) + " does not fit layout.line " + match_.misfit();
-    }
+    if (counts().frames == 0 && !text.empty()) keep_misfit();
   }
   assembly_.skip(bytes);
   return false;
+}
+
+/// The first line, and the first that fails for another reason: a head comes before the lines that matter.
+void TextDecoder::keep_misfit() {
+  if (misfits_.size() > 1 || (!misfits_.empty() && misfits_.front().why == match_.why())) return;
+  misfits_.push_back(
+      {match_.why(), "line " + std::to_string(line_number_) + " does not fit layout.line " + match_.misfit()});
 }
 
 /// The line fits. A head of a frame ends the frame before it.
@@ -100,6 +113,7 @@ bool TextDecoder::add(std::size_t bytes, RawFrame& frame) {
 std::span<const std::uint8_t> TextDecoder::without_end(std::span<const std::uint8_t> line) const noexcept {
   const bool is_first = line_number_ == 1;
   if (is_first && begins_with(line, "\xEF\xBB\xBF")) line = line.subspan(3);
+  while (breaks_are_blanks() && line.size() > 1 && line.front() == ' ') line = line.subspan(1);
   std::size_t size = line.size();
   if (!line.empty() && line.back() == end_byte_) --size;
   if (text_.line_end.empty()) {
@@ -123,8 +137,10 @@ bool TextDecoder::ends_frame(std::span<const std::uint8_t> line) const noexcept 
 
 std::string TextDecoder::advice() const {
   if (counts().frames > 0) return {};
-  const std::string incomplete = assembly_.advice();
-  return misfit_ + (misfit_.empty() || incomplete.empty() ? "" : "; ") + incomplete;
+  std::string text = assembly_.advice();
+  for (auto misfit = misfits_.rbegin(); misfit != misfits_.rend(); ++misfit)
+    text = misfit->text + (text.empty() ? "" : "; ") + text;
+  return text;
 }
 
 }  // namespace dermis::bytes::layouts

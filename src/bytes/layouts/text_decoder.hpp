@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "bytes/layouts/frame_assembly.hpp"
 #include "bytes/layouts/line_match.hpp"
@@ -23,7 +24,7 @@ class TextDecoder final : public Decoder {
  public:
   TextDecoder(std::shared_ptr<const Layout> layout, std::size_t array, bool ends_last_line);
 
-  void push(std::span<const std::uint8_t> bytes) override { lines_.push(bytes); }
+  void push(std::span<const std::uint8_t> bytes) override;
   [[nodiscard]] bool next(RawFrame& frame) override;
   void finish() override { has_ended_ = true; }
   [[nodiscard]] std::uint64_t frame_end() const noexcept override { return frame_end_; }
@@ -39,19 +40,28 @@ class TextDecoder final : public Decoder {
   [[nodiscard]] bool ends_frame(std::span<const std::uint8_t> line) const noexcept;
   [[nodiscard]] bool read(std::span<const std::uint8_t> line, std::size_t bytes, RawFrame& frame);
   [[nodiscard]] bool add(std::size_t bytes, RawFrame& frame);
+  void keep_misfit();
+  /// Lines end with a sign.
+  [[nodiscard]] bool breaks_are_blanks() const noexcept { return end_byte_ > ' '; }
+
+  struct Misfit {
+    std::string_view why;
+    std::string text;
+  };
 
   std::shared_ptr<const Layout> layout_;
   const TextLayout& text_;
   std::size_t array_;
   std::uint8_t end_byte_;
   bool ends_last_line_;  ///< The last line of a file needs no end.
+  std::vector<std::uint8_t> unbroken_;
   LineReader lines_;
   LineMatch match_;
   FrameAssembly assembly_;
   Piece piece_;
   std::uint64_t line_number_ = 0;
   std::uint64_t frame_end_ = 0;
-  std::string misfit_;  ///< Of the last line before the first frame that did not fit, with its number.
+  std::vector<Misfit> misfits_;  ///< Of lines before the first frame.
   bool has_ended_ = false;
   bool is_sending_ = false;
 };

@@ -39,9 +39,21 @@ bool has_any(const std::vector<std::string>& words, const std::array<std::string
 constexpr std::array<std::string_view, 11> kTime = {"time", "timestamp", "t",       "ts",    "millis", "micros",
                                                     "zeit", "epoch",     "elapsed", "clock", "stamp"};
 constexpr std::array<std::string_view, 5> kSeconds = {"s", "sec", "secs", "seconds", "second"};
-constexpr std::array<std::string_view, 5> kMillis = {"ms", "msec", "millis", "milliseconds", "tms"};
-constexpr std::array<std::string_view, 5> kMicros = {"us", "usec", "micros", "microseconds", "tus"};
-constexpr std::array<std::string_view, 3> kNanos = {"ns", "nsec", "nanoseconds"};
+constexpr std::array<std::string_view, 6> kMillis = {"ms", "msec", "msecs", "millis", "milliseconds", "tms"};
+constexpr std::array<std::string_view, 6> kMicros = {"us", "usec", "usecs", "micros", "microseconds", "tus"};
+constexpr std::array<std::string_view, 7> kNanos = {"ns",       "nsec",    "nsecs",      "nanos",
+                                                    "nanosecs", "nanosec", "nanoseconds"};
+constexpr std::array<std::string_view, 41> kMotion = {
+    "imu",           "acc",   "accel",     "accx",    "accy",    "accz", "acceleration",
+    "accelerometer", "ax",    "ay",        "az",      "gyr",     "gyro", "gyrox",
+    "gyroy",         "gyroz", "gyroscope", "gx",      "gy",      "gz",   "mag",
+    "magx",          "magy",  "magz",      "mx",      "my",      "mz",   "quat",
+    "quaternion",    "q",     "qw",        "qx",      "qy",      "qz",   "roll",
+    "pitch",         "yaw",   "euler",     "heading", "angular", "omega"};
+constexpr std::array<std::string_view, 11> kOfReading = {"adc",     "raw",   "count",    "counts", "value", "val",
+                                                         "reading", "force", "pressure", "analog", "fsr"};
+constexpr std::array<std::string_view, 14> kOfOther = {"volt",  "volts", "voltage", "v",   "mv",      "percent", "pct",
+                                                       "index", "idx",   "id",      "pin", "channel", "ch",      "ohm"};
 constexpr std::array<std::string_view, 10> kFrame = {"frame", "frames", "seq",    "sequence", "counter",
                                                      "count", "cnt",    "sample", "packet",   "fn"};
 constexpr std::array<std::string_view, 3> kRow = {"row", "zeile", "y"};
@@ -119,6 +131,23 @@ std::string field_of_name(std::string_view name) {
   if (has_any(words, kCol)) return "col";
   if (has_any(words, kFlags)) return "flags";
   return has_any(words, kArray) ? "array" : "";
+}
+
+double time_unit_of_name(std::string_view name) {
+  const std::vector<std::string> words = words_of(name);
+  if (has_any(words, kSeconds)) return 1.0;
+  if (has_any(words, kMillis)) return 1e-3;
+  if (has_any(words, kMicros)) return 1e-6;
+  return has_any(words, kNanos) ? 1e-9 : 0.0;
+}
+
+bool is_of_motion(std::string_view name) {
+  return has_any(words_of(name), kMotion);
+}
+
+int rank_of_key(std::string_view key) {
+  const std::vector<std::string> words = words_of(key);
+  return has_any(words, kOfReading) ? 1 : has_any(words, kOfOther) ? -1 : 0;
 }
 
 std::string unit_of_name(std::string_view name) {

@@ -14,6 +14,15 @@ namespace dermis::bytes::proposals {
 /// is not said, and empty for any other name.
 [[nodiscard]] std::string field_of_name(std::string_view name);
 
+/// Of a part of a time, in seconds: "secs", "stamp.nanosec"; 0 for any other name.
+[[nodiscard]] double time_unit_of_name(std::string_view name);
+
+/// A sensor of motion, not of touch: "imu1_ax", "quat_w".
+[[nodiscard]] bool is_of_motion(std::string_view name);
+
+/// How likely a reading stands at the key of a JSON object or behind a label, beside others: "adc" 1, "volt" -1.
+[[nodiscard]] int rank_of_key(std::string_view key);
+
 /// The unit of readings that such a name says: "kPa"; empty where it says none.
 [[nodiscard]] std::string unit_of_name(std::string_view name);
 

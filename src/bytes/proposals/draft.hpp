@@ -29,6 +29,7 @@ struct Draft {
   std::vector<std::string> packet{};  ///< or the fields of a packet.
   std::vector<std::pair<std::string, std::string>> keys{};  ///< Further keys, with their values in TOML.
   std::vector<std::string> reasons{};
+  std::vector<std::string> doubts{};
   std::vector<std::string> left_over{};  ///< As in a proposal.
   std::vector<Part> parts{};             ///< Of the first bytes.
   std::string look{};                    ///< "60 lines of 81 numbers"

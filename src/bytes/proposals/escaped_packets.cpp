@@ -6,7 +6,9 @@
 #include <map>
 #include <optional>
 
+#include "bytes/proposals/substitutions.hpp"
 #include "dermis/bytes/layouts/escapes.hpp"
+#include "dermis/bytes/layouts/layout.hpp"
 
 namespace dermis::bytes::proposals {
 namespace {
@@ -14,11 +16,12 @@ namespace {
 constexpr std::size_t kFewest = 3;
 constexpr std::size_t kSmallest = 5;
 constexpr std::size_t kMostKept = 2000;
+constexpr std::size_t kMostFound = 4;
 
 using layouts::PacketLayout;
 
 struct Escape {
-  const char* name = "";
+  std::string name{};
   PacketLayout layout{};
 };
 
@@ -77,6 +80,14 @@ std::vector<Packets> escaped_packets_in(std::span<const std::uint8_t> bytes) {
                                Escape{"slip", {.packets = {}, .escape = PacketLayout::Escape::slip}},
                                Escape{"7E 7D 20", {{}, PacketLayout::Escape::stuffed, 0x7E, 0x7D, 0x20}}}) {
     if (std::optional<Packets> packets = packets_with(escape, bytes)) found.push_back(*std::move(packets));
+  }
+  for (const std::string& escape : substitutions_in(bytes)) {
+    const Result<layouts::Layout> layout = layouts::layout_from_toml(
+        "[layout]\nrows = 1\ncols = 1\npacket = [\"values u8\"]\nescape = \"" + escape + "\"\n", "");
+    if (!layout) continue;
+    const Escape substituted{escape, std::get<PacketLayout>(layout->form)};
+    if (std::optional<Packets> packets = packets_with(substituted, bytes)) found.push_back(*std::move(packets));
+    if (found.size() == kMostFound) break;
   }
   return found;
 }

@@ -3,6 +3,7 @@
 #include "bytes/proposals/line_columns.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -15,7 +16,10 @@ namespace {
 constexpr std::size_t kMostLeading = 5;   // numbers before the readings
 constexpr std::size_t kMostTrailing = 3;  // behind them
 constexpr std::size_t kFewestLines = 4;
-constexpr std::size_t kMostRuns = 64;
+constexpr std::size_t kMostRuns = 256;
+constexpr std::size_t kManyLines = 12;  // show that a number rises by no chance
+constexpr std::size_t kMostRising = 3;  // beside the readings
+constexpr double kSince1970 = 1e9;      // seconds
 
 /// The word before a number: "temp" of `,"temp":`.
 std::string label_of(std::string_view text) {
@@ -30,8 +34,9 @@ class ColumnReader {
     find_runs(numerals);
     if (!columns_.empty() && columns_.back().run >= kMostRuns) columns_.clear();
     name_columns();
+    read_series();
     for (std::size_t k = 0; k < columns_.size(); ++k) {
-      if (is_beside_readings(k)) columns_[k].series = series_of(k);
+      if (is_beside_readings(k)) columns_[k].series = all_series_[k];
     }
   }
 
@@ -40,11 +45,16 @@ class ColumnReader {
       Column& column = columns_[k];
       if (column.kind == Token::Kind::clock) give(column, "clock", "time of day");
       if (column.kind == Token::Kind::datetime) give(column, "datetime", "date and time");
-      if (!column.series.empty() && !has_sisters(k)) read_name(column);
+      if (k + 1 < columns_.size()) read_time_of_two(column, columns_[k + 1], k);
+      if (column.field.empty() && !column.series.empty() && !has_sisters(k)) read_name(column);
     }
     for (std::size_t k = 0; k < columns_.size(); ++k) {
-      if (is_leading(k) || (is_trailing(k) && run_size(k) > 1)) read_course(columns_[k], is_leading(k));
+      if (is_leading(k)) read_course(columns_[k], true);
     }
+    for (std::size_t k = columns_.size(); k-- > 0;) {
+      if (is_trailing(k) && run_size(k) > 1) read_course(columns_[k], false);
+    }
+    read_rising();
     return std::move(columns_);
   }
 
@@ -102,17 +112,24 @@ class ColumnReader {
     return !columns_[k].name.empty() && (is_sister(k + 1) || is_sister(k - 1));
   }
 
-  [[nodiscard]] Series series_of(std::size_t k) const {
-    Series series;
+  void read_series() {
+    all_series_.resize(columns_.size());
     for (const std::size_t member : group_.members) {
       std::size_t column = 0;
       for (const Token& token : lines_[member].tokens) {
         if (token.kind == Token::Kind::text) continue;
-        if (column++ == k) series.push_back(token.value);
-        if (column > k) break;
+        if (column < columns_.size()) all_series_[column].push_back(token.value);
+        ++column;
       }
     }
-    return series;
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      const Series& series = all_series_[k];
+      const auto is_broken = [](double value) { return value != std::floor(value) && std::isfinite(value); };
+      const auto is_below_0 = [](double value) { return value < 0.0; };
+      columns_[k].varies = std::ranges::any_of(series, [&](double value) { return value != series.front(); });
+      columns_[k].has_fractions = std::ranges::any_of(series, is_broken);
+      columns_[k].has_signs = columns_[k].has_fractions && std::ranges::any_of(series, is_below_0);
+    }
   }
 
   [[nodiscard]] bool is_given(const std::string& field) const {
@@ -135,8 +152,69 @@ class ColumnReader {
     column.reason = what;
   }
 
+  static const std::string& name_of(const Column& column) { return column.name.empty() ? column.label : column.name; }
+
+  /// Whole seconds, and the rest in a smaller unit, in either order: "secs" and "nsecs".
+  void read_time_of_two(Column& one, Column& other, std::size_t k) {
+    if (!one.field.empty() || one.kind != Token::Kind::number || other.kind != Token::Kind::number || has_time())
+      return;
+    double unit = time_unit_of_name(name_of(one));
+    double next_unit = time_unit_of_name(name_of(other));
+    const bool is_unnamed = one.name.empty() && other.name.empty() && one.run == other.run;
+    if (is_unnamed && all_series_[k].front() > kSince1970 && all_series_[k].front() < 4.0 * kSince1970) {
+      unit = 1.0;
+      next_unit = smallest_unit_of(all_series_[k + 1]);
+    }
+    if (std::max(unit, next_unit) != 1.0 || std::min(unit, next_unit) == 0.0 || unit == next_unit) return;
+    const Series& seconds = all_series_[unit == 1.0 ? k : k + 1];
+    const Series& rest = all_series_[unit == 1.0 ? k + 1 : k];
+    Series both;
+    for (std::size_t i = 0; i < std::min(seconds.size(), rest.size()); ++i) {
+      const double part = rest[i] * std::min(unit, next_unit);
+      if (seconds[i] != std::floor(seconds[i]) || !(part >= 0.0 && part < 1.0)) return;
+      both.push_back(seconds[i] - seconds.front() + part);
+    }
+    if (both.size() < 2 || both.back() < both.front() || (both.size() > 4 && !is_time(both, 0.0))) return;
+    one.reason = "two numbers of each line are one time, in seconds and the rest of one";
+    one.field = field_of_unit(unit);
+    other.field = field_of_unit(next_unit);
+  }
+
+  static const char* field_of_unit(double unit) {
+    return unit == 1.0 ? "time_s" : unit == 1e-3 ? "time_ms" : unit == 1e-6 ? "time_us" : "time_ns";
+  }
+
+  /// In which a part of a second is less than one; 0 where it is none.
+  static double smallest_unit_of(const Series& series) {
+    const double most = *std::max_element(series.begin(), series.end());
+    if (!(most >= 1e3 && most < 1e9)) return 0.0;
+    return most < 1e6 ? 1e-6 : 1e-9;
+  }
+
+  /// What rises from line to line is no reading, wherever it stands; unless most rise, as those of a press do.
+  void read_rising() {
+    std::vector<std::size_t> rising;
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      const bool is_open = columns_[k].kind == Token::Kind::number && columns_[k].field.empty();
+      if (is_open && rises(all_series_[k])) rising.push_back(k);
+    }
+    if (rising.size() > kMostRising || 4 * rising.size() > columns_.size()) return;
+    for (const std::size_t k : rising) {
+      columns_[k].series = all_series_[k];
+      read_course(columns_[k], false);
+    }
+  }
+
+  static bool rises(const Series& series) {
+    if (series.size() < kManyLines) return false;
+    for (std::size_t i = 1; i < series.size(); ++i) {
+      if (!(series[i] > series[i - 1])) return false;
+    }
+    return is_frame_number(series, 0.0) || is_time(series, 0.0);
+  }
+
   void read_name(Column& column) {
-    const std::string name = column.name.empty() ? column.label : column.name;
+    const std::string& name = name_of(column);
     const std::string field = field_of_name(name);
     const Series& series = column.series;
     const std::string called = "'" + name + "' ";
@@ -160,11 +238,17 @@ class ColumnReader {
 
   [[nodiscard]] bool is_leading(std::size_t k) const {
     const Column& column = columns_[k];
-    if (column.series.empty() || !column.field.empty()) return false;
+    if (column.series.empty() || !column.field.empty() || has_namesake(k)) return false;
     const std::size_t place = place_in_run(k);
     const bool is_last = place + 1 == run_size(k);
     if (place > 0 && columns_[k - 1].field.empty()) return false;
     return !is_last || run_size(k) == 1;
+  }
+
+  /// Others stand behind the same words, as the readings of places do.
+  [[nodiscard]] bool has_namesake(std::size_t k) const {
+    const std::string& label = columns_[k].label;
+    return !label.empty() && std::ranges::count(columns_, label, &Column::label) > 1;
   }
 
   [[nodiscard]] bool is_trailing(std::size_t k) const {
@@ -195,6 +279,7 @@ class ColumnReader {
   const std::vector<Line>& lines_;
   const LineGroup& group_;
   std::vector<Column> columns_;
+  std::vector<Series> all_series_;
 };
 
 }  // namespace

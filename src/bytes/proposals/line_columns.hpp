@@ -23,6 +23,9 @@ struct Column {
   std::string reason{};  ///< A sentence on it.
   Series series{};       ///< Of those that may hold something else than readings.
   bool is_counted_from_1 = false;
+  bool varies = false;
+  bool has_fractions = false;
+  bool has_signs = false;  ///< And fractions: some of its numbers are below 0.
 };
 
 /// The columns of a group of lines, with the fields of those that hold something else than readings. A column that

@@ -32,6 +32,14 @@ layouts::Role role_of(const std::string& field) {
   return Role::skip;
 }
 
+/// A field whose number is written as the readings are.
+std::string written(const std::string& field, layouts::Role role, const Numerals& numerals) {
+  using layouts::Role;
+  const bool is_number = role == Role::frame || role == Role::time || role == Role::row || role == Role::col ||
+                         role == Role::first || role == Role::flags;
+  return field + (numerals.is_hexadecimal && is_number ? ":x" : "");
+}
+
 /// Arrays side by side in one span are as many pieces of it.
 std::vector<Place> places_of(const LinesAlike& text, const Draft& draft, const LineFields& fields) {
   const bool are_in_turn = !fields.ids.empty() || !text.group.names.empty();
@@ -42,17 +50,24 @@ std::vector<Place> places_of(const LinesAlike& text, const Draft& draft, const L
         std::find_if(fields.spans.begin(), fields.spans.end(), [&](const Span& one) { return one.begin == k; });
     if (span == fields.spans.end()) {
       const std::string& field = fields.fields[k++];
-      places.push_back({field.empty() ? "skip" : field, k, role_of(field)});
+      places.push_back({field.empty() ? "skip" : written(field, role_of(field), text.numerals), k, role_of(field)});
       continue;
     }
-    const std::size_t size = span->end - span->begin;
+    if (span->has_labels) {
+      for (; k < span->end; ++k)
+        places.push_back(
+            {span->has(k) ? "value" : "skip", k + 1, span->has(k) ? layouts::Role::values : layouts::Role::skip});
+      continue;
+    }
+    const std::size_t size = span->size();
     const bool is_split = !are_in_turn && fields.spans.size() < draft.arrays.size();
     const std::size_t pieces = is_split ? draft.arrays.size() / fields.spans.size() : 1;
     for (std::size_t piece = 1; piece <= pieces; ++piece, ++array) {
       const bool is_named = !are_in_turn && draft.arrays.size() > 1;
-      places.push_back({is_named    ? draft.arrays[array].name
-                        : size == 1 ? "value"
-                                    : "values",
+      places.push_back({is_named         ? draft.arrays[array].name
+                        : fields.is_part ? "values x" + std::to_string(size)
+                        : size == 1      ? "value"
+                                         : "values",
                         k + size * piece / pieces});
     }
     k += size;
@@ -73,7 +88,8 @@ std::string head_of(const LinesAlike& text, const std::vector<std::size_t>& head
   for (const Column& column : columns_of(text.lines, group, text.numerals)) {
     const bool is_told = column.field == "frame" || role_of(column.field) == layouts::Role::time;
     tells = tells || is_told;
-    places.push_back({is_told ? column.field : "skip", places.size() + 1, role_of(column.field)});
+    places.push_back({is_told ? written(column.field, role_of(column.field), text.numerals) : "skip", places.size() + 1,
+                      role_of(column.field)});
   }
   return tells ? pattern_of(first, places, 0, 0) : std::string();
 }
@@ -82,6 +98,7 @@ Draft begin_line_draft(const LinesAlike& text, const LineFields& fields, const K
   Draft draft;
   draft.merit = fields.merit;
   draft.reasons = fields.reasons;
+  draft.doubts = fields.doubts;
   for (const std::string& name : text.group.names) {
     draft.reasons.push_back("lines with '" + name + "' hold readings of an array of that name");
   }
@@ -105,7 +122,7 @@ void write_line(const LinesAlike& text, const LineFields& fields, Draft& draft) 
     add_parts(text.lines[member], places, draft.parts);
   }
   std::size_t numbers = 0;
-  for (const Span& span : fields.spans) numbers += span.end - span.begin;
+  for (const Span& span : fields.spans) numbers += span.size();
   draft.look = std::to_string(text.group.members.size()) + " lines of " + std::to_string(numbers) +
                (numbers == 1 ? " number" : " numbers");
   draft.left_over = left_over_lines(text.lines, text.group.members);

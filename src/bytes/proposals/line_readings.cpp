@@ -31,7 +31,7 @@ Readings readings_of_lines(const std::vector<Line>& lines, const std::vector<std
     std::size_t column = 0;
     for (const Token& token : lines[member].tokens) {
       if (token.kind == Token::Kind::text) continue;
-      if (column >= span.begin && column < span.end) frame.push_back(static_cast<float>(token.value));
+      if (span.has(column)) frame.push_back(static_cast<float>(token.value));
       ++column;
     }
   }
@@ -41,9 +41,9 @@ Readings readings_of_lines(const std::vector<Line>& lines, const std::vector<std
 Readings readings_of_taxels(const std::vector<Line>& lines, const std::vector<std::size_t>& members, const Span& span,
                             std::size_t taxels, std::size_t most) {
   Readings frames;
-  for (const std::vector<float>& taxel : readings_of_lines(lines, members, span, most * taxels)) {
-    if (frames.empty() || frames.back().size() == taxels) frames.emplace_back();
-    if (!taxel.empty()) frames.back().push_back(taxel.front());
+  for (const std::vector<float>& part : readings_of_lines(lines, members, span, most * taxels / span.size())) {
+    if (frames.empty() || frames.back().size() >= taxels) frames.emplace_back();
+    frames.back().insert(frames.back().end(), part.begin(), part.end());
   }
   return frames;
 }

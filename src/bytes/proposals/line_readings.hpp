@@ -15,7 +15,7 @@ namespace dermis::bytes::proposals {
 [[nodiscard]] Readings readings_of_lines(const std::vector<Line>& lines, const std::vector<std::size_t>& members,
                                          const Span& span, std::size_t most);
 
-/// The same of lines with a taxel each, those of `taxels` together.
+/// The same, of lines that follow each other until there are `taxels`.
 [[nodiscard]] Readings readings_of_taxels(const std::vector<Line>& lines, const std::vector<std::size_t>& members,
                                           const Span& span, std::size_t taxels, std::size_t most);
 

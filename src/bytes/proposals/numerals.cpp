@@ -18,12 +18,14 @@ bool is_hexadecimal(char c) {
   return std::isxdigit(static_cast<unsigned char>(c)) != 0;
 }
 
+/// Without those that are labels: A0 of "A0: 512".
 std::vector<std::string_view> words_of(std::string_view line) {
   std::vector<std::string_view> words;
   for (std::size_t at = 0; at < line.size();) {
     std::size_t end = at;
     while (end < line.size() && (std::isalnum(static_cast<unsigned char>(line[end])) != 0)) ++end;
-    if (end > at) words.push_back(line.substr(at, end - at));
+    const bool is_label = end < line.size() && (line[end] == ':' || line[end] == '=');
+    if (end > at && !is_label) words.push_back(line.substr(at, end - at));
     at = std::max(end, at + 1);
   }
   return words;
@@ -67,6 +69,7 @@ bool has_decimal_commas(const std::vector<Line>& lines) {
     const std::string_view line = lines[k].text;
     const bool has_semicolons = line.find(';') != std::string_view::npos;
     const std::string_view ends = has_semicolons ? ";" : "\t ";
+    if (line.find_first_of(ends) >= line.size() - std::min<std::size_t>(line.size(), 1)) continue;  // two readings
     for (std::size_t at = 0; at < line.size();) {
       const std::size_t end = std::min(line.find_first_of(ends, at), line.size());
       const std::string_view cell = line.substr(at, end - at);

@@ -11,7 +11,10 @@
 #include "bytes/proposals/packet_fields.hpp"
 #include "bytes/proposals/packet_search.hpp"
 #include "bytes/proposals/packet_writer.hpp"
+#include "bytes/proposals/period.hpp"
 #include "bytes/proposals/shapes.hpp"
+#include "bytes/proposals/smoothness.hpp"
+#include "bytes/proposals/trial.hpp"
 #include "bytes/proposals/value_search.hpp"
 #include "dermis/bytes/files/text.hpp"
 #include "dermis/bytes/layouts/layout.hpp"
@@ -22,13 +25,14 @@ namespace {
 constexpr std::size_t kMostLeading = 24;
 constexpr std::size_t kMostTrailing = 12;
 constexpr std::size_t kMostArrays = 16;
+constexpr std::size_t kFewestBytes = 8;  // of a frame without a mark
 
 /// Drafts of one way to cut the bytes into packets.
 class CutDrafts {
  public:
   CutDrafts(const Packets& packets, std::span<const std::uint8_t> bytes, const Known& known)
       : packets_(packets), bytes_(bytes), known_(known), checksum_(checksum_of(packets, bytes)) {
-    end_ = checksum_ ? checksum_->at : packets.size;
+    end_ = checksum_ ? checksum_->at : packets.size - packets.end_mark_size;
     const std::size_t leading = std::min(end_, packets.mark_size + kMostLeading);
     fields_ = fields_in(packets, packets.mark_size, leading);
     if (end_ > leading + kMostTrailing) {
@@ -45,6 +49,7 @@ class CutDrafts {
       }
       add(span, turn, turn->field);
       add(span, turn, turn->field == "row" ? "array" : "row");
+      add_parts(span, *turn);
     }
     return std::move(drafts_);
   }
@@ -54,10 +59,19 @@ class CutDrafts {
   [[nodiscard]] std::vector<std::size_t> counts() const {
     if (!known_.rows || !known_.cols) return {};
     std::vector<std::size_t> counts;
-    for (std::size_t arrays = 1; arrays <= 4; ++arrays) counts.push_back(arrays * *known_.rows * *known_.cols);
+    const bool has_frame = checksum_ || !packets_.escape.empty() || mark_size() > 0;
+    for (std::size_t arrays = 1; arrays <= (has_frame ? 4U : 1U); ++arrays)
+      counts.push_back(arrays * *known_.rows * *known_.cols);
     const bool has_rows =
         std::any_of(fields_.begin(), fields_.end(), [](const PacketField& field) { return !field.numbers.empty(); });
     if (has_rows) counts.push_back(*known_.cols);
+    for (const PacketField& field : fields_) {
+      const std::size_t taxels = *known_.rows * *known_.cols;
+      const std::size_t runs = field.numbers.size();
+      if (runs < 2) continue;
+      for (std::size_t count = (taxels + runs - 1) / runs; count * (runs - 1) < taxels; ++count)
+        counts.push_back(count);
+    }
     return counts;
   }
 
@@ -102,6 +116,45 @@ class CutDrafts {
     finish(draft, span, &turn, "row");
   }
 
+  /// Runs of taxels, whose numbers are those of their first ones or count the runs. The last may reach beyond the
+  /// array.
+  void add_parts(ValueSpan span, PacketField turn) {
+    const std::size_t runs = turn.numbers.size();
+    const std::uint64_t step = turn.numbers[1] - turn.numbers[0];
+    for (std::size_t k = 1; k < runs; ++k) {
+      if (turn.numbers[k] != turn.numbers[0] + k * step) return;
+    }
+    const std::size_t channels = runs * span.count;
+    const std::size_t taxels = known_.rows && known_.cols ? *known_.rows * *known_.cols : channels;
+    if (span.count % step != 0 || taxels > channels || taxels + span.count <= channels) return;
+    const bool are_rows = step == 1 && known_.cols.value_or(span.count) == span.count;
+    if (are_rows) return;
+    const std::uint64_t factor = span.count / step;
+    if (factor > 1) turn.options = " *" + std::to_string(factor);
+    if (turn.numbers[0] > 0) turn.options += " -" + std::to_string(factor * turn.numbers[0]);
+    span.type += " x" + std::to_string(span.count);
+    const std::size_t drafts = drafts_.size();
+    for (const FrameShape& shape : likely_shapes(readings_of_parts(span, turn, taxels), taxels, known_)) {
+      if (drafts_.size() > drafts + 1) break;
+      Draft draft = begin(span);
+      draft.merit += span.merit + 0.3 - 0.05 * static_cast<double>(drafts_.size() - drafts);
+      draft.arrays.push_back({"", shape});
+      draft.reasons.push_back("byte " + std::to_string(turn.at + 1) + " tells the first of each " +
+                              std::to_string(span.count) + " readings");
+      if (taxels < channels)
+        draft.reasons.push_back("the last " + std::to_string(channels - taxels) + " of " + std::to_string(channels) +
+                                " readings reach beyond the array");
+      finish(draft, span, &turn, "first");
+    }
+  }
+
+  [[nodiscard]] Readings readings_of_parts(const ValueSpan& span, const PacketField& turn, std::size_t taxels) {
+    Draft draft{.arrays = {{"", {1, taxels}}}};
+    PacketWriter(packets_, span, checksum_ ? &*checksum_ : nullptr, draft).write(fields_beside(span), &turn, "first");
+    const std::optional<Trial> trial = try_layout(toml_of(draft), bytes_);
+    return trial ? trial->readings : Readings();
+  }
+
   [[nodiscard]] Draft begin(const ValueSpan& span) const {
     Draft draft;
     draft.look = std::to_string(packets_.packets.size()) + " packets of " + std::to_string(packets_.size) +
@@ -111,16 +164,26 @@ class CutDrafts {
       draft.reasons.push_back("between two delimiters stand as many bytes each, once their escapes (" +
                               packets_.escape + ") are undone");
       draft.merit += 0.5;
+      if (packets_.escape.find('=') != std::string::npos)
+        draft.doubts.emplace_back("the bytes that the codes of the escape stand for are those that fit best");
+    } else if (mark_size() > 0) {
+      const std::span<const std::uint8_t> packet = packets_.packets.front();
+      draft.reasons.push_back(
+          layouts::hexadecimal(packets_.mark_size > 0 ? packet.first(mark_size()) : packet.last(mark_size())) +
+          (packets_.mark_size > 0 ? " comes every " : " ends every ") + std::to_string(packets_.size) + " bytes");
     } else {
-      draft.reasons.push_back(layouts::hexadecimal(std::span(packets_.packets.front()).first(packets_.mark_size)) +
-                              " comes every " + std::to_string(packets_.size) + " bytes");
+      draft.merit -= 0.3;
+      draft.reasons.push_back("each " + std::to_string(packets_.size) + " bytes are like those before them");
+      draft.doubts.emplace_back("nothing marks where a frame begins: the first byte is taken for the first of a frame");
     }
-    draft.is_weak = !checksum_ && packets_.escape.empty() && packets_.mark_size < 2;
+    draft.is_weak = !checksum_ && packets_.escape.empty() && mark_size() < 2;
     if (!checksum_) return draft;
     draft.reasons.push_back("the " + checksum_->entry + " is right");
     draft.merit += 1.0;
     return draft;
   }
+
+  [[nodiscard]] std::size_t mark_size() const { return std::max(packets_.mark_size, packets_.end_mark_size); }
 
   /// The fields that stand outside the readings, with the type and place that they have there.
   [[nodiscard]] std::vector<PacketField> fields_beside(const ValueSpan& span) const {
@@ -133,6 +196,7 @@ class CutDrafts {
   }
 
   void finish(Draft& draft, const ValueSpan& span, const PacketField* turn, const std::string& meaning) {
+    draft.is_weak = draft.is_weak && turn == nullptr;
     PacketWriter(packets_, span, checksum_ ? &*checksum_ : nullptr, draft).write(fields_beside(span), turn, meaning);
     drafts_.push_back(std::move(draft));
   }
@@ -146,11 +210,20 @@ class CutDrafts {
   std::vector<Draft> drafts_;
 };
 
+/// Of frames that are nothing but readings.
+std::vector<std::size_t> sizes_without_mark(std::span<const std::uint8_t> bytes, const Known& known) {
+  const std::size_t taxels = known.rows.value_or(0) * known.cols.value_or(0);
+  if (taxels > 1) return {taxels, 2 * taxels, 4 * taxels};
+  const std::vector<float> numbers(bytes.begin(), bytes.end());
+  const std::size_t period = period_of(numbers, kFewestBytes);
+  return period > 0 ? std::vector{period} : std::vector<std::size_t>();
+}
+
 }  // namespace
 
 std::vector<Draft> packet_drafts(std::span<const std::uint8_t> bytes, const Known& known) {
   std::vector<Draft> drafts;
-  for (const Packets& packets : packets_in(bytes)) {
+  for (const Packets& packets : packets_in(bytes, sizes_without_mark(bytes, known))) {
     for (Draft& draft : CutDrafts(packets, bytes, known).all()) drafts.push_back(std::move(draft));
   }
   return drafts;

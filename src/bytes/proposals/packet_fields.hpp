@@ -18,6 +18,7 @@ struct PacketField {
   std::string field{};                   ///< As in a layout; "array" or "row" count in turn, and may be either.
   std::string order{};                   ///< "le", "be", or empty of one byte
   std::vector<std::uint64_t> numbers{};  ///< Of those that count in turn.
+  std::string options{};                 ///< " *8 -8", as in a layout.
 };
 
 /// Those in the bytes from `begin` to `end`, in order.

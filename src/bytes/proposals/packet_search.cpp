@@ -73,9 +73,26 @@ std::vector<std::size_t> places_of(std::span<const std::uint8_t> bytes, const Pa
   return places;
 }
 
+/// The bytes of which nearly all come again at one distance, and that distance.
+std::vector<std::pair<std::size_t, std::vector<std::size_t>>> single_marks_in(std::span<const std::uint8_t> bytes) {
+  std::array<std::vector<std::size_t>, 256> places;
+  for (std::size_t i = 0; i < bytes.size(); ++i) places[bytes[i]].push_back(i);
+  std::vector<std::pair<std::size_t, std::vector<std::size_t>>> found;
+  for (std::vector<std::size_t>& at : places) {
+    if (at.size() < kFewest) continue;
+    std::map<std::size_t, std::size_t> gaps;
+    for (std::size_t k = 1; k < at.size(); ++k) ++gaps[at[k] - at[k - 1]];
+    const auto most = std::ranges::max_element(gaps, {}, [](const auto& gap) { return gap.second; });
+    const bool is_even = 10 * most->second >= 9 * (at.size() - 1) && most->first >= kSmallest;
+    if (is_even && 2 * most->first * at.size() >= bytes.size()) found.emplace_back(most->first, std::move(at));
+  }
+  return found;
+}
+
 Packets cut(std::span<const std::uint8_t> bytes, const std::vector<std::size_t>& places, std::size_t size) {
   Packets packets{.size = size};
   for (const std::size_t place : places) {
+    if (packets.packets.size() == kMostPackets) break;
     if (place + size > bytes.size()) break;
     packets.places.push_back(place);
     packets.packets.emplace_back(bytes.begin() + static_cast<std::ptrdiff_t>(place),
@@ -84,10 +101,19 @@ Packets cut(std::span<const std::uint8_t> bytes, const std::vector<std::size_t>&
   return packets;
 }
 
+/// How many packets follow each other, less those that do not.
+std::ptrdiff_t evenness_of(const Packets& packets) {
+  std::ptrdiff_t evenness = 0;
+  for (std::size_t k = 1; k < packets.places.size(); ++k)
+    evenness += packets.places[k] - packets.places[k - 1] == packets.size ? 1 : -1;
+  return evenness;
+}
+
 struct Run {
   std::size_t begin = 0;
   std::size_t size = 0;
   double rarity = 0.0;
+  bool is_at_end = false;  ///< Of the packets.
 };
 
 /// Bytes side by side that are the same in all packets, also over the end of one into the next.
@@ -134,16 +160,28 @@ void add_marked(std::span<const std::uint8_t> bytes, const Packets& packets, std
     run.rarity = rarity_of(run, packets);
     if (inside < run.size && packets.packets.front()[begin_of_stream] != 0) {  // it begins a packet
       run = {begin_of_stream, run.size - inside, run.rarity + 2.0};
+    } else if ((run.begin + run.size) % packets.size == begin_of_stream) {
+      run.rarity += 2.0;
+      run.is_at_end = true;
     }
   }
   std::stable_sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.rarity > b.rarity; });
   for (std::size_t k = 0; k < std::min(runs.size(), kMostMarks); ++k) {
+    const std::size_t begin = runs[k].is_at_end ? (runs[k].begin + runs[k].size) % packets.size : runs[k].begin;
     std::vector<std::size_t> places = packets.places;
-    for (std::size_t& place : places) place += runs[k].begin;
-    const std::size_t before = packets.size - runs[k].begin;
+    for (std::size_t& place : places) place += begin;
+    const std::size_t before = packets.size - begin;
     if (packets.places.front() >= before) places.insert(places.begin(), packets.places.front() - before);
     Packets marked = cut(bytes, places, packets.size);
-    marked.mark_size = std::min(runs[k].size, kLongestMark);
+    (runs[k].is_at_end ? marked.end_mark_size : marked.mark_size) = std::min(runs[k].size, kLongestMark);
+    const auto mark_of = [&](const Packets& of, std::size_t packet) {
+      return std::span(of.packets[packet]).first(of.mark_size);
+    };
+    const bool is_other = marked.packets.size() > 2 && !std::ranges::equal(mark_of(marked, 0), mark_of(marked, 1));
+    if (is_other) {  // a greeting, or the end of a packet
+      marked.packets.erase(marked.packets.begin());
+      marked.places.erase(marked.places.begin());
+    }
     if (marked.packets.size() + 1 >= kFewest) found.push_back(std::move(marked));
   }
 }
@@ -157,7 +195,7 @@ bool is_constant(const Packets& packets, std::size_t at) {
          kSame * static_cast<double>(packets.packets.size());
 }
 
-std::vector<Packets> packets_in(std::span<const std::uint8_t> bytes) {
+std::vector<Packets> packets_in(std::span<const std::uint8_t> bytes, const std::vector<std::size_t>& sizes) {
   std::vector<Packets> found = escaped_packets_in(bytes);
   std::map<std::size_t, Packets> by_size;
   for (const Pair& pair : pairs_in(bytes)) {
@@ -167,8 +205,12 @@ std::vector<Packets> packets_in(std::span<const std::uint8_t> bytes) {
       Packets packets = cut(bytes, places_of(bytes, pair, size), size);
       const bool are_enough =
           packets.packets.size() + 1 >= kFewest && packets.packets.size() * size >= bytes.size() / 2;
-      if (are_enough && packets.packets.size() > by_size[size].packets.size()) by_size[size] = std::move(packets);
+      if (are_enough && evenness_of(packets) > evenness_of(by_size[size])) by_size[size] = std::move(packets);
     }
+  }
+  for (const auto& [size, places] : single_marks_in(bytes)) {
+    Packets packets = cut(bytes, places, size);
+    if (evenness_of(packets) > evenness_of(by_size[size])) by_size[size] = std::move(packets);
   }
   std::vector<std::size_t> marked;
   for (const auto& [size, packets] : by_size) {
@@ -178,6 +220,12 @@ std::vector<Packets> packets_in(std::span<const std::uint8_t> bytes) {
     add_marked(bytes, packets, found);
     if (found.size() > before) marked.push_back(size);
     if (marked.size() == kMostSizes) break;
+  }
+  for (const std::size_t size : sizes) {
+    std::vector<std::size_t> places;
+    for (std::size_t at = 0; at + size <= bytes.size() && places.size() < kMostPackets; at += size)
+      places.push_back(at);
+    if (places.size() >= kFewest) found.push_back(cut(bytes, places, size));
   }
   return found;
 }

@@ -15,7 +15,11 @@ constexpr std::size_t kMostBytesOfParts = 4096;
 
 layouts::Role role_of(const std::string& field) {
   using layouts::Role;
-  return field == "frame" ? Role::frame : field == "row" ? Role::row : field == "array" ? Role::array : Role::time;
+  return field == "frame"   ? Role::frame
+         : field == "row"   ? Role::row
+         : field == "first" ? Role::first
+         : field == "array" ? Role::array
+                            : Role::time;
 }
 
 }  // namespace
@@ -28,11 +32,11 @@ void PacketWriter::write(const std::vector<PacketField>& fields, const PacketFie
         layouts::Role::literal);
   }
   for (std::size_t k = 0; k < fields.size(); ++k) {
-    PacketField field = fields[k];
+    const bool is_turn = turn != nullptr && fields[k].at == turn->at;
+    PacketField field = is_turn ? *turn : fields[k];
     if (at_ < span_.end && field.at >= span_.end) add_values(are_named);
     const std::size_t next = k + 1 < fields.size() ? fields[k + 1].at : end;
     widen(field, packets_, at_, field.at < span_.begin ? std::min(next, span_.begin) : next);
-    const bool is_turn = turn != nullptr && fields[k].at == turn->at;
     if (field.numbers.empty() || is_turn) add_field(field, is_turn ? meaning : field.field);
   }
   if (at_ < span_.end) add_values(are_named);
@@ -64,7 +68,8 @@ void PacketWriter::add_values(bool are_named) {
 void PacketWriter::add_field(const PacketField& field, const std::string& name) {
   add_constant(field.at);
   const bool is_from_1 = name == "row" && field.numbers.front() == 1;
-  add(name + " u" + std::to_string(8 * field.size) + (field.size > 1 ? field.order : "") + (is_from_1 ? " -1" : ""),
+  add(name + " u" + std::to_string(8 * field.size) + (field.size > 1 ? field.order : "") + (is_from_1 ? " -1" : "") +
+          field.options,
       field.size, role_of(name));
   draft_.merit += 0.05;
   if (!field.numbers.empty()) return;

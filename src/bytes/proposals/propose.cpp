@@ -21,7 +21,9 @@ namespace {
 constexpr double kMostLeft = 1.0 / 3.0;
 constexpr std::size_t kFewestBytes = 16;
 constexpr std::size_t kFewestTaxels = 4;  // of an array that nobody has named
-constexpr double kNoise = 0.85;           // roughness of readings that tell nothing
+constexpr std::size_t kFewestTaxelsOfLines = 2;
+constexpr double kAsGood = 0.12;  // difference of merits
+constexpr double kNoise = 0.85;   // roughness of readings that tell nothing
 
 /// Readings that rest at the top of their range, and fall; true where the draft says so now.
 bool describe_falling(const Trial& trial, Draft& draft) {
@@ -32,7 +34,8 @@ bool describe_falling(const Trial& trial, Draft& draft) {
   std::sort(all.begin(), all.end());
   for (const float top : {255.0F, 1023.0F, 4095.0F, 16383.0F, 65535.0F}) {
     const bool rests_there = all.back() <= top && all[all.size() / 2] > 0.9F * top && all.front() < 0.8F * top;
-    if (!rests_there) continue;
+    const auto is_between = [&](float value) { return value > 0.2F * top && value < 0.8F * top; };
+    if (!rests_there || std::ranges::none_of(all, is_between)) continue;  // else negative numbers without their sign
     draft.keys.emplace_back("scale", "-1.0");
     draft.keys.emplace_back("offset", std::to_string(static_cast<int>(top)) + ".0");
     if (trial.has_empty_array) draft.keys.emplace_back("absent", "0");
@@ -41,6 +44,21 @@ bool describe_falling(const Trial& trial, Draft& draft) {
     return true;
   }
   return false;
+}
+
+/// A number far from all others may stand for no reading.
+void doubt_absent(const Readings& readings, Draft& draft) {
+  std::vector<float> all;
+  for (const std::vector<float>& frame : readings) all.insert(all.end(), frame.begin(), frame.end());
+  for (const float number : {-1.0F, 65535.0F, 4294967295.0F}) {
+    const auto is_it = [&](float value) { return value == number; };
+    const auto is_beyond = [&](float value) { return number < 0.0F ? value < 0.0F : value > number / 2.0F; };
+    const auto count = std::ranges::count_if(all, is_it);
+    if (count == 0 || std::ranges::count_if(all, is_beyond) > count || std::ranges::all_of(all, is_it)) continue;
+    const std::string text = std::to_string(static_cast<std::int64_t>(number));
+    draft.doubts.push_back("some readings are " + text + ", far from all others: write absent = " + text +
+                           " where it stands for none");
+  }
 }
 
 bool are_whole(const Readings& readings) {
@@ -77,14 +95,21 @@ std::vector<std::string> open_keys(const Draft& draft, const Readings& readings,
 }
 
 struct Judged {
-  Proposal proposal;
+  Proposal proposal{};
   double merit = 0.0;
 };
 
-std::optional<Judged> judge(Draft draft, std::span<const std::uint8_t> bytes, const Known& known) {
-  const bool is_tiny = draft.arrays.front().shape.taxel_count() < kFewestTaxels;
-  if (is_tiny && !known.rows && !known.cols) return std::nullopt;
+void add_known_keys(const Known& known, Draft& draft) {
+  if (!known.start.empty()) draft.keys.emplace_back("start", known.start);
+  if (!known.request.empty()) draft.keys.emplace_back("request", known.request);
   if (!known.unit.empty()) draft.keys.emplace_back("unit", files::quoted_toml(known.unit));
+}
+
+std::optional<Judged> judge(Draft draft, std::span<const std::uint8_t> bytes, const Known& known) {
+  const bool is_tiny =
+      draft.arrays.front().shape.taxel_count() < (draft.line.empty() ? kFewestTaxels : kFewestTaxelsOfLines);
+  if (is_tiny && !known.rows && !known.cols) return std::nullopt;
+  add_known_keys(known, draft);
   std::optional<Trial> trial = try_layout(toml_of(draft), bytes);
   if (!trial || trial->frames == 0) return std::nullopt;
   const double left = static_cast<double>(trial->left) / static_cast<double>(bytes.size());
@@ -95,13 +120,14 @@ std::optional<Judged> judge(Draft draft, std::span<const std::uint8_t> bytes, co
   const double in_time = roughness_in_time(trial->readings);
   if (draft.is_weak && along > kNoise && in_time > kNoise) return std::nullopt;
   const bool is_changed = describe_falling(*trial, draft);
-  Judged judged;
-  judged.merit = draft.merit + (1.0 - left) - 0.3 * along - 0.2 * in_time;
+  if (!is_changed) doubt_absent(trial->readings, draft);
+  Judged judged{.merit = draft.merit + (1.0 - left) - 0.3 * along - 0.2 * in_time};
   Proposal& proposal = judged.proposal;
   proposal.toml = toml_of(draft);
   if (is_changed) trial = try_layout(proposal.toml, bytes);
   proposal.summary = question_of(draft, known);
   proposal.reasons = std::move(draft.reasons);
+  proposal.doubts = std::move(draft.doubts);
   proposal.left_over = std::move(draft.left_over);
   if (!draft.packet.empty() && trial->left > 0) {
     proposal.left_over.push_back(std::to_string(trial->left) + " of " + std::to_string(bytes.size()) +
@@ -118,6 +144,33 @@ std::optional<Judged> judge(Draft draft, std::span<const std::uint8_t> bytes, co
   proposal.merit = judged.merit;
   proposal.example = frame_that_differs_most(trial->readings);
   return judged;
+}
+
+/// The value of a key of a proposal in TOML.
+std::string_view value_of(const Proposal& proposal, std::string_view key) {
+  const std::string line = "\n" + std::string(key) + " = ";
+  const std::size_t at = proposal.toml.find(line);
+  if (at == std::string::npos) return {};
+  const std::string_view rest = std::string_view(proposal.toml).substr(at + line.size());
+  return rest.substr(0, rest.find('\n'));
+}
+
+/// The first thing to look at that tells two layouts apart.
+std::string difference_of(const Proposal& one, const Proposal& other) {
+  if (one.arrays != other.arrays) return "press one array: only its own readings may rise";
+  if (one.shape != other.shape && value_of(one, "line") == value_of(other, "line") &&
+      value_of(one, "packet") == value_of(other, "packet"))
+    return "press a corner: in the right shape it is a corner of the map";
+  return "press one taxel: in the right layout one place of the map rises, and the others rest";
+}
+
+/// Layouts that fit as well as the first are a doubt of it.
+void tell_apart(std::vector<Proposal>& proposals) {
+  for (std::size_t k = 1; k < proposals.size(); ++k) {
+    if (proposals[k].merit < proposals.front().merit - kAsGood) break;
+    proposals.front().doubts.push_back("layout " + std::to_string(k + 1) +
+                                       " fits as well: " + difference_of(proposals.front(), proposals[k]));
+  }
 }
 
 }  // namespace
@@ -139,6 +192,7 @@ std::vector<Proposal> propose(std::span<const std::uint8_t> bytes, const Known& 
   for (Judged& one : all) {
     if (proposals.size() < kMostProposals) proposals.push_back(std::move(one.proposal));
   }
+  tell_apart(proposals);
   return proposals;
 }
 

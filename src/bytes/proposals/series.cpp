@@ -12,7 +12,7 @@ namespace {
 constexpr double kMost = 0.9;  // of the steps are as expected: lines and packets may be missing
 constexpr std::size_t kManySteps = 8;
 constexpr std::size_t kMostLines = 1024;
-constexpr std::size_t kMostArrays = 16;
+constexpr std::size_t kMostInTurn = 64;
 
 bool is_whole(const Series& series) {
   return std::all_of(series.begin(), series.end(),
@@ -108,7 +108,7 @@ std::vector<std::uint64_t> numbers_in_turn(const Series& series) {
   if (series.size() < 4 || !is_whole(series)) return {};
   const std::set<double> different(series.begin(), series.end());
   const std::size_t count = different.size();
-  if (count < 2 || count > kMostArrays || series.size() < 2 * count) return {};
+  if (count < 2 || count > kMostInTurn || series.size() < 2 * count) return {};
   std::size_t again = 0;
   for (std::size_t i = count; i < series.size(); ++i) {
     again += series[i] == series[i - count] && series[i] != series[i - 1] ? 1 : 0;

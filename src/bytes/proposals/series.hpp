@@ -30,7 +30,7 @@ struct Cycle {
 /// "time_ms" of such a series: the unit in which its steps and its value make sense.
 [[nodiscard]] std::string time_field_of(const Series& series, double modulus);
 
-/// The different numbers, 2 to 16, that come in turn, in order of size; empty where they do not.
+/// The different numbers, 2 to 64, that come in turn, in order of size; empty where they do not.
 [[nodiscard]] std::vector<std::uint64_t> numbers_in_turn(const Series& series);
 
 }  // namespace dermis::bytes::proposals

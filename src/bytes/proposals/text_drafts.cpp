@@ -7,8 +7,10 @@
 #include <optional>
 #include <utility>
 
+#include "bytes/proposals/bare_numbers.hpp"
 #include "bytes/proposals/byte_text.hpp"
 #include "bytes/proposals/column_names.hpp"
+#include "bytes/proposals/document.hpp"
 #include "bytes/proposals/frame_marks.hpp"
 #include "bytes/proposals/line_draft.hpp"
 #include "bytes/proposals/line_end.hpp"
@@ -23,6 +25,7 @@ namespace {
 
 constexpr std::size_t kFewRows = 3;  // so many are rather arrays in turn
 constexpr std::size_t kMostColsOfRow = 32;
+constexpr double kWithObjects = 1.0;     // lists of a document that has objects are rather parts of these
 constexpr std::size_t kMostFrames = 24;  // whose readings are compared
 
 /// Drafts of one group of lines.
@@ -47,12 +50,18 @@ class GroupDrafts {
       for (const FrameMark& mark : frame_marks_of(text_.lines, text_.group.members)) add_marked(fields, mark);
     }
     std::vector<std::size_t> sizes;
-    for (const Span& span : fields.spans) sizes.push_back(span.end - span.begin);
+    for (const Span& span : fields.spans) sizes.push_back(span.size());
+    const std::size_t taxels = known_.rows.value_or(0) * known_.cols.value_or(0);
+    const auto is_share = [&](std::size_t size) { return size * sizes.size() == taxels; };
+    if (sizes.size() > 1 && fields.ids.empty() && std::ranges::all_of(sizes, is_share))
+      add_arrays(fields, {taxels}, {});  // a clock stands between its readings
     const std::size_t beside = text_.columns.size() - sizes.front();
     if (!text_.group.names.empty()) sizes.clear();
     for (const std::size_t numbers : text_.group.numbers) sizes.push_back(numbers > beside ? numbers - beside : 1);
     add_arrays(fields, sizes, readings_of_lines(text_.lines, text_.group.members, fields.spans.front(), kMostFrames));
-    if (fields.spans.size() == 1) add_without_ends(fields);
+    const bool is_alone = fields.spans.size() == 1 && fields.ids.empty() && text_.group.names.empty();
+    if (is_alone) add_in_lines(fields);
+    if (fields.spans.size() == 1 && !fields.spans.front().has_labels) add_without_ends(fields);
   }
 
   void add_rows(const LineFields& fields, const FrameShape& shape) {
@@ -69,7 +78,8 @@ class GroupDrafts {
 
   void add_marked(const LineFields& fields, const FrameMark& mark) {
     const Span& span = fields.spans.front();
-    const FrameShape shape{mark.rows, span.end - span.begin};
+    const FrameShape shape{mark.rows, span.size()};
+    if (span.size() == 1) return add_marked_numbers(fields, mark);
     if (!is_known(shape, known_)) return;
     Draft draft = begin_line_draft(text_, fields, known_);
     draft.has_certain_shape = true;
@@ -86,6 +96,58 @@ class GroupDrafts {
     drafts_.push_back(std::move(draft));
   }
 
+  /// One number a line, up to a line that is none.
+  void add_marked_numbers(const LineFields& fields, const FrameMark& mark) {
+    LineFields parts = fields;
+    parts.is_part = true;
+    parts.merit += 0.4;
+    parts.reasons.push_back("'" + printable(mark.text) + "' comes every " + std::to_string(mark.rows) + " numbers");
+    const std::string head = head_of(text_, mark.lines);
+    add_frames(parts, mark.rows, text_.group.members, [&](Draft& draft) {
+      draft.head = head;
+      if (head.empty())
+        draft.keys.emplace_back(mark.lines.empty() ? "frame_begin" : "frame_end", files::quoted_toml(mark.text));
+    });
+  }
+
+  /// A frame goes over several lines of which none says where it begins, but for a number that marks it.
+  void add_in_lines(const LineFields& fields) {
+    LineFields parts = fields;
+    parts.is_part = true;
+    const std::vector<std::size_t>& members = text_.group.members;
+    const std::size_t size = fields.spans.front().size();
+    const bool is_bare = size == 1 && text_.columns.size() == 1;
+    if (const auto mark = is_bare ? number_that_marks(text_.lines, members) : std::nullopt) {
+      parts.merit += 0.5;
+      parts.reasons.push_back("'" + mark->text + "' comes every " + std::to_string(mark->numbers) + " numbers");
+      std::vector<std::size_t> others = members;
+      std::erase_if(others, [&](std::size_t line) { return text_.lines[line].text == mark->text; });
+      return add_frames(parts, mark->numbers, others, [&](Draft& draft) { draft.head = mark->text; });
+    }
+    const std::size_t taxels = known_.rows.value_or(0) * known_.cols.value_or(0);
+    const std::size_t found = taxels == 0 && is_bare ? period_of_numbers(text_.lines, members) : taxels;
+    if (found <= size || found % size != 0 || found / size > members.size()) return;
+    parts.merit -= 0.2;
+    parts.doubts.push_back("nothing marks where a frame begins: the first line is taken for the first of a frame");
+    add_frames(parts, found, members, [](Draft&) {});
+  }
+
+  /// `end`: what a draft says beside its line.
+  template <typename End>
+  void add_frames(const LineFields& fields, std::size_t taxels, const std::vector<std::size_t>& members, End end) {
+    const std::size_t before = drafts_.size();
+    const Readings frames = readings_of_taxels(text_.lines, members, fields.spans.front(), taxels, kMostFrames);
+    for (const auto& shapes : shapes_of({taxels}, frames, known_)) {
+      if (shapes.size() > 1) continue;
+      Draft draft = begin_line_draft(text_, fields, known_);
+      draft.merit -= 0.05 * static_cast<double>(drafts_.size() - before);
+      draft.arrays = {{"", shapes.front()}};
+      end(draft);
+      write_line(text_, fields, draft);
+      drafts_.push_back(std::move(draft));
+    }
+  }
+
   void add_arrays(const LineFields& fields, const std::vector<std::size_t>& sizes, const Readings& frames) {
     std::optional<FrameShape> shown = fields.spans.front().shown_shape;
     if (sizes.size() > 1 || (shown && (shown->taxel_count() != sizes.front() || !is_known(*shown, known_))))
@@ -97,7 +159,7 @@ class GroupDrafts {
       Draft draft = begin_line_draft(text_, fields, known_);
       draft.merit -= 0.05 * static_cast<double>(k);
       draft.has_certain_shape = shown.has_value();
-      if (shown) draft.reasons.emplace_back("a line shows where its rows end");
+      if (shown && !fields.spans.front().has_labels) draft.reasons.emplace_back("a line shows where its rows end");
       for (const std::uint64_t id : fields.ids) {
         draft.arrays.push_back({"array_" + std::to_string(id), shapes[k].front(), id});
       }
@@ -127,7 +189,7 @@ class GroupDrafts {
   /// Numbers before or behind the readings that nothing tells apart from them.
   void add_without_ends(const LineFields& fields) {
     const Span span = fields.spans.front();
-    const std::size_t size = span.end - span.begin;
+    const std::size_t size = span.size();
     for (std::size_t leading = 0; leading <= 4; ++leading) {
       for (std::size_t trailing = 0; leading + trailing <= 4; ++trailing) {
         const std::size_t rest = leading + trailing > 0 && size > leading + trailing ? size - leading - trailing : 0;
@@ -159,18 +221,29 @@ class GroupDrafts {
 }  // namespace
 
 std::vector<Draft> text_drafts(std::string_view text, const Known& known) {
-  const std::string line_end = line_end_of(text);
-  std::vector<Line> lines = lines_of(text, line_end);
   std::vector<Draft> drafts;
-  for (Numerals& numerals : numerals_of(lines)) {
-    tokenise(lines, numerals);
-    for (const LineGroup& group : groups_of(lines)) {
-      for (Draft& draft : GroupDrafts(lines, group, numerals, known).all()) {
-        if (!line_end.empty()) draft.keys.emplace_back("line_end", files::quoted_toml(line_end));
-        drafts.push_back(std::move(draft));
+  const auto add = [&](std::vector<Line> lines, const std::string& line_end, const std::string& before) {
+    for (Numerals& numerals : numerals_of(lines)) {
+      tokenise(lines, numerals);
+      for (const LineGroup& group : groups_of(lines)) {
+        for (Draft& draft : GroupDrafts(lines, group, numerals, known).all()) {
+          if (!line_end.empty()) draft.keys.emplace_back("line_end", files::quoted_toml(line_end));
+          if (!draft.line.empty()) draft.line.insert(0, before);
+          drafts.push_back(std::move(draft));
+        }
       }
     }
-  }
+  };
+  const std::string line_end = line_end_of(text);
+  add(lines_of(text, line_end), line_end, "");
+  if (!is_document(text)) return drafts;
+  const std::string unbroken = without_breaks(text);
+  const std::size_t before = drafts.size();
+  add(pieces_of_document(unbroken, '{', '}'), "}", "{skip}");
+  const bool has_objects = drafts.size() > before;
+  const std::size_t objects = drafts.size();
+  add(pieces_of_document(unbroken, '[', ']'), "]", "{skip}[");
+  for (std::size_t k = objects; has_objects && k < drafts.size(); ++k) drafts[k].merit -= kWithObjects;
   return drafts;
 }
 

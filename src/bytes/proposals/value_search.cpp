@@ -20,9 +20,10 @@ namespace {
 constexpr std::size_t kMostLeading = 24;  // bytes before the readings
 constexpr std::size_t kMostTrailing = 12;
 constexpr std::size_t kPackets = 24;
-constexpr std::size_t kMostSpans = 4;
+constexpr std::size_t kMostSpans = 8;
 constexpr std::size_t kMostUnexplained = 4;
 constexpr std::size_t kFewest = 4;  // readings
+constexpr double kOfUnexplained = 0.2;
 
 struct Type {
   const char* name;
@@ -49,6 +50,15 @@ std::optional<FrameShape> any_shape(std::size_t count) {
     if (count % cols == 0 && count / cols <= 1024) return FrameShape{count / cols, cols};
   }
   return std::nullopt;
+}
+
+/// Numbers near both ends of their range, and none between them, lack their sign.
+bool are_without_sign(const Readings& readings, double range) {
+  std::array<std::size_t, 3> counts{};  // low, between, high
+  for (const std::vector<float>& frame : readings) {
+    for (const float value : frame) ++counts[value < 0.25 * range ? 0 : value < 0.75 * range ? 1 : 2];
+  }
+  return range > 1e4 && counts[0] > 0 && counts[1] == 0 && 50 * counts[2] > counts[0];
 }
 
 class ValueSearch {
@@ -78,9 +88,15 @@ class ValueSearch {
     }
     if (span.type.front() == 'i' && !has_negative) return;  // the same as without a sign
     span.merit = -0.5 * roughness_along(span.readings) - 0.3 * roughness_in_time(span.readings) -
-                 0.02 * std::log2(1.0 + sum / size) - 0.1 * static_cast<double>(unexplained) -
+                 0.03 * std::log2(1.0 + sum / size) - kOfUnexplained * static_cast<double>(unexplained) -
                  (is_count_known ? 0.0 : strangeness(count));
+    const bool is_behind_number = std::ranges::any_of(fields_, [&](const PacketField& field) {
+      return !field.numbers.empty() && field.at + field.size == begin && unexplained == 0;
+    });
+    span.merit += is_behind_number ? 0.3 : 0.0;
     for (const PacketField& field : fields_) span.merit -= field.at < end && field.at + field.size > begin ? 0.4 : 0.0;
+    if (span.type.front() == 'u' && are_without_sign(span.readings, std::exp2(static_cast<double>(type.bits))))
+      span.merit -= 0.3;
     spans_.push_back(std::move(span));
   }
 

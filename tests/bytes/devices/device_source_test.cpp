@@ -168,6 +168,55 @@ TEST(DeviceSource, gives_the_last_frame_of_a_device_that_pauses) {
   }
 }
 
+/// What the device was sent so far, once there are so many bytes.
+std::string sent_to(ByteStream& device, std::size_t size) {
+  std::string sent;
+  std::vector<std::uint8_t> piece(256);
+  while (sent.size() < size) {
+    const ByteStream::Transferred came = device.read(piece, 10ms);
+    sent.append(piece.begin(), piece.begin() + static_cast<std::ptrdiff_t>(came.bytes));
+  }
+  return sent;
+}
+
+TEST(DeviceSource, a_device_begins_when_it_is_sent_its_bytes) {
+  const auto device = target("pty:");
+  const auto source = open("serial://" + device->name() + "?rows=1&cols=4&packet=24,values u8,FF&start=%AA%01%80%FF");
+  std::thread board([&] {
+    ASSERT_TRUE(device->open(kLong));
+    send(*device, {0x25, 0, 0, 0, 0, 0xFF});  // a greeting
+    EXPECT_EQ(sent_to(*device, 4), "\xAA\x01\x80\xFF");
+    for (std::uint8_t k = 0; k < 20; ++k) send(*device, {0x24, k, 1, 2, 3, 0xFF});
+  });
+  RawFrame frame;
+  for (int k = 0; k < 10; ++k) {
+    ASSERT_TRUE(*source->next(frame));
+    EXPECT_EQ(frame.counts, (std::vector<float>{static_cast<float>(k), 1, 2, 3}));
+  }
+  board.join();
+}
+
+TEST(DeviceSource, a_rate_bounds_how_often_a_device_is_asked) {
+  const std::string path = testing::TempDir() + "dermis_asked_" + std::to_string(::getpid()) + ".toml";
+  std::ofstream(path) << "[layout]\nrows = 1\ncols = 2\nline = \"{values}\"\nrequest = [0xFE]\nrate = 100\n";
+  const auto device = target("pty:");
+  const auto source = open("serial://" + device->name() + "?layout=" + path);
+  std::atomic<int> asked = 0;
+  std::thread board([&] {
+    ASSERT_TRUE(device->open(kLong));
+    for (; asked < 21; ++asked) {
+      EXPECT_EQ(sent_to(*device, 1), "\xFE") << "it is asked once";
+      send(*device, {'1', ' ', '2', '\n'});
+    }
+  });
+  RawFrame frame;
+  const auto begin = std::chrono::steady_clock::now();
+  for (int k = 0; k < 21; ++k) ASSERT_TRUE(*source->next(frame));
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, 190ms) << "20 periods of 10 ms lie between 21 requests";
+  board.join();
+  ::unlink(path.c_str());
+}
+
 TEST(DeviceSource, says_which_protocol_it_has_detected) {
   const BytesInFile file(encoded(random_frames(30, 12)));
   Notices notices;

@@ -345,6 +345,74 @@ TEST(TextLayout, seconds_and_smaller_units_add_up) {
   EXPECT_EQ(zoned[0].acquisition.device_time, std::chrono::seconds(5));
 }
 
+TEST(TextLayout, parts_of_a_time_may_stand_in_either_order) {
+  const auto frames = frames_of(std::string(kTwoByTwo) + "line = \"{time_ns},{time_s},{values}\"\n",
+                                bytes_of("7,2,1 2 3 4\n9,3,5 6 7 8\n"));
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_EQ(frames[0].acquisition.device_time, std::chrono::nanoseconds(2'000'000'007));
+  EXPECT_EQ(frames[1].acquisition.device_time, std::chrono::nanoseconds(3'000'000'009));
+}
+
+TEST(TextLayout, lines_may_be_parts_of_a_frame) {
+  EXPECT_EQ(readings_of("line = \"{values x1}\"\n", "1\n2\n3\n4\n5\n6\n7\n8\n9\n"), kOneToEight);
+  EXPECT_EQ(readings_of("line = \"{values x2}\"\n", "1 2\n3 4\n5 6\n7 8\n"), kOneToEight);
+  EXPECT_EQ(readings_of("line = [\"1028\", \"{values x1}\"]\n", "9\n1028\n1\n2\n3\n4\n1028\n9\n1028\n5\n6\n7\n8\n"),
+            kOneToEight);
+  EXPECT_EQ(error_of(std::string(kTwoByTwo) + "line = \"{values x5}\"\n"),
+            "it.toml:4: layout.line: x is more than the array has taxels");
+}
+
+TEST(TextLayout, rows_and_counters_may_be_hexadecimal) {
+  const std::string keys = "digits = \"hexadecimal\"\nwidth = 2\nline = ";
+  EXPECT_EQ(readings_of(keys + "\"can0 2{row:2x}#{values}\"\n",
+                        "can0 20A#0102\ncan0 200#0102\ncan0 201#0304\n"
+                        "can0 200#0506\ncan0 201#0708\n"),
+            kOneToEight);
+  EXPECT_EQ(readings_of("line = \"{row-0x1F:x}: {values}\"\n", "1f: 1 2\n20: 3 4\n0x1F: 5 6\n0x20: 7 8\n"),
+            kOneToEight);
+  EXPECT_EQ(readings_of("line = \"{row:1x}{skip} {values}\"\n", "0a 1 2\n1b 3 4\n0c 5 6\n1d 7 8\n"), kOneToEight);
+  const auto frames = frames_of(std::string(kTwoByTwo) + "line = \"{frame:x} {time_ms:x} {values}\"\n",
+                                bytes_of("0a 64 1 2 3 4\n0C C8 5 6 7 8\n"));
+  ASSERT_EQ(readings_of(frames), kOneToEight);
+  EXPECT_EQ(frames[1].acquisition.lost_before, 1U);
+  EXPECT_EQ(frames[1].acquisition.device_time, std::chrono::milliseconds(200));
+}
+
+TEST(TextLayout, absent_numbers_may_be_several_and_ranges) {
+  const Readings readings = readings_of("line = \"{values}\"\nabsent = [65535, -1, [4090, 4095], 0]\n",
+                                        "1 -1 65535 4089\n0 4090 4095 4096\n");
+  ASSERT_EQ(readings.size(), 2U);
+  EXPECT_EQ(readings[0][0], 1.0F);
+  EXPECT_EQ(readings[0][3], 4089.0F);
+  EXPECT_EQ(readings[1][3], 4096.0F);
+  for (const float value : {readings[0][1], readings[0][2], readings[1][0], readings[1][1], readings[1][2]})
+    EXPECT_TRUE(std::isnan(value)) << value;
+  EXPECT_NE(error_of(std::string(kTwoByTwo) + "line = \"{values}\"\nabsent = [[5, 1]]\n").find("[-1, [4090, 4095]]"),
+            std::string::npos);
+}
+
+TEST(TextLayout, a_document_is_read_by_its_objects_or_lists) {
+  EXPECT_EQ(
+      readings_of(
+          "line_end = \"}\"\nline = '{skip}\"data\": {values}'\n",
+          "{\"rate\": 5, \"frames\": [\r\n {\"data\": [1,\r\n 2,\r\n 3, 4]},\n {\"data\": [[5, 6], [7,\n8]]\n}\n]}\n"),
+      kOneToEight);
+  EXPECT_EQ(readings_of("line_end = \"]\"\nframe_end = \"\"\nline = \"{skip}[{values}\"\n",
+                        "[\n [\n  [1, 2],\n  [3, 4]\n ],\n [[5, 6], [7, 8]]\n]\n"),
+            kOneToEight);
+}
+
+TEST(LayoutToml, what_a_device_is_sent_is_bytes) {
+  const std::string keys = std::string(kTwoByTwo) + "line = \"{values}\"\n";
+  const std::string bytes("\xAA\x01\0\xFF", 4);
+  EXPECT_EQ(layout_of(keys + R"(start = "\xAA\x01\x00\xff" # as "\x41" of '\x42')" + "\n")->start, bytes);
+  EXPECT_EQ(layout_of(keys + R"(start = "\u00AA\u0001\u0000\u00FF")" + "\n")->start, bytes);
+  EXPECT_EQ(layout_of(keys + "request = [0xAA, 1, 0, 255]\n")->request, bytes);
+  EXPECT_EQ(layout_of(keys + R"(start = "\\x41\n")" + "\n")->start, "\\x41\n");
+  EXPECT_NE(error_of(keys + "start = [256]\n").find("layout.start: must be a text in quotes, or a list of bytes"),
+            std::string::npos);
+}
+
 TEST(TextLayout, a_device_is_asked_before_each_frame_or_until_it_sends) {
   const auto layout = [](const char* key) { return layout_of(kTwoByTwo + std::string("line = \"{values}\"\n") + key); };
   const auto started = make_decoder(layout("start = \"go\""), 0, false);
@@ -370,6 +438,28 @@ TEST(TextLayout, says_which_line_does_not_fit_and_where) {
   const auto decoder = make_decoder(layout_of(std::string(kTwoByTwo) + "line = \"{row}: {values}\"\n"), 0, true);
   EXPECT_TRUE(frames_of(*decoder, bytes_of("\n0: 1 x\n")).empty());
   EXPECT_EQ(decoder->advice(), "line 2 does not fit layout.line at 'x': a reading is expected");
+}
+
+TEST(TextLayout, cites_the_first_line_that_does_not_fit_and_the_first_behind_a_head) {
+  const auto decoder = make_decoder(layout_of(std::string(kTwoByTwo) + "line = \"{row}: {values}\"\n"), 0, true);
+  EXPECT_TRUE(frames_of(*decoder, bytes_of("row: a b\n0: 1\n1: 2\n")).empty());
+  EXPECT_EQ(decoder->advice(),
+            "line 1 does not fit layout.line at 'row: a b': a whole number is expected; "
+            "line 2 does not fit layout.line at its end: more readings are expected");
+}
+
+TEST(PacketLayout, cites_the_byte_where_a_packet_came_furthest) {
+  const auto advice_of = [](const std::string& keys, const Bytes& bytes) {
+    const auto decoder = make_decoder(layout_of(kTwoByTwo + keys), 0, true);
+    EXPECT_TRUE(frames_of(*decoder, bytes).empty());
+    return decoder->advice();
+  };
+  EXPECT_EQ(
+      advice_of("packet = [\"AA\", \"row u8\", \"values u8\", \"BB\"]\n", {9, 0xAA, 0, 1, 2, 3, 0xAA, 1, 3, 4, 5}),
+      "byte 1: layout.packet[3] does not fit");
+  EXPECT_EQ(advice_of("packet = [\"AA 55\", \"values u8\"]\n", {9, 9, 0xAA, 0x55, 1, 2, 3, 0xAA, 0x55, 1, 2, 3}),
+            "the mark AA 55 of byte 2 does not come again after 6 bytes");
+  EXPECT_EQ(advice_of("packet = [\"values u16be\"]\n", {1, 2, 3}), "they are less than the 8 bytes of a frame");
 }
 
 TEST(TextLayout, several_arrays_in_a_line_or_in_turn_are_told_apart) {
@@ -511,6 +601,54 @@ TEST(PacketLayout, a_frame_may_come_in_runs) {
             kOneToEight);
 }
 
+TEST(PacketLayout, a_run_may_reach_beyond_the_array) {
+  const std::string keys = "packet = [\"AA\", \"first u8\", \"values u8 x3\", \"FF\"]\n";
+  const Bytes bytes = {0xAA, 0, 1, 2, 3, 0xFF, 0xAA, 3, 4, 0, 0, 0xFF, 0xAA, 6, 0, 0, 0, 0xFF,
+                       0xAA, 0, 5, 6, 7, 0xFF, 0xAA, 3, 8, 0, 0, 0xFF, 0xAA, 6, 0, 0, 0, 0xFF};
+  const auto decoder = make_decoder(layout_of(kTwoByTwo + keys), 0, true);
+  EXPECT_EQ(readings_of(frames_of(*decoder, bytes)), kOneToEight);
+  EXPECT_EQ(decoder->counts().damaged_frames, 0U);
+  Bytes counted = bytes;
+  for (std::size_t at = 1; at < counted.size(); at += 6) counted[at] /= 3;
+  EXPECT_EQ(readings_of("packet = [\"AA\", \"first u8 *3\", \"values u8 x3\", \"FF\"]\n", counted), kOneToEight);
+}
+
+TEST(PacketLayout, frames_of_one_size_need_no_mark) {
+  const Bytes bytes = {0, 1, 0, 2, 0, 3, 0, 4, 0, 5, 0, 6, 0, 7, 0, 8, 0};
+  EXPECT_EQ(readings_of("packet = [\"values u16be\"]\n", bytes), kOneToEight);
+  const auto frames =
+      frames_of(std::string(kTwoByTwo) + "packet = [\"frame u8\", \"values u8\"]\n", {7, 1, 2, 3, 4, 9, 5, 6, 7, 8});
+  EXPECT_EQ(readings_of(frames), kOneToEight);
+  EXPECT_EQ(frames[1].acquisition.lost_before, 1U);
+}
+
+TEST(PacketLayout, a_frame_without_a_mark_begins_behind_a_pause) {
+  const auto decoder = make_decoder(layout_of(std::string(kTwoByTwo) + "packet = [\"values u8\"]\n"), 0, false);
+  RawFrame frame;
+  decoder->push(Bytes{9, 9});
+  EXPECT_FALSE(decoder->next(frame));
+  decoder->idle();
+  EXPECT_FALSE(decoder->next(frame));
+  decoder->push(Bytes{1, 2, 3, 4});
+  ASSERT_TRUE(decoder->next(frame));
+  EXPECT_EQ(frame.counts, kOneToEight[0]);
+  EXPECT_EQ(decoder->counts().skipped_bytes, 2U);
+}
+
+TEST(PacketLayout, codes_may_stand_for_bytes) {
+  const std::string keys = "packet = [\"5B\", \"values u8\"]\nescape = \"5D 5C 00=5C 01=5B 02=5D\"\n";
+  EXPECT_EQ(readings_of(
+                keys, {0x5B, 1, 0x5C, 0, 0x5C, 1, 0x5C, 2, 0x5D, 0x5B, 1, 0x5C, 3, 3, 4, 0x5D, 0x5B, 5, 6, 7, 8, 0x5D}),
+            (Readings{{1, 0x5C, 0x5B, 0x5D}, {5, 6, 7, 8}}));
+  EXPECT_EQ(readings_of("packet = [\"values u8\", \"checksum sum8\"]\nescape = \"C0 DB DC=C0 DD=DB\"\n",
+                        {0xC0, 0xDB, 0xDC, 0xDB, 0xDD, 1, 2, 0x9E, 0xC0}),
+            (Readings{{0xC0, 0xDB, 1, 2}}))
+      << "as SLIP";
+  EXPECT_NE(
+      error_of(std::string(kTwoByTwo) + "packet = [\"values u8\"]\nescape = \"5D 5C 00=\"\n").find("layout.escape"),
+      std::string::npos);
+}
+
 TEST(PacketLayout, arrays_in_turn_may_differ_in_size) {
   const std::string toml =
       "[layout]\npacket = [\"AA\", \"array u8\", \"values u8\"]\n[[layout.array]]\nname = \"l\"\nrows = 1\ncols = 1\n"
@@ -594,8 +732,10 @@ TEST(LayoutToml, errors_name_the_line_the_key_and_the_mend) {
       error_of(two + "packet = [\"FF\", \"values u16\"]\n"),
       "it.toml:4: layout.packet: field 2: 'u16' is no type: it is u8, i8, u10, u12, u16, i16, u24, u32, i32, u64, "
       "f32 or f64, then le where the low byte comes first or be where the high byte does");
-  EXPECT_EQ(error_of(two + "packet = [\"values u8\"]\n"),
-            "it.toml:4: layout.packet: must begin or end with bytes that mark it, as \"FF FF\", or have an escape");
+  EXPECT_EQ(
+      error_of(two + "packet = [\"row u8\", \"values u8\"]\n"),
+      "it.toml:4: layout.packet: must begin or end with bytes that mark it, as \"FF FF\", have an escape, or be a "
+      "whole frame that is always of one size");
   EXPECT_EQ(error_of(two + "packet = [[\"FF\", \"values u8\"], [\"EE\", \"vales u8\"]]\n"),
             "it.toml:4: layout.packet: packet 2: field 2: 'vales' is no field; did you mean 'values'?");
   EXPECT_EQ(error_of(two + "packet = [\"FF\", [\"values u8\"]]\n"),

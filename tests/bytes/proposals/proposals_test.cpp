@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <span>
@@ -136,6 +138,20 @@ const std::vector<Stream>& text_streams() {
       {"packed hexadecimal digits", [](const Frame& f, std::size_t) { return joined(f, "", "%03X") + "\n"; }},
       {"marked hexadecimal digits", [](const Frame& f, std::size_t) { return "0x" + joined(f, ",0x", "%X") + "\n"; }},
       {"bars", [](const Frame& f, std::size_t) { return joined(f, "|") + "\n"; }},
+      {"a number and the time at the end",
+       [](const Frame& f, std::size_t k) {
+         return joined(f, ",") + "," + number(17 + k) + "," + number(90500 + 10 * k + k % 3) + "\n";
+       }},
+      {"a time of two parts",
+       [](const Frame& f, std::size_t k) {
+         return "{\"stamp\": {\"sec\": " + number(1779865838 + k / 20) +
+                ", \"nanosec\": " + number(50000000 * (k % 20)) + "}, \"data\": [" + joined(f, ", ") + "]}\n";
+       }},
+      {"one number a line behind a mark",
+       [](const Frame& f, std::size_t) { return "1028\n" + joined(f, "\n") + "\n"; }},
+      {"one number a line behind a word",
+       [](const Frame& f, std::size_t) { return "begin\n" + joined(f, "\r\n") + "\r\n"; }},
+      {"one number a line", [](const Frame& f, std::size_t) { return joined(f, "\n") + "\n"; }},
       {"the time at the end",
        [](const Frame& f, std::size_t k) { return joined(f, " ") + " " + number(500 + 10 * k) + "\n"; }},
   };
@@ -235,6 +251,169 @@ TEST(Proposals, the_first_reads_packets_whose_shape_is_given) {
     SCOPED_TRACE(stream.name);
     expect_frames(bytes, frames, {.rows = kShape.rows, .cols = kShape.cols});
   }
+}
+
+/// The first proposal of what a frame is printed as, where rows and columns are given.
+Proposal first_of(const std::vector<Frame>& frames, const FrameShape& shape,
+                  const std::function<Bytes(const Frame&, std::size_t)>& send) {
+  Bytes bytes;
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const Bytes packet = send(frames[k], k);
+    bytes.insert(bytes.end(), packet.begin(), packet.end());
+  }
+  const std::vector<Proposal> proposals = propose(bytes, {.rows = shape.rows, .cols = shape.cols});
+  EXPECT_FALSE(proposals.empty());
+  if (proposals.empty()) return {};
+  EXPECT_EQ(frames_of(proposals.front().toml, bytes), frames) << proposals.front().toml;
+  return proposals.front();
+}
+
+bool has_doubt(const Proposal& proposal, const std::string& words) {
+  return std::ranges::any_of(proposal.doubts,
+                             [&](const std::string& doubt) { return doubt.find(words) != std::string::npos; });
+}
+
+TEST(Proposals, packets_may_only_end_in_a_mark) {
+  std::vector<Frame> frames = test::pressed_frames(kShape, 250.0);
+  for (Frame& frame : frames) std::ranges::transform(frame, frame.begin(), [](int v) { return std::min(v, 254); });
+  const Proposal proposal = first_of(frames, kShape, [](const Frame& f, std::size_t) {
+    Bytes bytes;
+    test::add_readings(bytes, f, 1);
+    bytes.push_back(0xFF);
+    return bytes;
+  });
+  EXPECT_NE(proposal.toml.find("packet = [\"values u8\", \"FF\"]"), std::string::npos) << proposal.toml;
+}
+
+TEST(Proposals, packets_may_come_in_runs_beyond_the_array) {
+  const FrameShape shape{5, 5};
+  std::vector<Frame> frames = test::pressed_frames(shape, 1500.0);
+  for (Frame& frame : frames) std::ranges::transform(frame, frame.begin(), [](int v) { return v + 1300; });
+  for (const int factor : {1, 8}) {
+    const Proposal proposal = first_of(frames, shape, [&](const Frame& f, std::size_t) {
+      Bytes bytes;
+      Frame channels = f;
+      channels.resize(32);
+      for (int first = 0; first < 32; first += 8) {
+        bytes.insert(bytes.end(), {0x24, static_cast<std::uint8_t>(first / factor)});
+        test::add_readings(bytes, {channels.begin() + first, channels.begin() + first + 8}, 2, true);
+        bytes.push_back(0xFF);
+      }
+      return bytes;
+    });
+    EXPECT_NE(proposal.toml.find(factor == 1 ? "\"first u8\"" : "\"first u8 *8\""), std::string::npos) << proposal.toml;
+  }
+}
+
+TEST(Proposals, a_frame_without_a_mark_is_proposed_with_its_doubt) {
+  const std::vector<Frame> frames = test::pressed_frames(kShape, 3000.0);
+  for (const bool is_big : {false, true}) {
+    const Proposal proposal = first_of(frames, kShape, [&](const Frame& f, std::size_t) {
+      Bytes bytes;
+      test::add_readings(bytes, f, 2, is_big);
+      return bytes;
+    });
+    EXPECT_TRUE(has_doubt(proposal, "nothing marks where a frame begins")) << proposal.toml;
+  }
+  const Proposal numbers =
+      first_of(frames, kShape, [](const Frame& f, std::size_t) { return bytes_of(joined(f, "\n") + "\n"); });
+  EXPECT_TRUE(has_doubt(numbers, "nothing marks where a frame begins")) << numbers.toml;
+  const Proposal rows = first_of(frames, kShape, [](const Frame& f, std::size_t) {
+    return bytes_of(in_rows(f, [](std::size_t, const Frame& row) { return joined(row, " ") + "\n"; }));
+  });
+  EXPECT_TRUE(has_doubt(rows, "nothing marks where a frame begins")) << rows.toml;
+}
+
+TEST(Proposals, readings_may_stand_behind_labels) {
+  const FrameShape shape{1, 6};
+  const std::vector<Frame> frames = test::pressed_frames(shape);
+  const std::vector<std::string> places = {"heel", "toe", "ball", "arch", "outer", "inner"};
+  const auto print = [&](const Frame& frame, const std::function<std::string(std::size_t, int)>& one) {
+    std::string text;
+    for (std::size_t i = 0; i < frame.size(); ++i) text += (i > 0 ? ", " : "") + one(i, frame[i]);
+    return text;
+  };
+  const Proposal objects = first_of(frames, shape, [&](const Frame& f, std::size_t k) {
+    return bytes_of("{\"t\": " + number(20 * k) + ", \"sensors\": [" +
+                    print(f,
+                          [&](std::size_t i, int v) {
+                            return "{\"label\": \"" + places[i] + "\", \"volt\": " + std::to_string(v * 0.0032) +
+                                   ", \"adc\": " + std::to_string(v) + "}";
+                          }) +
+                    "]}\n");
+  });
+  EXPECT_TRUE(has_doubt(objects, "'volt'")) << objects.toml;
+  (void)first_of(frames, shape, [&](const Frame& f, std::size_t) {
+    return bytes_of(print(f, [&](std::size_t i, int v) { return places[i] + ":" + std::to_string(v); }) + "\n");
+  });
+  (void)first_of(frames, shape, [&](const Frame& f, std::size_t) {
+    return bytes_of(print(f, [&](std::size_t i, int v) { return "A" + number(i) + ": " + std::to_string(v); }) + "\n");
+  });
+}
+
+TEST(Proposals, two_readings_a_line_are_an_array) {
+  std::string text;
+  for (const Frame& frame : test::pressed_frames({1, 2})) text += joined(frame, ",") + "\n";
+  const std::vector<Proposal> proposals = propose(bytes_of(text), {});
+  ASSERT_FALSE(proposals.empty());
+  EXPECT_EQ(proposals.front().shape, (FrameShape{1, 2}));
+}
+
+TEST(Proposals, a_document_of_json_is_no_lines) {
+  const std::vector<Frame> frames = test::pressed_frames(kShape);
+  for (const bool is_broken : {false, true}) {
+    const std::string end = is_broken ? "\n    " : " ";
+    std::string objects = "{\"rate\": 50," + end + "\"frames\": [";
+    std::string lists = "[";
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      const std::string list = "[" + end + joined(frames[k], "," + end) + end + "]";
+      objects += (k > 0 ? "," : "") + end + "{" + end + "\"t\": " + number(20 * k) + "," + end + "\"data\": " + list +
+                 end + "}";
+      lists += (k > 0 ? "," : "") + end + list;
+    }
+    for (const std::string& text : {objects + end + "]}\n", lists + end + "]\n"}) {
+      const std::vector<Proposal> proposals = propose(bytes_of(text), {.rows = kShape.rows, .cols = kShape.cols});
+      ASSERT_FALSE(proposals.empty()) << text.substr(0, 200);
+      EXPECT_EQ(frames_of(proposals.front().toml, bytes_of(text)), frames) << proposals.front().toml;
+    }
+  }
+}
+
+TEST(Proposals, sensors_of_motion_are_no_taxels) {
+  const FrameShape shape{4, 4};
+  const std::vector<Frame> frames = test::pressed_frames(shape);
+  for (const bool has_head : {true, false}) {
+    std::string text = has_head ? "time_ms" : "";
+    for (std::size_t i = 0; has_head && i < 12; ++i)
+      text += std::string(",imu") + number(i / 6 + 1) + "_" + (i % 6 < 3 ? "acc" : "gyro") + "_" + "xyz"[i % 3];
+    for (std::size_t i = 0; has_head && i < 16; ++i) text += ",s" + number(i);
+    text += has_head ? "\n" : "";
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      text += number(1000 + 10 * k);
+      for (std::size_t i = 0; i < 12; ++i)
+        text += "," + std::to_string(std::sin(static_cast<double>(k * (i + 1)) / 5.0) - 0.1);
+      text += "," + joined(frames[k], ",") + "\n";
+    }
+    const std::vector<Proposal> proposals = propose(bytes_of(text), {});
+    ASSERT_FALSE(proposals.empty());
+    EXPECT_EQ(frames_of(proposals.front().toml, bytes_of(text)), frames) << proposals.front().toml;
+  }
+}
+
+TEST(Proposals, layouts_that_fit_alike_are_told_apart) {
+  std::string text;
+  for (const Frame& frame : test::pressed_frames({3, 4}, 0.0)) text += joined(frame, ",") + "\n";
+  const std::vector<Proposal> proposals = propose(bytes_of(text), {});
+  ASSERT_GE(proposals.size(), 2U);
+  EXPECT_TRUE(has_doubt(proposals.front(), "layout 2 fits as well: press a corner"));
+}
+
+TEST(Proposals, what_the_device_was_sent_goes_into_the_layout) {
+  std::string text;
+  for (const Frame& frame : test::pressed_frames(kShape)) text += joined(frame, ",") + "\n";
+  const std::vector<Proposal> proposals = propose(bytes_of(text), {.request = "[0xAA, 0x01]"});
+  ASSERT_FALSE(proposals.empty());
+  EXPECT_NE(proposals.front().toml.find("\nrequest = [0xAA, 0x01]\n"), std::string::npos);
 }
 
 TEST(Proposals, arrays_in_turn_and_side_by_side_are_several) {

@@ -12,6 +12,7 @@ export interface Proposal {
   summary: string;
   layout: string;
   reasons: string[];
+  doubts: string[];
   left_over: string[];
   open: string[];
   rows: number;
@@ -111,7 +112,7 @@ export class LayoutChoice {
     this.#chosen = place;
     for (const [index, item] of [...this.#list.children].entries())
       item.setAttribute("aria-pressed", String(index === place));
-    const sentences = [`${proposal.frames} frames`, ...proposal.reasons, ...proposal.left_over];
+    const sentences = [`${proposal.frames} frames`, ...proposal.reasons, ...proposal.doubts, ...proposal.left_over];
     this.#words.replaceChildren(...sentences.map((words) => element("li", {}, words)));
     const pieces = piecesOf(this.#hex, proposal.parts);
     this.#bytes.replaceChildren(...pieces.map(({ words, what }) => element("span", { class: classOf(what) }, words)));

@@ -7,16 +7,17 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "dermis/touch/frames/result.hpp"
 
 namespace dermis::bytes::files {
 
-/// A TOML file read by name. Every key is read once. A key that was not read is an error with the nearest known name.
-/// If a key is absent, reading functions leave their target untouched, so defaults live only in the struct that is
-/// filled. finish() reports the first error, as "array.toml:7: readout.load_ohm: must be one number or a list of 16
-/// numbers". Not thread-safe.
+/// A TOML file read by name; texts may also have the escape "\xHH" of TOML 1.1. Every key is read once. A key that was
+/// not read is an error with the nearest known name. If a key is absent, reading functions leave their target
+/// untouched, so defaults live only in the struct that is filled. finish() reports the first error, as "array.toml:7:
+/// readout.load_ohm: must be one number or a list of 16 numbers". Not thread-safe.
 class ConfigFile {
  public:
   /// Reads and parses a file of at most 1 MiB; a syntax error names its line and column.
@@ -58,6 +59,8 @@ class ConfigFile {
   /// A list of any size of integers of 0 or more, or of texts.
   void counts(std::string_view key, std::vector<std::size_t>& values);
   void texts(std::string_view key, std::vector<std::string>& values);
+  /// A number, or a list of numbers and of lists of two, [from, to]. A number is a range of its own.
+  void ranges(std::string_view key, std::vector<std::pair<double, double>>& values);
   /// A list of texts, or a list of such lists.
   void text_rows(std::string_view key, std::vector<std::vector<std::string>>& rows);
   /// One of `names`; `index` is set to its place.

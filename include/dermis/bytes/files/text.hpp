@@ -20,6 +20,12 @@ inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 /// As a string of TOML, in quotes and with escapes.
 [[nodiscard]] std::string quoted_toml(std::string_view text);
 
+/// Bytes as a text of TOML where they are printable or end a line, or else as a list: [0xAA, 0x01].
+[[nodiscard]] std::string bytes_toml(std::string_view bytes);
+
+/// Characters U+0080 to U+00FF of UTF-8 become one byte each; others stay.
+[[nodiscard]] std::string latin_1_bytes(std::string_view utf8);
+
 /// Space, tab, carriage return or form feed.
 [[nodiscard]] constexpr bool is_blank(char c) noexcept {
   return c == ' ' || c == '\t' || c == '\r' || c == '\f';

@@ -55,6 +55,9 @@ struct TextField {
   std::size_t array = 0;   ///< values: place in Layout::arrays.
   double unit = 1.0;       ///< Factor on its number.
   std::uint64_t from = 0;  ///< row, col, first: the number of the first one.
+  std::size_t count = 0;   ///< values: how many; 0: all of a taxel, a row or the frame, as the line says.
+  bool is_hexadecimal = false;
+  std::size_t width = 0;  ///< Digits of its number, behind which another field may follow at once; 0: any.
 };
 
 /// Lines of text. A line that fits none of the patterns holds no readings.
@@ -107,15 +110,22 @@ struct PacketField {
   Checksum checksum{};
 };
 
-/// Packets of bytes, which begin with a literal or are escaped.
+/// A byte that is sent as the escape and a code.
+struct Substitute {
+  std::uint8_t code = 0;
+  std::uint8_t byte = 0;
+};
+
+/// Packets of bytes. They begin or end with a literal, are escaped, or are frames of one size without a mark.
 struct PacketLayout {
   using Packet = std::vector<PacketField>;
-  enum class Escape { none, cobs, slip, stuffed };
+  enum class Escape { none, cobs, slip, stuffed, substituted };
   std::vector<Packet> packets;  ///< The first that the bytes fit holds.
   Escape escape = Escape::none;
-  std::uint8_t delimiter = 0;    ///< stuffed: between two packets,
-  std::uint8_t escape_byte = 0;  ///< stuffed: before a byte that is changed,
+  std::uint8_t delimiter = 0;    ///< stuffed, substituted: between two packets,
+  std::uint8_t escape_byte = 0;  ///< stuffed, substituted: before a byte that is changed,
   std::uint8_t escape_xor = 0;   ///< stuffed: by this.
+  std::vector<Substitute> substitutes{};
 };
 
 /// Values of the field `flags` with a meaning.
@@ -125,23 +135,29 @@ struct LayoutFlags {
   std::vector<std::uint64_t> corrupt{};  ///< The frame is dropped as damaged.
 };
 
+/// Numbers from one to another, both included.
+struct NumberRange {
+  double least = 0.0;
+  double most = 0.0;
+};
+
 /// A description of bytes.
 struct Layout {
   std::vector<LayoutArray> arrays;  ///< At least one, with different names.
   std::variant<TextLayout, PacketLayout> form;
   double scale = 1.0;  ///< A reading is scale * number + offset.
   double offset = 0.0;
-  std::optional<double> absent{};  ///< A number that means no reading.
+  std::vector<NumberRange> absent{};  ///< Numbers that mean no reading.
   LayoutFlags flags{};
   std::string unit = "counts";      ///< Of a reading: counts, volts, ohms, kPa or newtons.
-  std::optional<double> rate_hz{};  ///< Frames a second; times of a file without times.
+  std::optional<double> rate_hz{};  ///< Frames a second: times of a file without times, and how often one asks.
 
-  std::string start{};    ///< Sent to the device until its first frame comes; empty: it starts on its own.
-  std::string request{};  ///< Sent to the device before each frame; empty: frames come on their own.
+  std::string start{};    ///< Bytes sent to the device until its first frame comes; empty: it starts on its own.
+  std::string request{};  ///< Bytes sent to the device before each frame; empty: frames come on their own.
 
   [[nodiscard]] bool has_times() const;
   [[nodiscard]] bool has_numbers() const;
-  /// Text that the device needs next. `is_sending`: a frame has come since it was connected.
+  /// Bytes that the device needs next. `is_sending`: a frame has come since it was connected.
   [[nodiscard]] std::string_view request_after(bool is_sending) const noexcept;
   /// Place of the array of that name; an empty name is that of the only one. Fails with the names.
   [[nodiscard]] Result<std::size_t> find_array(const std::string& name) const;

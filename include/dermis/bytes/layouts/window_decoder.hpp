@@ -46,6 +46,9 @@ class WindowDecoder : public Decoder {
   /// No byte has come for a while: judge() may take a whole frame without what follows it.
   [[nodiscard]] bool is_idle() const noexcept { return idle_; }
 
+  /// The place in the stream of the bytes that are judged.
+  [[nodiscard]] std::uint64_t position() const noexcept { return window_.position(); }
+
   /// The stream was interrupted, and nothing of it is left: what follows is another one.
   virtual void begin_again() {}
 

@@ -19,7 +19,9 @@ namespace dermis::bytes::proposals {
 struct Known {
   std::optional<std::size_t> rows{};
   std::optional<std::size_t> cols{};
-  std::string unit{};  ///< Of a reading, as in a layout; empty: not known.
+  std::string unit{};     ///< Of a reading, as in a layout; empty: not known.
+  std::string start{};    ///< What the device was sent before it began, as in a layout,
+  std::string request{};  ///< or before each of its answers.
 };
 
 /// Bytes of a stream that hold the same thing.
@@ -34,6 +36,7 @@ struct Proposal {
   std::string toml;                    ///< As layouts::layout_from_toml() reads it.
   std::string summary;                 ///< "60 lines of 81 numbers: a frame a line? then rows=9, cols=9"
   std::vector<std::string> reasons;    ///< Sentences.
+  std::vector<std::string> doubts;     ///< Sentences on what may be otherwise.
   std::vector<std::string> left_over;  ///< Sentences on bytes that belong to no frame.
   std::vector<Part> parts;             ///< Of the first bytes, in order; those between them are text or left over.
   std::vector<std::string> open;       ///< Keys that the bytes cannot tell: "rows", "cols", "unit".

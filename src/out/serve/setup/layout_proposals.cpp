@@ -77,6 +77,7 @@ std::string layout_proposals(std::span<const std::uint8_t> bytes, const bytes::p
     answer["proposals"].push_back({{"summary", proposal.summary},
                                    {"layout", proposal.toml},
                                    {"reasons", proposal.reasons},
+                                   {"doubts", proposal.doubts},
                                    {"left_over", proposal.left_over},
                                    {"open", proposal.open},
                                    {"rows", proposal.shape.rows},

@@ -19,8 +19,8 @@ namespace dermis::out::serve {
 [[nodiscard]] Result<bytes::proposals::Known> known_request(const JsonRequest& request);
 
 /// Layouts of the bytes, for a client: {"bytes": hexadecimal, "proposals": [{"summary", "layout", "reasons",
-/// "left_over", "open", "rows", "cols", "frames", "example", "parts": [[begin, end, "values"], ...]}, ...]}. The bytes
-/// are the first 1024, and parts are of these.
+/// "doubts", "left_over", "open", "rows", "cols", "frames", "example", "parts": [[begin, end, "values"], ...]}, ...]}.
+/// The bytes are the first 1024, and parts are of these.
 [[nodiscard]] std::string layout_proposals(std::span<const std::uint8_t> bytes, const bytes::proposals::Known& known);
 
 /// Writes the layout at that place as `file`, which must not be there. Returns the name of its first array; empty where
