@@ -13,8 +13,8 @@
 
 namespace dermis::learn::health {
 
-/// Taxels without information though no fault has been found: they have no force in any frame, a high reading that
-/// never changes, or have ceased to read.
+/// Taxels without information though no fault has been found. They have no force in any frame, a high reading that
+/// never changes, or no reading any more.
 class MuteTaxels {
  public:
   explicit MuteTaxels(const touch::pipeline::Model& model);

@@ -46,7 +46,7 @@ class FrameTimes {
   struct Block {
     std::size_t first_frame = 0;
     double begin_s = 0.0;  ///< Time of the first frame.
-    double sum_s = 0.0;    ///< Of all steps but the longest two: those may be pauses.
+    double sum_s = 0.0;    ///< All steps but the longest two: those may be pauses.
     double longest_s = 0.0;
     double second_s = 0.0;
     double shortest_s = 0.0;

@@ -15,7 +15,7 @@
 
 namespace dermis::bytes::recordings {
 
-/// The content of a file of frames; empty if its format does not contain it.
+/// The content of a file of frames; empty if its format does not contain it. Many members: `dermis info` shows each.
 struct FrameFileInfo {
   FrameFormat format = FrameFormat::csv;
   std::uint64_t bytes = 0;  ///< 0 of a pipe.

@@ -31,7 +31,7 @@ struct RawDiagnosis {
 
 /// Looks for mistakes of the electronics in raw counts alone. Lines may read the same because an address line does not
 /// switch, or readings keep a share of the one before. It also finds readings of two values only, lines that stand or
-/// break, inputs that float, hum, arrays without power, and clocks that restart, jump or count in another unit. Memory
+/// break, inputs that float, hum, and arrays without power. Clocks may restart, jump or count in another unit. Memory
 /// does not grow with the frames. Not thread-safe.
 class RawExamination {
  public:

@@ -44,7 +44,8 @@ UnloadedTaxels::UnloadedTaxels(const ArrayDescription& array, std::span<const do
 /// A threshold of the device hides some taxels of an array from the calibration, or none and is far below.
 double UnloadedTaxels::least_sent_reading() const {
   double least = kMostCutOff;
-  if (array_.rows < kFewestLines || array_.cols < kFewestLines) return least;
+  const bool has_offsets = !array_.readout.amplifier_offset_v.empty();  // which may take all of a reading
+  if (array_.rows < kFewestLines || array_.cols < kFewestLines || has_offsets) return least;
   for (std::size_t taxel = 0; taxel < ratio_.size(); ++taxel) {
     if (array_.is_absent(taxel)) continue;
     if (!(ratio_[taxel] > 0.0)) return kMostCutOff;
