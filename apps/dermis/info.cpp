@@ -89,6 +89,7 @@ void print_json(const std::string& file, const std::string& format, const FrameF
                {"cols", info.shape ? Json(info.shape->cols) : Json(nullptr)},
                {"lost", or_null(info.lost)},
                {"complete", info.complete},
+               {"doubts", info.doubts},
                {"unread", or_null(info.unread)},
                {"or", or_null(look)},
                {"temperature_celsius", or_null(info.temperature_celsius)},
@@ -134,6 +135,7 @@ void print_text(const std::string& format, const FrameFileInfo& info) {
   if (info.shape) print_line("taxels", fmt::format("{}x{}", info.shape->rows, info.shape->cols));
   print_line("duration", info.duration_s ? fmt::format("{:.3f} s", *info.duration_s) : "not known: no times");
   if (const std::optional<double> rate = info.rate_hz()) print_line("rate", fmt::format("{:.3f} Hz", *rate));
+  for (const std::string& doubt : info.doubts) print_line("doubt", doubt);
   if (info.start_utc) print_line("start", utc_text(*info.start_utc));
   if (info.lost) print_line("lost", fmt::format("{} frames", *info.lost));
   print_line("complete", info.complete ? "yes" : "no: " + mend_of(info));

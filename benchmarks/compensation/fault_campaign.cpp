@@ -2,7 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
 // Frames until each fault of a 16x16 array is found (docs/health.md, "How soon"):
-// fault_campaign [SEEDS [FAULT_FROM_FRAME [SIZE]]].
+// fault_campaign [SEEDS [FAULT_FROM_FRAME [SIZE [IDLE_COUNTS]]]]. Unloaded taxels read about IDLE_COUNTS, and lines
+// that are open exactly 0, where they are given.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -50,13 +51,19 @@ std::vector<FaultCase> fault_cases() {
 
 /// The frames that it takes, or none where it is not found, or where another one is before.
 std::optional<std::size_t> frames_to_detection(const FaultCase& fault, std::size_t size, std::uint64_t seed,
-                                               std::size_t from_frame) {
+                                               std::size_t from_frame, std::size_t idle_counts) {
   dermis::support::HealthyArray watched;
   watched.array = dermis::support::reference_circuit(size, size);
   dermis::Random random(seed);
   fault.put(watched.options.faults, watched.array, random.below(size - 1));
   watched.options.faults.from_frame = from_frame;
   watched.options.rubber.seed = seed;
+  if (idle_counts > 0) {
+    const dermis::Readout& readout = watched.array.readout;
+    watched.options.rubber.unloaded_ohm =
+        readout.load_ohm.front() * readout.full_scale_counts() / static_cast<double>(idle_counts);
+    watched.options.environment.adc_noise_lsb = 0.1;
+  }
   const std::size_t frames = from_frame + kWithinFrames;
   const auto simulator =
       dermis::learn::simulation::Simulator::create(watched.array, watched.options, "multitouch", seed, frames).value();
@@ -84,12 +91,13 @@ int main(int argc, char** argv) {
   const std::size_t seeds = argument(1, 20);
   const std::size_t from_frame = argument(2, 100);
   const std::size_t size = argument(3, 16);
+  const std::size_t idle_counts = argument(4, 0);
   fmt::print("{0}x{0}, {1} seeds, fault from frame {2}\n", size, seeds, from_frame);
   fmt::print("{:<16} {:>6} {:>6} {:>6}  not found\n", "frames to", "least", "median", "most");
   for (const FaultCase& fault : fault_cases()) {
     std::vector<std::size_t> frames;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-      if (const auto found = frames_to_detection(fault, size, seed, from_frame)) frames.push_back(*found);
+      if (const auto found = frames_to_detection(fault, size, seed, from_frame, idle_counts)) frames.push_back(*found);
     }
     std::sort(frames.begin(), frames.end());
     const auto at = [&](double share) { return frames.empty() ? 0 : dermis::quantile(frames, share); };

@@ -99,6 +99,28 @@ class Doctor(SmallArray):
         self.assertIn("turn the frames (flip_rows=1)", result.stdout)
         self.assertIn("the readings are doubtful: 1 finding", result.stderr)
 
+    def test_times_that_cannot_be(self):
+        header = "time_s," + ",".join(f"r{k // 4}c{k % 4}" for k in range(16))
+        noise = random.Random(1)
+
+        def written(times):
+            rows = [[f"{time:.4f}", *(str(noise.randint(18, 22)) for _ in range(16))] for time in times]
+            return self.written("times.csv", "\n".join([header, *map(",".join, rows)]) + "\n")
+
+        halves = [k * 0.02 for k in range(200)]
+        for times, words in (
+            ([1 + time for time in halves] + [0.9 + time for time in halves], "the clock restarts at frame 200"),
+            ([1035.2 * time for time in halves], "look like milliseconds"),
+            (halves + [4 + 2 * time for time in halves], "the rate jumps from 50 to 25 frames a second"),
+        ):
+            frames = written(times)
+            result = dermis("doctor", "--in", frames)
+            self.assertEqual(result.returncode, 1, result.stdout)
+            self.assertIn(words, result.stdout)
+            [doubt] = json.loads(dermis("info", frames, "--json").stdout)["doubts"]
+            self.assertIn(words, doubt)
+        self.assertEqual(json.loads(dermis("info", written(halves), "--json").stdout)["doubts"], [])
+
     def test_nothing_but_zeros_without_a_model(self):
         lines = (self.calibration / "frames.csv").read_text().splitlines()
         first = lines[0].split(",").index("r0c0")

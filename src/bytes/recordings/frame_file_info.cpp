@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "bytes/recordings/format_rows.hpp"
+#include "dermis/bytes/files/frame_times.hpp"
 #include "dermis/bytes/files/taxel_text.hpp"
 #include "dermis/touch/frames/mean_celsius.hpp"
 
@@ -56,15 +57,21 @@ void add(const RawFrame& frame, FrameFileInfo& info) {
 Result<Nanos> add_all(FrameSource& source, bool is_timed, FrameFileInfo& info) {
   RawFrame frame;
   Nanos first{};
+  files::FrameTimes clock;
   while (true) {
     const Result<bool> more = source.next(frame);
     if (!more) return more.error();
     if (!*more) break;
     if (info.frames == 0) first = frame.time;
+    clock.add(frame.time);
     add(frame, info);
   }
   info.shape = source.shape();
-  if (is_timed) info.duration_s = std::chrono::duration<double>(info.frames > 0 ? frame.time - first : Nanos{}).count();
+  if (is_timed) {
+    info.duration_s = clock.seconds();
+    info.doubts = clock.findings();
+    if (auto doubt = clock.wrong_unit(false)) info.doubts.push_back(*std::move(doubt));
+  }
   return first;
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <span>
@@ -128,7 +129,7 @@ class Examination::Implementation {
       return;
     }
     counted_.worst_misfit_sigma = std::max(counted_.worst_misfit_sigma, conductance.residual_sigma);
-    mute_.add(raw, pipeline.conditioned(), force);
+    mute_.add(raw, pipeline.conditioned(), conductance, force);
     standing_.add(conductance, force);
     unloaded_.expect(conductance);
     follow_noise(conductance, pipeline.conditioned().noise_growth);
@@ -159,7 +160,7 @@ class Examination::Implementation {
     if (const auto load = standing_.load()) {
       diagnosis.findings.push_back(touch::pipeline::describe_never_released(*load, model_.array));
     }
-    for (const std::string& finding : raw_.diagnosis().findings) diagnosis.findings.push_back(finding);
+    add_findings_of_counts(diagnosis);
     diagnosis.remarks = remarks_on(pipeline.line_faults().suspicions(), model_.array);
     if (const auto silent = troubles_.silent_frames()) diagnosis.findings.push_back(*silent);
     if (const auto silence = troubles_.silence()) diagnosis.remarks.push_back(*silence);
@@ -169,6 +170,20 @@ class Examination::Implementation {
   }
 
  private:
+  /// Lines that are found to be faulty explain theirs.
+  void add_findings_of_counts(Diagnosis& diagnosis) const {
+    const RawDiagnosis raw = raw_.diagnosis();
+    const auto is_explained = [&](const std::string& finding) {
+      return std::ranges::any_of(counted_.faults, [&](const FaultHistory& known) {
+        return finding.starts_with(place_name(known.fault, model_.array) + " ");
+      });
+    };
+    diagnosis.findings.insert(diagnosis.findings.end(), raw.findings.begin(), raw.findings.end());
+    for (const auto* stuck : {&raw.stuck_lines, &raw.stuck_taxels}) {
+      std::ranges::remove_copy_if(*stuck, std::back_inserter(diagnosis.findings), is_explained);
+    }
+  }
+
   void follow_temperature(const ConditionedFrame& conditioned) {
     if (!conditioned.temperature_celsius) return;
     const double celsius = *conditioned.temperature_celsius;

@@ -19,6 +19,7 @@ constexpr std::size_t kMostNamed = 8;
 
 MuteTaxels::MuteTaxels(const touch::pipeline::Model& model)
     : model_(model),
+      silent_(model),
       forces_(model.array.taxel_count()),
       changes_(model.array.taxel_count()),
       counts_(model.array.taxel_count()),
@@ -30,7 +31,9 @@ MuteTaxels::MuteTaxels(const touch::pipeline::Model& model)
   }
 }
 
-void MuteTaxels::add(const RawFrame& raw, const ConditionedFrame& conditioned, const ForceFrame& force) {
+void MuteTaxels::add(const RawFrame& raw, const ConditionedFrame& conditioned, const ConductanceFrame& conductance,
+                     const ForceFrame& force) {
+  silent_.add(conditioned, conductance);
   for (std::size_t taxel = 0; taxel < forces_.size(); ++taxel) {
     forces_[taxel] += std::isfinite(force.newtons[taxel]) ? 1 : 0;
     changes_[taxel] += frames_ > 0 && raw.counts[taxel] != counts_[taxel] ? 1 : 0;
@@ -48,14 +51,19 @@ std::vector<std::string> MuteTaxels::findings() const {
   const bool noise_shows = model_.array.readout.adc_noise_counts > kNoiseThatShows;
   std::vector<bool> mute(forces_.size());
   std::vector<bool> fixed(forces_.size());
+  std::vector<bool> silent = silent_.silent();
   for (std::size_t taxel = 0; taxel < forces_.size(); ++taxel) {
-    if (is_explained_[taxel]) continue;
+    if (is_explained_[taxel]) {
+      silent[taxel] = false;
+      continue;
+    }
     mute[taxel] = forces_[taxel] == 0;
     fixed[taxel] = !mute[taxel] && noise_shows && is_high_[taxel] && changes_[taxel] == 0;
   }
   name(mute, fmt::format("no force in any of {} frames: check what is read there", frames_), found);
   name(fixed, fmt::format("the same high reading in all {} frames: check the electronics that read it", frames_),
        found);
+  name(silent, "read 0 alone of late, while taxels as weak read more: check its wire, crimp and pin", found);
   return found;
 }
 

@@ -9,17 +9,19 @@
 #include "dermis/touch/frames/axis.hpp"
 #include "dermis/touch/frames/frames.hpp"
 #include "dermis/touch/pipeline/model.hpp"
+#include "learn/health/silent_taxels.hpp"
 
 namespace dermis::learn::health {
 
-/// Taxels without information though no fault has been found: they have no force in any frame, or a high reading that
-/// never changes.
+/// Taxels without information though no fault has been found. They have no force in any frame, a high reading that
+/// never changes, or no reading any more.
 class MuteTaxels {
  public:
   explicit MuteTaxels(const touch::pipeline::Model& model);
 
   /// A frame that was solved.
-  void add(const RawFrame& raw, const ConditionedFrame& conditioned, const ForceFrame& force);
+  void add(const RawFrame& raw, const ConditionedFrame& conditioned, const ConductanceFrame& conductance,
+           const ForceFrame& force);
 
   /// A sentence for each line or taxel, few at most; empty before there are enough frames.
   [[nodiscard]] std::vector<std::string> findings() const;
@@ -29,6 +31,7 @@ class MuteTaxels {
   [[nodiscard]] bool is_whole_line(const std::vector<bool>& taxels, Axis axis, std::size_t line) const;
 
   const touch::pipeline::Model& model_;
+  SilentTaxels silent_;
   std::size_t frames_ = 0;
   std::vector<std::size_t> forces_;   // frames with a force [taxels]
   std::vector<std::size_t> changes_;  // of the reading [taxels]

@@ -4,13 +4,16 @@
 
 #include <fmt/core.h>
 
-#include <chrono>
 #include <cmath>
 #include <utility>
 
+#include "dermis/bytes/files/frame_times.hpp"
+#include "learn/health/hum_meter.hpp"
+#include "learn/health/joint_channels.hpp"
 #include "learn/health/press_patterns.hpp"
 #include "learn/health/reading_levels.hpp"
 #include "learn/health/repeated_frames.hpp"
+#include "learn/health/standing_lines.hpp"
 
 namespace dermis::learn::health {
 namespace {
@@ -31,30 +34,40 @@ class RawExamination::Implementation {
       : array_(described(shape, readout)),
         levels_(array_, readout.has_value()),
         presses_(array_),
+        standing_(array_),
+        joint_(shape.taxel_count()),
+        hum_(shape.taxel_count()),
         counts_(shape.taxel_count()) {}
 
   void add(const RawFrame& raw) {
-    if (frames_++ == 0) first_time_ = raw.time;
-    last_time_ = raw.time;
+    clock_.add(raw.time);
     for (std::size_t taxel = 0; taxel < counts_.size(); ++taxel) {
       if (std::isfinite(raw.counts[taxel])) counts_[taxel] = raw.counts[taxel];
     }
     levels_.add(counts_);
     presses_.add(counts_);
     repeated_.add(counts_);
+    standing_.add(counts_, raw.time);
+    joint_.add(counts_, raw);
+    hum_.add(counts_, raw.time);
   }
 
   [[nodiscard]] RawDiagnosis diagnosis() const {
     RawDiagnosis diagnosis;
-    if (frames_ == 0) return diagnosis;
-    diagnosis.frames = frames_;
-    diagnosis.seconds = std::chrono::duration<double>(last_time_ - first_time_).count();
+    diagnosis.frames = clock_.frames();
+    if (diagnosis.frames == 0) return diagnosis;
+    diagnosis.seconds = clock_.seconds();
     diagnosis.least_counts = levels_.least();
     diagnosis.most_counts = levels_.most();
     if (auto finding = levels_.finding()) diagnosis.findings.push_back(*std::move(finding));
     for (std::string& finding : presses_.findings()) diagnosis.findings.push_back(std::move(finding));
-    if (auto finding = repeated_.finding()) diagnosis.findings.push_back(*std::move(finding));
-    diagnosis.stuck_lines = levels_.stuck_lines();
+    for (auto finding :
+         {repeated_.finding(), joint_.finding(), hum_.finding(), clock_.wrong_unit(joint_.has_smooth_touches())}) {
+      if (finding) diagnosis.findings.push_back(*std::move(finding));
+    }
+    for (std::string& finding : clock_.findings()) diagnosis.findings.push_back(std::move(finding));
+    diagnosis.stuck_lines = standing_.lines(levels_.full_scale());
+    diagnosis.stuck_taxels = standing_.taxels_at(levels_.full_scale());
     diagnosis.remark = levels_.remark();
     if (!diagnosis.remark) diagnosis.remark = repeated_.remark();
     return diagnosis;
@@ -65,9 +78,10 @@ class RawExamination::Implementation {
   ReadingLevels levels_;
   PressPatterns presses_;
   RepeatedFrames repeated_;
-  std::size_t frames_ = 0;
-  Nanos first_time_{};
-  Nanos last_time_{};
+  StandingLines standing_;
+  JointChannels joint_;
+  HumMeter hum_;
+  bytes::files::FrameTimes clock_;
   std::vector<float> counts_;  // of the last frame; where one is no number, the last that was [taxels]
 };
 

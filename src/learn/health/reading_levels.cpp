@@ -14,8 +14,6 @@ constexpr std::size_t kFewestFrames = 30;
 constexpr std::size_t kFewValues = 16;    // two, each with a little noise
 constexpr float kNearEnd = 0.01F;         // of the range
 constexpr std::size_t kFewestAtTop = 20;  // readings
-constexpr float kClear = 4.0F;            // counts between a rail and what others read
-constexpr std::size_t kFewestLinesOfRail = 3;
 
 }  // namespace
 
@@ -108,46 +106,6 @@ std::optional<std::string> ReadingLevels::two_values() const {
       low, high);
 }
 
-bool ReadingLevels::stands_at(float rail, Axis axis, std::size_t line) const {
-  for (std::size_t place = 0; place < line_length(array_, axis); ++place) {
-    const Range& range = ranges_[taxel_on_line(array_, axis, line, place)];
-    if (range.least != rail || range.most != rail) return false;
-  }
-  return true;
-}
-
-/// The taxels of a line keep clear of the rail, and one of them has been pressed.
-bool ReadingLevels::works_beside(float rail, Axis axis, std::size_t line) const {
-  bool is_pressed = false;
-  for (std::size_t place = 0; place < line_length(array_, axis); ++place) {
-    const Range& range = ranges_[taxel_on_line(array_, axis, line, place)];
-    if (range.least < rail + kClear && range.most > rail - kClear) return false;
-    is_pressed = is_pressed || range.most > 2.0F * range.least;
-  }
-  return is_pressed;
-}
-
-/// All other lines must work, for an untouched line may read so, too.
-void ReadingLevels::name_lines_at(float rail, Axis axis, std::vector<std::string>& found) const {
-  const std::size_t lines = line_count(array_, axis);
-  if (lines < kFewestLinesOfRail || line_length(array_, axis) < 2) return;
-  std::vector<std::size_t> at_rail;
-  for (std::size_t line = 0; line < lines; ++line) {
-    if (stands_at(rail, axis, line)) {
-      at_rail.push_back(line);
-    } else if (!works_beside(rail, axis, line)) {
-      return;
-    }
-  }
-  if (2 * at_rail.size() > lines) return;
-  for (const std::size_t line : at_rail) {
-    found.push_back(fmt::format(
-        "{0} {1} reads {2:.0f} in all {3} frames: its wire is broken or shorted, or its pin is another one; "
-        "check the wire, the crimp and the resistor of {0} {1}",
-        to_string(axis), line, rail, frames_));
-  }
-}
-
 std::optional<std::string> ReadingLevels::finding() const {
   if (frames_ < kFewestFrames || remark()) return std::nullopt;
   for (const auto& alone : {only_value(), no_power(), two_values()}) {
@@ -156,14 +114,8 @@ std::optional<std::string> ReadingLevels::finding() const {
   return std::nullopt;
 }
 
-std::vector<std::string> ReadingLevels::stuck_lines() const {
-  std::vector<std::string> found;
-  if (frames_ < kFewestFrames) return found;
-  for (const Axis axis : kAxes) {
-    name_lines_at(0.0F, axis, found);
-    if (is_full_scale(most())) name_lines_at(most(), axis, found);
-  }
-  return found;
+std::optional<float> ReadingLevels::full_scale() const {
+  return is_full_scale(most()) ? std::optional(most()) : std::nullopt;
 }
 
 }  // namespace dermis::learn::health

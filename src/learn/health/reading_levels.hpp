@@ -10,11 +10,10 @@
 #include <vector>
 
 #include "dermis/touch/frames/array_description.hpp"
-#include "dermis/touch/frames/axis.hpp"
 
 namespace dermis::learn::health {
 
-/// The values that readings have: whether they are stuck, of two values only, or those of an array without power.
+/// The values that readings have: whether they are of one or two values only, or those of an array without power.
 class ReadingLevels {
  public:
   /// `array` must outlive it. `is_readout_known`: its readout is described.
@@ -28,8 +27,8 @@ class ReadingLevels {
   /// A sentence where the whole array cannot be so.
   [[nodiscard]] std::optional<std::string> finding() const;
 
-  /// A sentence for each line that stands at 0 or at full scale while all others work.
-  [[nodiscard]] std::vector<std::string> stuck_lines() const;
+  /// The highest reading, where it is the end of an ADC.
+  [[nodiscard]] std::optional<float> full_scale() const;
 
   /// That all readings are those of an array without power or of one that nothing touches.
   [[nodiscard]] std::optional<std::string> remark() const;
@@ -47,9 +46,6 @@ class ReadingLevels {
   [[nodiscard]] std::optional<std::string> only_value() const;
   [[nodiscard]] std::optional<std::string> no_power() const;
   [[nodiscard]] std::optional<std::string> two_values() const;
-  [[nodiscard]] bool stands_at(float rail, Axis axis, std::size_t line) const;
-  [[nodiscard]] bool works_beside(float rail, Axis axis, std::size_t line) const;
-  void name_lines_at(float rail, Axis axis, std::vector<std::string>& found) const;
 
   const ArrayDescription& array_;
   bool is_readout_known_;

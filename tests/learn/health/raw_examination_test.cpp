@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -196,6 +197,144 @@ TEST(RawExamination, names_a_line_at_its_rail) {
     for (std::size_t row = 0; row < 8; ++row) frame.counts[8 * row + 5] = 0.0F;
   }
   EXPECT_TRUE(begins_with(finding_of(examine(frames)), "column 5 reads 0 in all 256 frames"));
+}
+
+/// Touches of 12 frames on one taxel after another, 20 ms apart; an idle reading of 20 counts.
+Frames touches_of_12_frames() {
+  Frames frames;
+  Random random(5);
+  for (std::size_t number = 0; number < 600; ++number) {
+    RawFrame& frame = frames.emplace_back();
+    frame.time = number * std::chrono::milliseconds(20);
+    for (std::size_t taxel = 0; taxel < kShape.taxel_count(); ++taxel) {
+      const bool is_pressed = number % 15 >= 3 && taxel == number / 15 * 7 % 64;
+      frame.counts.push_back(std::round((is_pressed ? 700.0F : 20.0F) + 1.5F * static_cast<float>(random.normal())));
+    }
+  }
+  return frames;
+}
+
+/// Writes a reading into some columns, from a frame on.
+void put(Frames& frames, std::size_t from, std::size_t first_col, std::size_t end_col, float reading) {
+  for (std::size_t number = from; number < frames.size(); ++number) {
+    for (std::size_t row = 0; row < 8; ++row) {
+      for (std::size_t col = first_col; col < end_col; ++col) {
+        const bool is_near_end = reading > 1000.0F;
+        frames[number].counts[8 * row + col] = reading - (is_near_end ? static_cast<float>((number + row) % 3) : 0.0F);
+      }
+    }
+  }
+}
+
+TEST(RawExamination, names_each_line_of_a_half_that_breaks_with_its_time) {
+  Frames frames = touches_of_12_frames();
+  put(frames, 240, 4, 8, 0.0F);
+  const std::vector<std::string> problems = examine(frames).problems();
+  ASSERT_EQ(problems.size(), 4U) << testing::PrintToString(problems);
+  EXPECT_TRUE(begins_with(problems[0], "column 4 reads 0 from 4.80 s (frame 240) to the end")) << problems[0];
+  EXPECT_TRUE(begins_with(problems[3], "column 7 reads 0 from 4.80 s (frame 240) to the end")) << problems[3];
+}
+
+TEST(RawExamination, names_a_line_that_stands_nearly_at_full_scale) {
+  for (const std::size_t from : {0U, 300U}) {
+    Frames frames = touches_of_12_frames();
+    put(frames, from, 3, 4, 1022.0F);
+    const std::string words = from == 0 ? "column 3 reads 1020 to 1022 in all 600 frames"
+                                        : "column 3 reads 1020 to 1022 from 6.00 s (frame 300) to the end";
+    EXPECT_TRUE(begins_with(finding_of(examine(frames)), words)) << from;
+  }
+}
+
+TEST(RawExamination, takes_a_load_that_is_removed_for_no_break_where_the_readout_cuts_off) {
+  Frames frames = touches_of_12_frames();
+  for (std::size_t number = 0; number < frames.size(); ++number) {
+    for (std::size_t taxel = 0; taxel < 64; ++taxel) {
+      float& reading = frames[number].counts[taxel];
+      if (number < 300 && taxel % 8 >= 4) reading += 200.0F;
+      if (reading < 60.0F) reading = 0.0F;
+    }
+  }
+  EXPECT_TRUE(examine(frames).problems().empty()) << examine(frames).problems().front();
+}
+
+/// Sixteen channels in a row.
+RawDiagnosis examine_channels(const std::function<float(std::size_t, std::size_t)>& reading) {
+  Frames frames;
+  Random random(7);
+  for (std::size_t number = 0; number < 500; ++number) {
+    RawFrame& frame = frames.emplace_back();
+    frame.time = number * std::chrono::milliseconds(20);
+    for (std::size_t channel = 0; channel < 16; ++channel) {
+      frame.counts.push_back(std::round(reading(number, channel) + 2.0F * static_cast<float>(random.normal())));
+    }
+  }
+  return examine(frames, {1, 16});
+}
+
+TEST(RawExamination, names_channels_that_fall_together) {
+  const std::string one_after_another = finding_of(
+      examine_channels([](std::size_t, std::size_t channel) { return 400.0F - 13.0F * static_cast<float>(channel); }));
+  EXPECT_TRUE(begins_with(one_after_another, "the 16 channels fall together, one after another from 400 to 205"))
+      << one_after_another;
+  EXPECT_NE(one_after_another.find("multiplexer"), std::string::npos);
+  const std::string in_time = finding_of(examine_channels([](std::size_t number, std::size_t) {
+    return 400.0F - 200.0F * std::abs(std::sin(0.02F * static_cast<float>(number)));
+  }));
+  EXPECT_TRUE(begins_with(in_time, "the 16 channels rise and fall together")) << in_time;
+}
+
+TEST(RawExamination, takes_channels_of_which_one_answers_for_right) {
+  const RawDiagnosis diagnosis = examine_channels([](std::size_t number, std::size_t channel) {
+    return 400.0F - 13.0F * static_cast<float>(channel) + (channel == 5 && number % 50 > 25 ? 90.0F : 0.0F);
+  });
+  EXPECT_TRUE(diagnosis.problems().empty()) << diagnosis.problems().front();
+}
+
+TEST(RawExamination, says_at_which_frequency_hum_shows) {
+  Frames frames = touches_of_12_frames();  // 50 frames a second
+  for (std::size_t number = 0; number < frames.size(); ++number) {
+    const double hum = 5.0 * std::sin(2.0 * 3.14159265 * 60.0 * 0.02 * static_cast<double>(number));
+    for (float& reading : frames[number].counts)
+      reading = std::max(std::round(reading + static_cast<float>(hum)), 0.0F);
+  }
+  const std::string said = finding_of(examine(frames));
+  constexpr std::string_view kAt = "hum of ";
+  ASSERT_TRUE(begins_with(said, kAt)) << said;
+  EXPECT_NEAR(std::stod(said.substr(kAt.size())), 5.0, 1.0);
+  EXPECT_NE(said.find("at 10.0"), std::string::npos) << said;
+  EXPECT_NE(said.find("60 Hz of the mains"), std::string::npos) << said;
+  EXPECT_NE(said.find("charger"), std::string::npos) << said;
+}
+
+TEST(RawExamination, takes_touches_in_the_rhythm_of_a_hand_for_no_hum) {
+  Frames frames = touches_of_12_frames();
+  Random random(9);
+  for (std::size_t number = 0; number < frames.size();) {
+    const std::size_t end = number + 8 + random.below(12);
+    for (; number < std::min(end, frames.size()); ++number) {
+      for (float& reading : frames[number].counts) reading += 8.0F;  // crosstalk of a press
+    }
+    number += 8 + random.below(12);
+  }
+  EXPECT_TRUE(examine(frames).problems().empty()) << examine(frames).problems().front();
+}
+
+TEST(RawExamination, names_milliseconds_by_touches_that_last_many_frames) {
+  Frames frames = touches_of_12_frames();
+  for (RawFrame& frame : frames) frame.time *= 1000;
+  const std::string said = finding_of(examine(frames));
+  EXPECT_NE(said.find("the times look like milliseconds"), std::string::npos) << said;
+}
+
+TEST(RawExamination, names_a_clock_that_restarts_and_a_rate_that_jumps) {
+  Frames frames = touches_of_12_frames();
+  for (std::size_t number = 250; number < frames.size(); ++number) frames[number].time -= std::chrono::seconds(4);
+  EXPECT_TRUE(begins_with(finding_of(examine(frames)), "the clock restarts at frame 250"));
+  frames = touches_of_12_frames();
+  for (std::size_t number = 250; number < frames.size(); ++number) {
+    frames[number].time += (number - 250) * std::chrono::milliseconds(20);
+  }
+  EXPECT_TRUE(begins_with(finding_of(examine(frames)), "the rate jumps from 50 to 25 frames a second"));
 }
 
 TEST(RawExamination, survives_readings_that_are_no_numbers) {

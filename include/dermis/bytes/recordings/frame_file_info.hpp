@@ -15,16 +15,17 @@
 
 namespace dermis::bytes::recordings {
 
-/// The content of a file of frames; empty if its format does not contain it.
+/// The content of a file of frames; empty if its format does not contain it. Many members: `dermis info` shows each.
 struct FrameFileInfo {
   FrameFormat format = FrameFormat::csv;
   std::uint64_t bytes = 0;  ///< 0 of a pipe.
   std::uint64_t frames = 0;
   std::optional<FrameShape> shape;
-  std::optional<double> duration_s;  ///< From the time of the first to that of the last frame.
+  std::optional<double> duration_s;  ///< From the first to the last frame; a clock that restarts counts on.
   std::optional<Nanos> start_utc;    ///< Time of the first, since 1970.
   std::optional<std::uint64_t> lost;
-  bool complete = true;                                          ///< Written to its end.
+  std::vector<std::string> doubts;  ///< On the times, a sentence each, where all frames are read.
+  bool complete = true;             ///< Written to its end.
   std::optional<std::pair<double, double>> temperature_celsius;  ///< Lowest and highest of mean_celsius().
   FrameNotes notes;
   std::string compression;  ///< Of a recording.

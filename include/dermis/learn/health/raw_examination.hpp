@@ -21,15 +21,18 @@ struct RawDiagnosis {
   float least_counts = 0.0F;             ///< The lowest reading; 0 before the first frame.
   float most_counts = 0.0F;              ///< The highest one.
   std::vector<std::string> findings;     ///< On the whole array, each with its likely cause and the mend.
-  std::vector<std::string> stuck_lines;  ///< The same on lines at a rail.
-  std::optional<std::string> remark;     ///< That all readings are 0, which may be a fault or not.
+  std::vector<std::string> stuck_lines;  ///< The same on lines at an end of the ADC.
+  /// On taxels at full scale, which a press may explain: no problems() where nothing else is known of the array.
+  std::vector<std::string> stuck_taxels;
+  std::optional<std::string> remark;  ///< That all readings are 0, which may be a fault or not.
 
   [[nodiscard]] std::vector<std::string> problems() const;  ///< The findings, then the stuck lines.
 };
 
 /// Looks for mistakes of the electronics in raw counts alone. Lines may read the same because an address line does not
-/// switch, or readings keep a share of the one before. It also finds readings of two values only, lines at a rail, and
-/// arrays without power. Memory does not grow with the frames. Not thread-safe.
+/// switch, or readings keep a share of the one before. It also finds readings of two values only, lines that stand or
+/// break, inputs that float, hum, and arrays without power. Clocks may restart, jump or count in another unit. Memory
+/// does not grow with the frames. Not thread-safe.
 class RawExamination {
  public:
   /// `readout`: as far as it is known; empty: nothing of it is.

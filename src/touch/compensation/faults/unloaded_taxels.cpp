@@ -12,8 +12,13 @@
 namespace dermis::touch::compensation {
 namespace {
 
-constexpr double kMostCutOff = 0.05;  // of full scale: the most that readouts send as 0
-constexpr double kOneCount = 1.5;     // less is no more than one: nothing but rounding cuts off below it
+constexpr double kMostCutOff = 0.05;      // of full scale: the most that readouts send as 0
+constexpr double kOneCount = 1.5;         // less is no more than one: nothing but rounding cuts off below it
+constexpr double kCutOffShare = 0.15;     // of the least unloaded reading: who has sent all of them cuts off less
+constexpr std::size_t kFewestLines = 3;   // of either axis: the memory of rubber may hide shorter ones
+constexpr double kFadedShare = 0.7;       // of an unloaded reading: rubber that conducts less may fade further
+constexpr double kMostFaded = 0.25;       // of the taxels that read
+constexpr double kForgotten = 1.0 / 8.0;  // of the older frames, in each
 
 }  // namespace
 
@@ -33,6 +38,20 @@ UnloadedTaxels::UnloadedTaxels(const ArrayDescription& array, std::span<const do
     LumpedCircuit(array).solve(siemens_, ratio_);
     subtract_amplifier_offsets();
   }
+  sent_reading_ = least_sent_reading();
+}
+
+/// A threshold of the device hides some taxels of an array from the calibration, or none and is far below.
+double UnloadedTaxels::least_sent_reading() const {
+  double least = kMostCutOff;
+  const bool has_offsets = !array_.readout.amplifier_offset_v.empty();  // which may take all of a reading
+  if (array_.rows < kFewestLines || array_.cols < kFewestLines || has_offsets) return least;
+  for (std::size_t taxel = 0; taxel < ratio_.size(); ++taxel) {
+    if (array_.is_absent(taxel)) continue;
+    if (!(ratio_[taxel] > 0.0)) return kMostCutOff;
+    least = std::min(least, kCutOffShare * ratio_[taxel]);
+  }
+  return least;
 }
 
 /// An input at an offset drives current through all taxels of its column, the touched ones too.
@@ -60,7 +79,9 @@ void UnloadedTaxels::expect(const ConditionedFrame& conditioned, const LineSums&
     expect_beside_presses(sums, conditioned.sigma_ratio, solved);
     if (!taken_off_.empty()) take_off(conditioned.sigma_ratio);
   }
-  follow_smallest_reading(conditioned.ratio, TaxelBlock::of_frame(frame, ratio_.size()));
+  const TaxelBlock block = TaxelBlock::of_frame(frame, ratio_.size());
+  follow_smallest_reading(conditioned.ratio, block);
+  if (sent_reading_ < smallest_reading_) follow_fading(conditioned, block);
   forget_what_may_be_cut_off(conditioned);
 }
 
@@ -78,6 +99,23 @@ DERMIS_PROCESSOR_CLONES void UnloadedTaxels::follow_smallest_reading(std::span<c
   }
 }
 
+/// Counts the readings that are there and lower than the loads of the frame explain.
+DERMIS_PROCESSOR_CLONES void UnloadedTaxels::follow_fading(const ConditionedFrame& conditioned,
+                                                           const TaxelBlock& block) noexcept {
+  const double* const readings = conditioned.ratio.data();
+  const float* const least = least_reading_.data();
+  const double expected = kFadedShare / kUnloadedShare * conditioned.sigma_ratio;
+  std::uint64_t reading = 0;
+  std::uint64_t faded = 0;
+  for (std::size_t taxel = block.from; taxel < block.to; ++taxel) {
+    const std::uint64_t is_reading = readings[taxel] > 0.0 ? 1U : 0U;
+    reading += is_reading;
+    faded += is_reading & (readings[taxel] < expected * static_cast<double>(least[taxel]) ? 1U : 0U);
+  }
+  if (reading == 0) return;
+  faded_share_ += kForgotten * (static_cast<double>(faded) / static_cast<double>(reading) - faded_share_);
+}
+
 /// An offset takes as much from a conductance that has faded as from one that has not.
 void UnloadedTaxels::take_off(double sigma_ratio) noexcept {
   for (std::size_t taxel = 0; taxel < least_reading_.size(); ++taxel) {
@@ -88,8 +126,9 @@ void UnloadedTaxels::take_off(double sigma_ratio) noexcept {
 DERMIS_PROCESSOR_CLONES void UnloadedTaxels::forget_what_may_be_cut_off(const ConditionedFrame& conditioned) noexcept {
   const Readout& readout = array_.readout;
   const double count_ratio = conditioned.sigma_ratio / (conditioned.noise_growth * readout.adc_noise_counts);
-  const bool sends_one_count = readout.quantity == Quantity::counts && smallest_reading_ < kOneCount * count_ratio;
-  const double most_cut_off = sends_one_count ? kRoundedToNone * count_ratio : smallest_reading_;
+  const double sent = faded_share_ > kMostFaded ? smallest_reading_ : std::min(sent_reading_, smallest_reading_);
+  const bool sends_one_count = readout.quantity == Quantity::counts && sent < kOneCount * count_ratio;
+  const double most_cut_off = sends_one_count ? kRoundedToNone * count_ratio : sent;
   const auto cut_off =
       static_cast<float>(std::max(most_cut_off / conditioned.sigma_ratio, hum_sigmas(conditioned.noise_growth)));
   for (float& least : least_reading_) least = least > cut_off ? least : 0.0F;

@@ -45,7 +45,7 @@ class UnloadedTaxels {
   }
 
   /// Least reading of every unloaded taxel among the loads of this frame [standard deviations]. 0 where none can be
-  /// expected: the readout has never sent so small a reading and may cut it off.
+  /// expected: the readout has never sent so small a reading, and may cut it off by what the calibration saw.
   [[nodiscard]] std::span<const float> least_reading() const noexcept { return least_reading_; }
 
   /// The smallest of all readings above 0 so far: a readout that cuts readings off does so below it.
@@ -63,11 +63,13 @@ class UnloadedTaxels {
   static constexpr double kMostSigmas = 5.0;
 
   void subtract_amplifier_offsets();
+  [[nodiscard]] double least_sent_reading() const;
   [[nodiscard]] double taken_off(std::size_t taxel) const noexcept {
     return taken_off_.empty() ? 0.0 : taken_off_[taxel % array_.cols];
   }
   void take_off(double sigma_ratio) noexcept;
   void follow_smallest_reading(std::span<const double> ratio, const TaxelBlock& block) noexcept;
+  void follow_fading(const ConditionedFrame& conditioned, const TaxelBlock& block) noexcept;
   void forget_what_may_be_cut_off(const ConditionedFrame& conditioned) noexcept;
   void expect_beside_presses(const LineSums& sums, double sigma_ratio, bool solved) noexcept;
   void expect_beside_no_press(const ConditionedFrame& conditioned) noexcept;
@@ -75,6 +77,8 @@ class UnloadedTaxels {
 
   const ArrayDescription& array_;
   double smallest_reading_;                           // > 0, of all frames
+  double sent_reading_ = 0.0;                         // > 0: the device has sent less, by the calibration
+  double faded_share_ = 0.0;                          // of the taxels that read: less than unloaded ones
   std::vector<double> siemens_;                       // [taxels]
   std::vector<double> ratio_;                         // [taxels]
   std::vector<double> taken_off_;                     // by offsets of the amplifiers [cols]; empty without
