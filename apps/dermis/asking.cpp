@@ -100,7 +100,7 @@ class Asking {
     return listen(kAnswers, kQuiet);
   }
 
-  /// What the device does once it was sent these bytes. `before`: what it said within kListens unasked.
+  /// The answer of the device to these bytes. `before`: what it said within kListens unasked.
   bool try_ask(const std::string& ask, const Bytes& before, Asked& asked) {
     Bytes bytes = answer_to(ask);
     if (bytes.size() < kFewest || is_echo(bytes, ask) || is_greeting(bytes, before)) return false;

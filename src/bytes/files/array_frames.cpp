@@ -118,7 +118,7 @@ NumberArray array_of(std::vector<std::size_t> sizes, bool is_last_fastest) {
 
 class ArrayFrames final : public FrameSource {
  public:
-  ArrayFrames(std::string place, FrameAxes axes, std::vector<float> values, FrameTimes times)
+  ArrayFrames(std::string place, FrameAxes axes, std::vector<float> values, ArrayTimes times)
       : place_(std::move(place)), axes_(axes), values_(std::move(values)), times_(std::move(times)) {}
 
   Result<bool> next(RawFrame& frame) override {
@@ -152,7 +152,7 @@ class ArrayFrames final : public FrameSource {
   std::string place_;
   FrameAxes axes_;
   std::vector<float> values_;
-  FrameTimes times_;
+  ArrayTimes times_;
   std::size_t frame_ = 0;
 };
 
@@ -257,7 +257,7 @@ Result<std::vector<double>> seconds_of(std::vector<double> numbers, double unit_
 }
 
 std::unique_ptr<FrameSource> frames_of_array(std::string place, FrameAxes axes, std::vector<float> values,
-                                             FrameTimes times) {
+                                             ArrayTimes times) {
   return std::make_unique<ArrayFrames>(std::move(place), axes, std::move(values), std::move(times));
 }
 

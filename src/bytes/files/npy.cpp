@@ -195,7 +195,7 @@ Result<std::unique_ptr<NpyReader>> NpyReader::open(std::unique_ptr<std::istream>
   const Convert<float> convert = conversion_of<float>(*header);
   auto state = std::make_unique<State>(State{std::move(in), name, *std::move(header), plan->axes, input, convert});
   if (!plan->values.empty()) {
-    FrameTimes times{input.seconds, input.seconds.empty() ? std::optional(input.rate_hz) : std::nullopt};
+    ArrayTimes times{input.seconds, input.seconds.empty() ? std::optional(input.rate_hz) : std::nullopt};
     state->loaded = frames_of_array(name, plan->axes, std::move(plan->values), std::move(times));
   }
   return std::unique_ptr<NpyReader>(new NpyReader(std::move(state)));

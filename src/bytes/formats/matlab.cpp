@@ -20,10 +20,10 @@ namespace dermis::bytes::formats {
 namespace {
 
 using Values = std::vector<float>;
+using files::ArrayTimes;
 using files::axes_of;
 using files::axes_of_table;
 using files::FrameAxes;
-using files::FrameTimes;
 using files::NumberArray;
 
 constexpr std::array kNamesOfTimes = {"t", "time", "time_s", "timestamps", "timestamp"};
@@ -167,17 +167,17 @@ Result<std::optional<double>> rate_in(MatlabFile& file) {
 }
 
 /// The times of the frames, or a rate, by what is given, else by the file.
-Result<FrameTimes> timing_of(MatlabFile& file, const std::string& path, const FrameAxes& axes, const Times& times,
+Result<ArrayTimes> timing_of(MatlabFile& file, const std::string& path, const FrameAxes& axes, const Times& times,
                              const std::optional<double>& given_hz) {
-  if (given_hz) return FrameTimes{{}, given_hz};
+  if (given_hz) return ArrayTimes{{}, given_hz};
   if (times.variable != nullptr && times.count == axes.frames && axes.frames > 1) {
     Result<std::vector<double>> seconds = read<double>(file, *times.variable);
     if (!seconds) return seconds.error();
-    return FrameTimes{*std::move(seconds), std::nullopt};
+    return ArrayTimes{*std::move(seconds), std::nullopt};
   }
   const Result<std::optional<double>> rate_hz = rate_in(file);
   if (!rate_hz) return rate_hz.error();
-  if (*rate_hz) return FrameTimes{{}, *rate_hz};
+  if (*rate_hz) return ArrayTimes{{}, *rate_hz};
   return bad_input(path +
                    ": has no times, neither a variable 'time_s' nor a rate 'fs': give a rate, when it is "
                    "converted or as 'file:" +
@@ -210,7 +210,7 @@ Result<std::unique_ptr<FrameSource>> open_matlab(MatlabFile& file, const std::st
   const Result<FrameAxes> axes = find_axes(**variable, place, *values, times, options.shape, choice.axes);
   if (!axes) return axes.error();
   if (const Status shape = check_shape(name, axes->shape, options.shape); !shape) return shape.error();
-  Result<FrameTimes> timing = timing_of(file, name, *axes, times, options.rate_hz);
+  Result<ArrayTimes> timing = timing_of(file, name, *axes, times, options.rate_hz);
   if (!timing) return timing.error();
   return files::frames_of_array(place, *axes, *std::move(values), *std::move(timing));
 }

@@ -69,7 +69,7 @@ class PacketDecoder final : public Decoder {
   struct {
     std::string text{};
     std::size_t fields = 0;  ///< That did fit.
-  } misfit_;                 ///< Of a packet before the first frame.
+  } misfit_;                 ///< By a packet before the first frame.
   bool has_ended_ = false;
   bool is_sending_ = false;
   bool is_idle_ = false;

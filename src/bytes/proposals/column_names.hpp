@@ -14,7 +14,7 @@ namespace dermis::bytes::proposals {
 /// is not said, and empty for any other name.
 [[nodiscard]] std::string field_of_name(std::string_view name);
 
-/// Of a part of a time, in seconds: "secs", "stamp.nanosec"; 0 for any other name.
+/// The unit of a part of a time, in seconds: "secs", "stamp.nanosec"; 0 for any other name.
 [[nodiscard]] double time_unit_of_name(std::string_view name);
 
 /// A sensor of motion, not of touch: "imu1_ax", "quat_w".

@@ -191,7 +191,7 @@ class ColumnReader {
     return most < 1e6 ? 1e-6 : 1e-9;
   }
 
-  /// What rises from line to line is no reading, wherever it stands; unless most rise, as those of a press do.
+  /// Values that rise from line to line are no readings, wherever they stand; unless most rise, as in a press.
   void read_rising() {
     std::vector<std::size_t> rising;
     for (std::size_t k = 0; k < columns_.size(); ++k) {

@@ -210,7 +210,7 @@ class CutDrafts {
   std::vector<Draft> drafts_;
 };
 
-/// Of frames that are nothing but readings.
+/// Sizes of frames that are nothing but readings.
 std::vector<std::size_t> sizes_without_mark(std::span<const std::uint8_t> bytes, const Known& known) {
   const std::size_t taxels = known.rows.value_or(0) * known.cols.value_or(0);
   if (taxels > 1) return {taxels, 2 * taxels, 4 * taxels};

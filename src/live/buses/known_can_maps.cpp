@@ -8,8 +8,8 @@
 namespace dermis::live::buses {
 namespace {
 
-/// Hands of LinkerHand. Sizes are sure, by the API reference of its SDKs (linker-bot, 2025 and 2026): a finger has 12 x
-/// 6 taxels, that of an O6 10 x 4. Values are bytes. No document says the identifiers, the questions and the places of
+/// Hands of LinkerHand. The API reference of its SDKs (linker-bot, 2025 and 2026) makes sizes sure. A finger has 12 x 6
+/// taxels, that of an O6 10 x 4. Values are bytes. No document says the identifiers, the questions and the places of
 /// rows. They are those that the public SDKs use on the bus. Not sure is which end of a finger is row 0. One SDK alone
 /// reads matrices of 23 x 9 and 28 x 20. No hand was on our desks.
 struct Finger {

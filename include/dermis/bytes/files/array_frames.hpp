@@ -79,7 +79,7 @@ struct ArrayHints {
                                            std::span<const float> values);
 
 /// When frames were taken.
-struct FrameTimes {
+struct ArrayTimes {
   std::vector<double> seconds{};  ///< Empty: the rate gives them.
   std::optional<double> rate_hz{};
 };
@@ -98,6 +98,6 @@ inline constexpr std::array<TimeName, 6> kTimeNames{
 
 /// `place` names the array in messages of the frames.
 [[nodiscard]] std::unique_ptr<FrameSource> frames_of_array(std::string place, FrameAxes axes, std::vector<float> values,
-                                                           FrameTimes times);
+                                                           ArrayTimes times);
 
 }  // namespace dermis::bytes::files
