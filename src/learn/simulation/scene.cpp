@@ -181,7 +181,8 @@ Status Scene::set_length(std::optional<std::size_t> frames) {
     return bad_input("needs 1 to " + std::to_string(kMostFrames) + " frames");
   }
   frame_count_ = frames.value_or(default_frame_count());
-  if (!frames && frame_count_ > kMostFrames) {
+  const bool may_be_long = kind_ != Kind::two_weights && kind_ != Kind::field;
+  if (!may_be_long && frame_count_ > kMostFrames) {
     const char* const advice = kind_ == Kind::field ? "" : "; ask for fewer taxels or fewer frames a second";
     return bad_input("has " + std::to_string(frame_count_) + " frames, more than " + std::to_string(kMostFrames) +
                      advice);

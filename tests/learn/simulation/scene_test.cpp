@@ -302,6 +302,11 @@ TEST(Scene, frames_depend_on_seed_and_index_alone) {
   EXPECT_NE(play("multitouch", array, 6, 50)[31].force_n, frames[31].force_n);
 }
 
+TEST(Scene, a_calibration_of_many_taxels_is_as_long_as_it_needs) {
+  const Scene scene = Scene::create("calibration", reference_array(64, 64), EnvironmentOptions{}, 1).value();
+  EXPECT_EQ(scene.frame_count(), 5U * (20U + 14U * 4096U));
+}
+
 TEST(Scene, a_field_presses_as_given_but_where_no_taxel_is) {
   ArrayDescription array = reference_array(2, 2);
   array.absent = {3};
