@@ -3,13 +3,13 @@
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Forces of MuJoCo as a field for `dermis simulate`: a ball and a box fall onto a sheet of 8x8 taxels.
 
-Needs mujoco of PyPI. Usage: mujoco_field.py forces.npy
-Then: dermis simulate --array array.toml --field forces.npy --out counts"""
+mujoco_field.py forces.npy     (with mujoco, from PyPI)
+dermis simulate --array array.toml --field forces.npy --out counts
+"""
 
-import sys
+import argparse
 
-import mujoco
-import numpy
+import numpy as np
 
 ROWS, COLS = 8, 8
 FRAMES, RATE_HZ = 150, 100
@@ -38,16 +38,20 @@ SCENE = f"""
 """
 
 
-def main():
+def main(path: str) -> None:
+    import mujoco
+
     model = mujoco.MjModel.from_xml_string(SCENE)
     data = mujoco.MjData(model)
     steps = round(1 / RATE_HZ / model.opt.timestep)
-    forces = numpy.zeros((FRAMES, ROWS, COLS), numpy.float32)
+    forces = np.zeros((FRAMES, ROWS, COLS), np.float32)
     for frame in forces:
         mujoco.mj_step(model, data, nstep=steps)
         frame[:] = data.sensor("touch").data.reshape(ROWS, COLS)
-    numpy.save(sys.argv[1], forces)
+    np.save(path, forces)
 
 
 if __name__ == "__main__":
-    main()
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("path")
+    main(parser.parse_args().path)
