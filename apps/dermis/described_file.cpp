@@ -35,14 +35,17 @@ Result<std::unique_ptr<FrameSource>> open_stream(const std::string& name) {
   return stream;
 }
 
+bool is_stream(const std::string& name) {
+  return live::fleet::is_stream_address(name) || live::buses::is_bus_address(name);
+}
+
 }  // namespace
 
 bool DescribedFile::is_described() const {
   return !layout.empty() || bytes::devices::is_source_uri(name) || live::buses::is_bus_address(name);
 }
 
-Result<std::unique_ptr<FrameSource>> DescribedFile::open() const {
-  if (live::fleet::is_stream_address(name) || live::buses::is_bus_address(name)) return open_stream(name);
+Result<bytes::devices::SourceUri> DescribedFile::uri() const {
   const bool is_uri = bytes::devices::is_source_uri(name);
   Result<bytes::devices::SourceUri> uri = is_uri ? bytes::devices::parse_source_uri(name) : uri_of_path(name);
   if (!uri) return uri.error();
@@ -51,7 +54,28 @@ Result<std::unique_ptr<FrameSource>> DescribedFile::open() const {
   if (!layout.empty()) uri->protocol.layout = layout;
   if (rate_hz) uri->rate_hz = rate_hz;
   if (shape) uri->protocol.shape = shape;
-  return bytes::devices::open_device(*std::move(uri), {.notice = print_notice});
+  return uri;
+}
+
+Result<std::vector<std::string>> DescribedFile::arrays() const {
+  const std::vector<std::string> one{""};
+  if (is_stream(name)) return one;
+  const Result<bytes::devices::SourceUri> from = uri();
+  if (!from) return from.error();
+  if (!from->protocol.has_layout() || !from->protocol.array.empty()) return one;
+  const Result<bytes::layouts::Layout> described = bytes::devices::read_layout(from->protocol);
+  if (!described) return described.error();
+  std::vector<std::string> names;
+  for (const bytes::layouts::LayoutArray& array : described->arrays) names.push_back(array.name);
+  return names.size() > 1 ? names : one;
+}
+
+Result<std::unique_ptr<FrameSource>> DescribedFile::open(const std::string& array) const {
+  if (is_stream(name)) return open_stream(name);
+  Result<bytes::devices::SourceUri> from = uri();
+  if (!from) return from.error();
+  if (!array.empty()) from->protocol.array = array;
+  return bytes::devices::open_device(*std::move(from), {.notice = print_notice});
 }
 
 }  // namespace dermis::app

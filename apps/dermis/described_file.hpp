@@ -5,7 +5,9 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "dermis/bytes/devices/device_source.hpp"
 #include "dermis/touch/frames/frame_source.hpp"
 #include "dermis/touch/frames/result.hpp"
 
@@ -20,7 +22,13 @@ struct DescribedFile {
 
   /// Whether a layout says how its bytes are read.
   [[nodiscard]] bool is_described() const;
-  [[nodiscard]] Result<std::unique_ptr<FrameSource>> open() const;
+  /// The arrays that its layout has, by their names; one without a name if it has one, or `name` says which.
+  [[nodiscard]] Result<std::vector<std::string>> arrays() const;
+  /// `array`: one of arrays().
+  [[nodiscard]] Result<std::unique_ptr<FrameSource>> open(const std::string& array = {}) const;
+
+ private:
+  [[nodiscard]] Result<bytes::devices::SourceUri> uri() const;
 };
 
 }  // namespace dermis::app

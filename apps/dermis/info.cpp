@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -219,11 +220,37 @@ std::string other_look(const std::string& file, const FrameFileInfo& info) {
   return is_one ? look_of_unread_file(file) : std::string();
 }
 
+Result<FrameFileInfo> info_of_array(const DescribedFile& file, const std::string& array) {
+  const Result<std::unique_ptr<FrameSource>> source = file.open(array);
+  if (!source) return source.error();
+  return bytes::recordings::frame_source_info(**source);
+}
+
+/// Frames and losses are sums; times are from the first to the last frame of any.
+Result<FrameFileInfo> info_of_arrays(const DescribedFile& file, const std::vector<std::string>& arrays) {
+  FrameFileInfo all;
+  for (const std::string& array : arrays) {
+    const Result<FrameFileInfo> one = info_of_array(file, array);
+    if (!one) return bad_input(array + ": " + one.error().message);
+    all.frames += one->frames;
+    all.lost = all.lost.value_or(0) + one->lost.value_or(0);
+    all.duration_s = std::max(all.duration_s, one->duration_s);
+    all.doubts.insert(all.doubts.end(), one->doubts.begin(), one->doubts.end());
+    bytes::recordings::RecordedArrayInfo& listed = all.arrays.emplace_back();
+    listed.name = array;
+    listed.shape = one->shape;
+    listed.frames = one->frames;
+    listed.lost = one->lost.value_or(0);
+  }
+  return all;
+}
+
 /// The same for bytes that a layout describes.
 Status print_info(const InfoOptions& options, const DescribedFile& file) {
-  const Result<std::unique_ptr<FrameSource>> source = file.open();
-  if (!source) return source.error();
-  const Result<FrameFileInfo> info = bytes::recordings::frame_source_info(**source);
+  const Result<std::vector<std::string>> arrays = file.arrays();
+  if (!arrays) return arrays.error();
+  const Result<FrameFileInfo> info =
+      arrays->size() == 1 ? info_of_array(file, arrays->front()) : info_of_arrays(file, *arrays);
   if (!info) return info.error();
   const char* const what = live::fleet::is_stream_address(options.file) ? "frames of a stream"
                            : live::buses::is_bus_address(options.file)  ? "a log of a bus"

@@ -3,6 +3,7 @@
 """Streams and files in any form, as layouts describe them. The samples of ../shared/data/layouts give the frames
 beside them, and a device is read as a file is."""
 
+import json
 import os
 import pty
 import threading
@@ -87,6 +88,30 @@ class Layouts(support.SmallArray):
             self.completed("image", "--in", source, "--out", self.work / "out.png", "--force")
         said = support.dermis("info", "--layout", layout, log)
         self.assertIn("frames        30", said.stdout)
+
+    def test_info_lists_the_arrays_of_a_layout(self):
+        feet = self.written(
+            "feet.toml",
+            '[layout]\nline = "{time_ms};{left};{right}"\n'
+            + "".join(
+                f'[[layout.array]]\nname = "{name}"\nrows = 1\ncols = {cols}\n'
+                for name, cols in (("left", 2), ("right", 3))
+            ),
+        )
+        log = self.written("feet.txt", "".join(f"{10 * k};{k},7;{k},8,9\n" for k in range(31)))
+        said = support.dermis("info", "--layout", feet, log)
+        for words in (
+            "frames        62",
+            "duration      0.300 s",
+            "left  1x2  31 frames, 0 lost",
+            "right  1x3  31 frames",
+        ):
+            self.assertIn(words, said.stdout)
+        arrays = json.loads(support.dermis("info", "--json", "--layout", feet, log).stdout)["arrays"]
+        self.assertEqual(
+            [(array["name"], array["cols"], array["frames"]) for array in arrays], [("left", 2, 31), ("right", 3, 31)]
+        )
+        self.assertIn("taxels        1x3", support.dermis("info", "--layout", feet, f"{log}#right").stdout)
 
     def test_rates_that_are_not_as_described_and_late_frames_are_told(self):
         layout = self.written(

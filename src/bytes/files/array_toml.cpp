@@ -23,6 +23,7 @@ constexpr double kSquareMillimetresPerSquareMetre = 1e6;
 constexpr int kMostAdcBits = 24;  // which a float holds exactly
 constexpr const char* kPressure = "pressure";
 constexpr const char* kForce = "force";
+constexpr const char* kInputPullup = "input_pullup";
 constexpr const char* kEachTaxel = "each taxel";
 
 void read_line_count(ConfigFile& file, std::string_view key, std::size_t& lines) {
@@ -140,13 +141,21 @@ void read_resistors(ConfigFile& file, std::string_view key, Circuit circuit, std
   if (circuit == Circuit::none) ohms.clear();  // known or not, the resistances are not used
 }
 
+/// INPUT_PULLUP of an Arduino: a divider upside down. Its loads are in the chip, and its idle rows are inputs.
+void read_pulled_up(ConfigFile& file, Readout& readout) {
+  file.require("readout.adc_bits");
+  readout.circuit = Circuit::divider;
+  readout.idle_rows = IdleRows::floating;
+  readout.pressure_raises_reading = false;
+}
+
 /// Besides the circuits, what readings are that have left theirs behind.
 void read_circuit(ConfigFile& file, Readout& readout) {
   using enum Circuit;
   constexpr std::array kCircuits{divider, transimpedance, flexitac, none, automatic};
   std::vector<std::string> names;
   for (const Circuit circuit : kCircuits) names.emplace_back(to_string(circuit));
-  names.insert(names.end(), {kPressure, kForce});
+  names.insert(names.end(), {kPressure, kForce, kInputPullup});
   std::size_t index = 0;
   file.require("readout.circuit");
   file.choice("readout.circuit", names, index);
@@ -155,6 +164,7 @@ void read_circuit(ConfigFile& file, Readout& readout) {
     file.require("readout.adc_bits");
     return;
   }
+  if (names[index] == kInputPullup) return read_pulled_up(file, readout);
   readout.circuit = none;
   readout.quantity = names[index] == kPressure ? Quantity::pressure : Quantity::force;
   readout.adc_bits = kMostAdcBits;
@@ -212,6 +222,9 @@ void read_readout(ConfigFile& file, ArrayDescription& array) {
   read_or_fit(file, "readout.supply_ohm", readout.supply_ohm);
   read_adc_errors(file, readout);
   file.boolean("readout.pressure_raises_reading", readout.pressure_raises_reading);
+  if (file.is_text("readout.circuit", kInputPullup) && readout.pressure_raises_reading) {
+    file.fail("readout.pressure_raises_reading", "is false with circuit = \"input_pullup\"");
+  }
   file.number("readout.rail_counts", readout.rail_counts);
 }
 

@@ -17,9 +17,10 @@ constexpr std::size_t kMostLeading = 5;   // numbers before the readings
 constexpr std::size_t kMostTrailing = 3;  // behind them
 constexpr std::size_t kFewestLines = 4;
 constexpr std::size_t kMostRuns = 256;
-constexpr std::size_t kManyLines = 12;  // show that a number rises by no chance
-constexpr std::size_t kMostRising = 3;  // beside the readings
-constexpr double kSince1970 = 1e9;      // seconds
+constexpr std::size_t kManyLines = 12;        // show that a number rises by no chance
+constexpr std::size_t kMostRising = 3;        // beside the readings
+constexpr std::size_t kEnoughToFlicker = 20;  // lines after which a measured fraction has changed
+constexpr double kSince1970 = 1e9;            // seconds
 
 /// The word before a number: "temp" of `,"temp":`.
 std::string label_of(std::string_view text) {
@@ -285,7 +286,11 @@ class ColumnReader {
 }  // namespace
 
 std::vector<Column> columns_of(const std::vector<Line>& lines, const LineGroup& group, const Numerals& numerals) {
-  return ColumnReader(lines, group, numerals).read();
+  std::vector<Column> columns = ColumnReader(lines, group, numerals).read();
+  const bool stands_still = std::ranges::none_of(columns, &Column::varies);
+  const bool has_fractions = std::ranges::any_of(columns, &Column::has_fractions);
+  if (stands_still && has_fractions && group.members.size() >= kEnoughToFlicker) columns.clear();
+  return columns;
 }
 
 }  // namespace dermis::bytes::proposals

@@ -257,6 +257,27 @@ TEST(ArrayToml, reads_what_idle_columns_end_in) {
   EXPECT_EQ(array->readout.idle_columns, IdleColumns::floating);
 }
 
+TEST(ArrayToml, input_pullup_is_a_divider_upside_down_whose_rows_float) {
+  const std::string pulled_up =
+      "[array]\nrows = 2\ncols = 3\n[readout]\ncircuit = \"input_pullup\"\ndrive_ohm = 25\nload_ohm = 35e3\nadc_bits = "
+      "10\n";
+  const Result<ArrayDescription> array = array_from_toml(pulled_up, "array.toml");
+  ASSERT_TRUE(array) << array.error().message;
+  EXPECT_EQ(array->readout.circuit, Circuit::divider);
+  EXPECT_EQ(array->readout.idle_rows, IdleRows::floating);
+  EXPECT_FALSE(array->readout.pressure_raises_reading);
+  EXPECT_EQ(array->readout.load_ohm, std::vector<double>(3, 35e3));
+  EXPECT_EQ(array_to_toml(*array), array_to_toml(*array_from_toml(array_to_toml(*array), "again")));
+
+  const Result<ArrayDescription> high = array_from_toml(pulled_up + "idle_rows = \"grounded\"\n", "a");
+  ASSERT_TRUE(high) << high.error().message;
+  EXPECT_EQ(high->readout.idle_rows, IdleRows::grounded);
+
+  EXPECT_EQ(error_of(pulled_up + "pressure_raises_reading = true\n"),
+            "array.toml:9: readout.pressure_raises_reading: is false with circuit = \"input_pullup\"");
+  EXPECT_TRUE(array_from_toml(pulled_up + "pressure_raises_reading = false\n", "a"));
+}
+
 TEST(ArrayToml, refuses_a_key_of_another_circuit) {
   EXPECT_EQ(error_of(std::string(kFlexitac) + "idle_rows = \"grounded\"\n"),
             "array.toml:11: readout.idle_rows: has no meaning with circuit = \"flexitac\", only with \"divider\" or "
@@ -336,7 +357,7 @@ TEST(ArrayToml, leaves_resistors_aside_where_the_circuit_is_unknown) {
 TEST(ArrayToml, refuses_unknown_choices) {
   EXPECT_EQ(error_of(with("\"divider\"", "\"bridge\"")),
             "array.toml:9: readout.circuit: must be \"divider\", \"transimpedance\", \"flexitac\", \"none\", \"auto\", "
-            "\"pressure\" or \"force\"");
+            "\"pressure\", \"force\" or \"input_pullup\"");
   EXPECT_EQ(error_of(with("\"floating\"", "1")),
             "array.toml:10: readout.idle_rows: must be \"grounded\" or \"floating\"");
 }

@@ -469,6 +469,17 @@ TEST(Proposals, there_is_none_where_most_is_left_over) {
   EXPECT_TRUE(propose({}, {}).empty());
 }
 
+TEST(Proposals, fractions_that_never_change_are_no_readings) {
+  std::string place;
+  std::string volts;
+  for (int line = 0; line < 40; ++line) {
+    place += "$GPGGA,123519,4807.038,N,01131.000,E,1,08\r\n";
+    volts += line == 30 ? "0.12,0.00,0.00,0.00\r\n" : "0.00,0.00,0.00,0.00\r\n";
+  }
+  EXPECT_TRUE(propose(bytes_of(place), {}).empty());
+  EXPECT_FALSE(propose(bytes_of(volts), {}).empty());
+}
+
 TEST(Proposals, readings_that_fall_where_pressed_are_turned) {
   std::vector<Frame> frames = test::pressed_frames(kShape, 3000.0);
   std::string text;

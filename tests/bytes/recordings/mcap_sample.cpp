@@ -137,7 +137,8 @@ std::string times_of(const RawFrame& frame) {
 
 template <typename Text>
 bool print_frames(const std::string& path, const Text& text_of) {
-  const auto reader = RecordingReader::open(path);
+  const RecordingPlace place = recording_place(path);
+  const auto reader = RecordingReader::open(place.path, place.array);
   if (!reader) return say(reader.error());
   RawFrame frame;
   while (true) {

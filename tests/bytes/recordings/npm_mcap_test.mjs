@@ -285,7 +285,8 @@ for (const [layout, options] of Object.entries(layouts)) {
           data: Array.from(data),
         });
       }
-      const frames = lines("frames", path);
+      assert.throws(() => lines("frames", path), /holds 2 arrays; name one/);
+      const frames = lines("frames", `${path}#/camera`);
       const camera = messages.map((message, i) => [message, i]).filter(([[topic]]) => topic === "/camera");
       assert.deepEqual(
         frames.map((frame) => frame.counts),
