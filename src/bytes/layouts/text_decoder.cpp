@@ -139,7 +139,7 @@ std::string TextDecoder::advice() const {
   if (counts().frames > 0) return {};
   std::string text = assembly_.advice();
   for (auto misfit = misfits_.rbegin(); misfit != misfits_.rend(); ++misfit)
-    text = misfit->text + (text.empty() ? "" : "; ") + text;
+    text.insert(0, misfit->text + (text.empty() ? "" : "; "));
   return text;
 }
 

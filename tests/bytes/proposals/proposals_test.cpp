@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/bytes/proposals/proposals.hpp"
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -366,10 +367,10 @@ TEST(Proposals, a_document_of_json_is_no_lines) {
     std::string objects = "{\"rate\": 50," + end + "\"frames\": [";
     std::string lists = "[";
     for (std::size_t k = 0; k < frames.size(); ++k) {
-      const std::string list = "[" + end + joined(frames[k], "," + end) + end + "]";
-      objects += (k > 0 ? "," : "") + end + "{" + end + "\"t\": " + number(20 * k) + "," + end + "\"data\": " + list +
-                 end + "}";
-      lists += (k > 0 ? "," : "") + end + list;
+      const char* const separator = k > 0 ? "," : "";
+      const std::string list = fmt::format("[{0}{1}{0}]", end, joined(frames[k], "," + end));
+      objects += fmt::format("{0}{1}{{{1}\"t\": {2},{1}\"data\": {3}{1}}}", separator, end, 20 * k, list);
+      lists += separator + end + list;
     }
     for (const std::string& text : {objects + end + "]}\n", lists + end + "]\n"}) {
       const std::vector<Proposal> proposals = propose(bytes_of(text), {.rows = kShape.rows, .cols = kShape.cols});
