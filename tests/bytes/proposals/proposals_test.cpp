@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <span>
 #include <string>
 #include <vector>
@@ -303,6 +305,110 @@ TEST(Proposals, packets_may_come_in_runs_beyond_the_array) {
     });
     EXPECT_NE(proposal.toml.find(factor == 1 ? "\"first u8\"" : "\"first u8 *8\""), std::string::npos) << proposal.toml;
   }
+}
+
+TEST(Proposals, parts_may_overlap) {
+  const FrameShape shape{5, 8};
+  const Proposal proposal = first_of(test::pressed_frames(shape), shape, [](const Frame& f, std::size_t) {
+    Bytes bytes;
+    for (const int first : {0, 12, 24}) {
+      bytes.insert(bytes.end(), {0xAB, 0xCD, static_cast<std::uint8_t>(first)});
+      test::add_readings(bytes, {f.begin() + first, f.begin() + first + 16});
+    }
+    return bytes;
+  });
+  EXPECT_NE(proposal.toml.find("\"first u8\", \"values u16le x16\""), std::string::npos) << proposal.toml;
+}
+
+TEST(Proposals, rows_are_found_where_readings_look_like_the_mark) {
+  const FrameShape shape{6, 5};
+  const std::vector<Frame> frames = test::pressed_frames(shape, 2500.0);
+  Bytes bytes;
+  for (const Frame& f : frames) {
+    for (std::size_t row = 0; row < shape.rows; ++row) {
+      Bytes packet = {0xAA, static_cast<std::uint8_t>(row)};
+      test::add_readings(packet, row_of(f, row, shape.cols), 2, true);
+      packet.push_back(static_cast<std::uint8_t>(std::accumulate(packet.begin(), packet.end(), 0)));
+      bytes.insert(bytes.end(), packet.begin(), packet.end());
+    }
+  }
+  for (const Known& known : {Known{}, Known{.rows = 6, .cols = 5}}) {
+    const std::vector<Proposal> proposals = propose(bytes, known);
+    ASSERT_FALSE(proposals.empty());
+    EXPECT_EQ(frames_of(proposals.front().toml, bytes), frames) << proposals.front().toml;
+  }
+}
+
+TEST(Proposals, readings_beside_a_counter_are_no_part_of_it) {
+  std::vector<Frame> frames = test::pressed_frames(kShape, 900.0);
+  const Proposal behind = first_of(frames, kShape, [](const Frame& f, std::size_t k) {
+    Bytes bytes = {0xFE, 0x43};
+    test::add_readings(bytes, f);
+    bytes.push_back(static_cast<std::uint8_t>(k));
+    return bytes;
+  });
+  EXPECT_NE(behind.toml.find("\"frame u8\""), std::string::npos) << behind.toml;
+  const Proposal before = first_of(frames, kShape, [](const Frame& f, std::size_t k) {
+    Bytes bytes = {0xA5, 0x5A};
+    test::add_number(bytes, 10 * k, 4, true);
+    test::add_packed(bytes, f, 12);
+    return bytes;
+  });
+  EXPECT_NE(before.toml.find("\"time_ms u32be\", \"values u12be\""), std::string::npos) << before.toml;
+}
+
+TEST(Proposals, floats_of_64_bits_are_readings_and_clocks) {
+  const Proposal proposal = first_of(test::pressed_frames(kShape), kShape, [](const Frame& f, std::size_t k) {
+    Bytes bytes = {'T', 'A', 'C', 'T'};
+    test::add_number(bytes, std::bit_cast<std::uint64_t>(100.0 + 0.02 * static_cast<double>(k)), 8);
+    for (const int value : f) test::add_number(bytes, std::bit_cast<std::uint64_t>(static_cast<double>(value)), 8);
+    return bytes;
+  });
+  EXPECT_NE(proposal.toml.find("\"time_s f64le\", \"values f64le\""), std::string::npos) << proposal.toml;
+}
+
+TEST(Proposals, upper_bytes_of_small_numbers_with_a_sign_are_no_readings) {
+  std::vector<Frame> frames = test::pressed_frames(kShape, 600.0);
+  for (Frame& frame : frames) std::ranges::transform(frame, frame.begin(), [](int v) { return v - 40; });
+  const Proposal proposal = first_of(frames, kShape, [](const Frame& f, std::size_t) {
+    Bytes bytes = {0x24, 0x25};
+    test::add_readings(bytes, f, 2, true);
+    return bytes;
+  });
+  EXPECT_NE(proposal.toml.find("\"values i16be\""), std::string::npos) << proposal.toml;
+}
+
+TEST(Proposals, the_number_of_a_reading_may_stand_above_it) {
+  const FrameShape shape{4, 4};
+  const Proposal proposal = first_of(test::pressed_frames(shape, 3000.0), shape, [](const Frame& f, std::size_t) {
+    Bytes bytes = {0xF1, 0xF2};
+    for (std::size_t k = 0; k < f.size(); ++k) test::add_number(bytes, k << 12U | static_cast<unsigned>(f[k]), 2, true);
+    return bytes;
+  });
+  EXPECT_NE(proposal.toml.find("mask=0FFF"), std::string::npos) << proposal.toml;
+}
+
+TEST(Proposals, readings_of_seven_bits_a_byte_are_doubted) {
+  Bytes bytes;
+  for (const Frame& frame : test::pressed_frames(kShape, 3000.0)) {
+    bytes.push_back(0xFF);
+    for (const int value : frame) {
+      bytes.insert(bytes.end(), {static_cast<std::uint8_t>(value >> 7), static_cast<std::uint8_t>(value & 0x7F)});
+    }
+  }
+  const std::vector<Proposal> proposals = propose(bytes, {.rows = kShape.rows, .cols = kShape.cols});
+  ASSERT_FALSE(proposals.empty());
+  EXPECT_TRUE(has_doubt(proposals.front(), "7 bits each")) << proposals.front().toml;
+}
+
+TEST(Proposals, zeros_may_stand_before_a_frame_that_nothing_marks) {
+  std::vector<Frame> frames = test::pressed_frames(kShape, 250.0);
+  for (Frame& frame : frames) std::ranges::transform(frame, frame.begin(), [](int v) { return std::clamp(v, 1, 255); });
+  first_of(frames, kShape, [](const Frame& f, std::size_t) {
+    Bytes bytes = {0, 0};
+    test::add_readings(bytes, f, 1);
+    return bytes;
+  });
 }
 
 TEST(Proposals, a_frame_without_a_mark_is_proposed_with_its_doubt) {
