@@ -29,8 +29,8 @@ std::string label_of(std::string_view text) {
 
 class ColumnReader {
  public:
-  ColumnReader(const std::vector<Line>& lines, const LineGroup& group, const Numerals& numerals)
-      : lines_(lines), group_(group) {
+  ColumnReader(const std::vector<Line>& lines, const LineGroup& group, const Numerals& numerals, bool is_head)
+      : lines_(lines), group_(group), is_head_(is_head) {
     find_runs(numerals);
     if (!columns_.empty() && columns_.back().run >= kMostRuns) columns_.clear();
     name_columns();
@@ -242,7 +242,8 @@ class ColumnReader {
     const std::size_t place = place_in_run(k);
     const bool is_last = place + 1 == run_size(k);
     if (place > 0 && columns_[k - 1].field.empty()) return false;
-    return !is_last || run_size(k) == 1;
+    const bool are_readings_behind = k + 1 < columns_.size();
+    return is_head_ || are_readings_behind || !is_last || run_size(k) == 1;
   }
 
   /// Others stand behind the same words, as the readings of places do.
@@ -278,14 +279,16 @@ class ColumnReader {
 
   const std::vector<Line>& lines_;
   const LineGroup& group_;
+  bool is_head_ = false;  // no readings stand in the lines
   std::vector<Column> columns_;
   std::vector<Series> all_series_;
 };
 
 }  // namespace
 
-std::vector<Column> columns_of(const std::vector<Line>& lines, const LineGroup& group, const Numerals& numerals) {
-  return ColumnReader(lines, group, numerals).read();
+std::vector<Column> columns_of(const std::vector<Line>& lines, const LineGroup& group, const Numerals& numerals,
+                               bool is_head) {
+  return ColumnReader(lines, group, numerals, is_head).read();
 }
 
 }  // namespace dermis::bytes::proposals

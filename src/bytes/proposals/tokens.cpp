@@ -45,7 +45,8 @@ std::size_t datetime_at(std::string_view text) {
   const std::size_t clock = clock_at(text.substr(date + 1));
   if (clock == 0) return 0;
   const std::size_t size = date + 1 + clock;
-  return size + (size < text.size() && text[size] == 'Z' ? 1 : 0);
+  const std::string_view zone = text.substr(size);
+  return size + std::max({as_pictured(zone, "Z"), as_pictured(zone, "+00:00"), as_pictured(zone, "-00:00")});
 }
 
 /// Digits with a sign, a fraction and an exponent where they have them.

@@ -130,6 +130,21 @@ const std::vector<Stream>& text_streams() {
                                 int v) { return number(r) + "," + number(c) + "," + std::to_string(v) + "\n"; }) +
                 "\n";
        }},
+      {"two indices in brackets",
+       [](const Frame& f, std::size_t) {
+         return in_taxels(f, [](std::size_t r, std::size_t c, int v) {
+           return "V[" + number(r) + "][" + number(c) + "]: " + std::to_string(v) + "mV\n";
+         });
+       }},
+      {"a table with lines",
+       [](const Frame& f, std::size_t) {
+         return "+----+----+\n" +
+                in_rows(f, [](std::size_t, const Frame& row) { return "|" + joined(row, "|", "%5d") + "|\n"; });
+       }},
+      {"a date with a zone",
+       [](const Frame& f, std::size_t k) {
+         return "2026-11-29T10:15:" + number(10 + k) + ".250+02:00\t" + joined(f, "\t", "%d.0e0") + "\n";
+       }},
       {"an index and a reading",
        [](const Frame& f, std::size_t) {
          return in_taxels(f, [](std::size_t r, std::size_t c, int v) {
@@ -409,6 +424,35 @@ TEST(Proposals, zeros_may_stand_before_a_frame_that_nothing_marks) {
     test::add_readings(bytes, f, 1);
     return bytes;
   });
+}
+
+TEST(Proposals, a_line_before_rows_tells_their_time) {
+  const Proposal proposal = first_of(test::pressed_frames(kShape), kShape, [](const Frame& f, std::size_t k) {
+    return bytes_of(
+        "--- frame " + number(k) + " (" + number(33 * k) + " ms) ---\n" +
+        in_rows(f, [](std::size_t r, const Frame& row) { return "R" + number(r) + ": " + joined(row, " ") + "\n"; }) +
+        "\n");
+  });
+  EXPECT_NE(proposal.toml.find(R"("--- frame {frame} ({time_ms} ms) ---", "R{row}: {values}")"), std::string::npos)
+      << proposal.toml;
+}
+
+TEST(Proposals, halves_of_readings_in_digits_are_doubted) {
+  std::string spaced;
+  std::string packed;
+  for (const Frame& frame : test::pressed_frames(kShape, 3000.0)) {
+    for (const int value : frame) {
+      char text[16];
+      std::snprintf(text, sizeof text, "%02X %02X ", value & 255, value >> 8);
+      spaced += text;
+      std::snprintf(text, sizeof text, "%03X", value);
+      packed += text;
+    }
+    spaced += "\n";
+    packed += "A5\n";
+  }
+  EXPECT_TRUE(has_doubt(propose(bytes_of(spaced), {}).at(0), "every second byte is small"));
+  EXPECT_TRUE(has_doubt(propose(bytes_of(packed), {}).at(0), "nothing stands between the numbers"));
 }
 
 TEST(Proposals, a_frame_without_a_mark_is_proposed_with_its_doubt) {
