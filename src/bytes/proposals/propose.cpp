@@ -57,8 +57,11 @@ void doubt_absent(const Readings& readings, Draft& draft) {
     const auto count = std::ranges::count_if(all, is_it);
     if (count == 0 || std::ranges::count_if(all, is_beyond) > count || std::ranges::all_of(all, is_it)) continue;
     const std::string text = std::to_string(static_cast<std::int64_t>(number));
-    draft.doubts.push_back("some readings are " + text + ", far from all others: write absent = " + text +
-                           " where it stands for none");
+    draft.doubts.push_back(std::string("some readings are ")
+                               .append(text)
+                               .append(", far from all others: write absent = ")
+                               .append(text)
+                               .append(" where it stands for none"));
   }
 }
 

@@ -139,7 +139,7 @@ class GroupDrafts {
     const std::size_t found = taxels == 0 && is_bare ? period_of_numbers(text_.lines, members) : taxels;
     if (found <= size || found % size != 0 || found / size > members.size()) return;
     parts.merit -= 0.2;
-    parts.doubts.push_back("nothing marks where a frame begins: the first line is taken for the first of a frame");
+    parts.doubts.emplace_back("nothing marks where a frame begins: the first line is taken for the first of a frame");
     add_frames(parts, found, members, [](Draft&) {});
   }
 
