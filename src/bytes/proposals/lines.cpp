@@ -114,7 +114,8 @@ bool is_separator(std::string_view text, const Numerals& numerals) {
     if (!is_sign && kPassedOver.find(c) == std::string_view::npos) return false;
     signs += is_sign ? 1 : 0;
   }
-  return signs <= 1;
+  const bool opens_alone = text.find('(') != std::string_view::npos && text.find(')') == std::string_view::npos;
+  return signs <= 1 && (signs == 1 || !opens_alone);
 }
 
 void tokenise(std::vector<Line>& lines, Numerals& numerals) {

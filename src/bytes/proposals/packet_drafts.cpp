@@ -77,9 +77,17 @@ class CutDrafts {
 
   [[nodiscard]] const PacketField* number_in_turn(const ValueSpan& span) const {
     for (const PacketField& field : fields_) {
-      if (!field.numbers.empty() && (field.at + field.size <= span.begin || field.at >= span.end)) return &field;
+      const bool is_outside = field.at + field.size <= span.begin || field.at >= span.end;
+      if (is_outside && !field.numbers.empty() && !is_low_byte(field, span)) return &field;
     }
     return nullptr;
+  }
+
+  /// Its numbers are all multiples of a step that a byte holds: rather a part of a clock than places in runs of others.
+  [[nodiscard]] static bool is_low_byte(const PacketField& field, const ValueSpan& span) {
+    const std::uint64_t step = field.numbers[1] - field.numbers[0];
+    return step > 1 && step * field.numbers.size() == 256 && field.numbers.back() + step == 256 + field.numbers[0] &&
+           span.count % step != 0;
   }
 
   void add(const ValueSpan& span, const PacketField* turn, const std::string& meaning) {
@@ -182,11 +190,25 @@ class CutDrafts {
       draft.doubts.emplace_back(
           "no byte of the readings has its highest bit: they may be of 7 bits each, "
           "which a layout cannot say");
+    if (const std::size_t count = unexplained_beside(span); count > 0)
+      draft.doubts.push_back("bytes beside the readings change, and nothing explains them (" + std::to_string(count) +
+                             " of a packet): the readings may begin elsewhere, or others stand there");
     draft.is_weak = !checksum_ && packets_.escape.empty() && mark_size() < 2;
     if (!checksum_) return draft;
     draft.reasons.push_back("the " + checksum_->entry + " is right");
     draft.merit += 1.0;
     return draft;
+  }
+
+  /// Bytes that change, and are neither readings nor another field.
+  [[nodiscard]] std::size_t unexplained_beside(const ValueSpan& span) const {
+    std::size_t count = 0;
+    for (std::size_t at = packets_.mark_size; at < end_; ++at) {
+      const auto holds = [&](const PacketField& field) { return at >= field.at && at < field.at + field.size; };
+      const bool is_known = (at >= span.begin && at < span.end) || std::ranges::any_of(fields_, holds);
+      count += is_known || is_constant(packets_, at) ? 0 : 1;
+    }
+    return count;
   }
 
   /// Both bytes of each reading stay below 128, and both change.

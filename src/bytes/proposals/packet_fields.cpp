@@ -35,7 +35,7 @@ template <typename Test>
 std::optional<PacketField> growing_at(const Packets& packets, std::size_t at, std::size_t end, Test is_it) {
   std::optional<PacketField> best;
   std::size_t most = 0;
-  for (const std::size_t size : {1U, 2U, 4U}) {
+  for (const std::size_t size : {1U, 2U, 3U, 4U}) {
     if (at + size > end) break;
     std::size_t changing = 0;
     for (std::size_t k = at; k < at + size; ++k) changing += varies(packets, k) ? 1 : 0;

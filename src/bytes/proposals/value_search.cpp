@@ -24,6 +24,7 @@ constexpr std::size_t kMostSpans = 8;
 constexpr std::size_t kMostUnexplained = 4;
 constexpr std::size_t kFewest = 4;  // readings
 constexpr double kOfUnexplained = 0.2;
+constexpr double kOfLeading = 0.1;  // more, before the readings
 constexpr double kOfTags = 0.8;
 
 struct Type {
@@ -85,6 +86,20 @@ bool have_sign_bytes(const Readings& readings) {
   return false;
 }
 
+/// The first or the last reading never changes, and is far from 0 beyond all others.
+bool has_mark_at_an_end(const Readings& readings) {
+  const std::size_t count = readings.front().size();
+  for (const std::size_t end : {std::size_t{0}, count - 1}) {
+    const float mark = readings.front()[end];
+    const auto is_beyond = [&](float value) { return std::abs(value) >= std::abs(mark); };
+    const bool is_mark = std::ranges::all_of(readings, [&](const std::vector<float>& frame) {
+      return frame[end] == mark && std::ranges::count_if(frame, is_beyond) == 1;
+    });
+    if (is_mark && count > 1) return true;
+  }
+  return false;
+}
+
 class ValueSearch {
  public:
   ValueSearch(const Packets& packets, std::span<const std::uint8_t> bytes, const std::vector<PacketField>& fields)
@@ -117,6 +132,8 @@ class ValueSearch {
     span.merit = -0.5 * roughness_along(span.readings) - 0.3 * roughness_in_time(span.readings) -
                  0.03 * std::log2(1.0 + sum / size) - kOfUnexplained * static_cast<double>(unexplained) -
                  (is_count_known ? 0.0 : strangeness(count, fields_));
+    span.merit -= kOfLeading * static_cast<double>(this->unexplained(packets_.mark_size, begin));
+    span.merit -= has_mark_at_an_end(span.readings) ? 0.3 : 0.0;
     const bool is_behind_number = std::ranges::any_of(fields_, [&](const PacketField& field) {
       return !field.numbers.empty() && field.at + field.size == begin && unexplained == 0;
     });

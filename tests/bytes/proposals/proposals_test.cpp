@@ -416,6 +416,71 @@ TEST(Proposals, readings_of_seven_bits_a_byte_are_doubted) {
   EXPECT_TRUE(has_doubt(proposals.front(), "7 bits each")) << proposals.front().toml;
 }
 
+TEST(Proposals, bytes_that_nothing_explains_are_doubted) {
+  Bytes bytes;
+  std::size_t k = 0;
+  for (const Frame& frame : test::pressed_frames(kShape, 900.0)) {
+    bytes.insert(bytes.end(), {0xFA, 0xF5});
+    test::add_readings(bytes, frame);
+    for (const std::size_t factor : {37U, 53U}) test::add_number(bytes, factor * k * k % 400, 2);
+    bytes.push_back(0x0A);
+    ++k;
+  }
+  const std::vector<Proposal> proposals = propose(bytes, {.rows = kShape.rows, .cols = kShape.cols});
+  ASSERT_FALSE(proposals.empty());
+  EXPECT_TRUE(has_doubt(proposals.front(), "nothing explains them")) << proposals.front().toml;
+}
+
+TEST(Proposals, volts_may_stand_in_brackets_behind_each_reading) {
+  const Proposal proposal = first_of(test::pressed_frames(kShape), kShape, [](const Frame& f, std::size_t k) {
+    std::string line = number(k) + ".5s";
+    for (const int value : f) {
+      line += " | ";
+      line += std::to_string(value) + " (" + std::to_string(value / 200) + ".25 V)";
+    }
+    return bytes_of(line + "\n");
+  });
+  EXPECT_TRUE(has_doubt(proposal, "the readings may also be")) << proposal.toml;
+}
+
+TEST(Proposals, a_mark_behind_the_readings_is_none_of_them) {
+  const FrameShape shape{8, 8};
+  const auto between_marks = [](const Frame& f, std::size_t) {
+    Bytes bytes = {0xAA, 0x55, 0x03, 0x99};
+    test::add_readings(bytes, f);
+    bytes.insert(bytes.end(), {0x55, 0xAA});
+    return bytes;
+  };
+  const Proposal proposal = first_of(test::pressed_frames(shape), shape, between_marks);
+  EXPECT_NE(proposal.toml.find("\"values u16le\", \"55 AA\""), std::string::npos) << proposal.toml;
+}
+
+TEST(Proposals, a_clock_may_be_cut_by_what_seems_a_mark) {
+  const FrameShape shape{6, 6};
+  Bytes bytes;
+  const std::vector<Frame> frames = test::pressed_frames(shape);
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    test::add_number(bytes, 1764512345000000U + 20000 * k, 8);
+    test::add_readings(bytes, frames[k]);
+  }
+  const std::vector<Proposal> proposals = propose(bytes, {.rows = 6, .cols = 6});
+  ASSERT_FALSE(proposals.empty());
+  std::vector<Frame> found = frames_of(proposals.front().toml, bytes);
+  EXPECT_EQ(found.size() + 1, frames.size()) << proposals.front().toml;
+  EXPECT_TRUE(std::ranges::equal(found, std::span(frames).first(found.size()))) << proposals.front().toml;
+}
+
+TEST(Proposals, decimal_readings_before_a_checksum_of_hexadecimal_digits_stay_decimal) {
+  for (const std::string mark : {"0x", ""}) {
+    const Proposal proposal = first_of(test::pressed_frames(kShape), kShape, [&](const Frame& f, std::size_t k) {
+      char checksum[8];
+      std::snprintf(checksum, sizeof checksum, "%02X", static_cast<unsigned>(97 * k % 256));
+      return bytes_of(number(50 * k) + "\t" + joined(f, "\t") + (mark.empty() ? "*" : "\t") + mark + checksum + "\n");
+    });
+    EXPECT_NE(proposal.toml.find("{time_ms}"), std::string::npos) << proposal.toml;
+  }
+}
+
 TEST(Proposals, zeros_may_stand_before_a_frame_that_nothing_marks) {
   std::vector<Frame> frames = test::pressed_frames(kShape, 250.0);
   for (Frame& frame : frames) std::ranges::transform(frame, frame.begin(), [](int v) { return std::clamp(v, 1, 255); });
