@@ -172,6 +172,23 @@ class Strangers(unittest.TestCase):
         self.expect(alone, COUNTS)
         self.expect(f"{alone}#/left", COUNTS)
 
+    def test_a_node_may_begin_with_nothing(self):
+        nothing = multi_array("Float32", numpy.zeros(0, "float32"), ())
+        messages = [nothing, nothing, *(multi_array("Float32", frame.astype("float32")) for frame in COUNTS), nothing]
+        self.expect(self.write_bag({"/touch": messages}), COUNTS)
+
+    def test_channels_of_json_are_read_as_texts_are(self):
+        path = self.work / "json.mcap"
+        with path.open("wb") as file:
+            writer = McapWriter(file)
+            writer.start()
+            channel = writer.register_channel("/touch", "json", writer.register_schema("touch", "jsonschema", b"{}"))
+            for k, frame in enumerate(COUNTS):
+                data = json.dumps({"data": frame.tolist(), "battery": 3.9}).encode()
+                writer.add_message(channel, BEGIN_NS + k * STEP_NS, data, BEGIN_NS + k * STEP_NS)
+            writer.finish()
+        self.expect(path, COUNTS)
+
     def test_bags_are_compressed_as_their_writers_like(self):
         messages = {"/touch": [multi_array("Int16", frame.astype("int16")) for frame in COUNTS]}
         packed = self.write_bag(messages, "storage", (CompressionMode.STORAGE, CompressionFormat.ZSTD))

@@ -3,6 +3,7 @@
 #include "dermis/bytes/files/array_frames.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -18,6 +19,7 @@ namespace {
 constexpr std::size_t kFewestFrames = 10;  // whose changes tell
 constexpr double kClearly = 0.5;           // of the change along the next axis
 constexpr std::size_t kLopsided = 2;       // times as long as any other axis: frames, as a rule
+constexpr std::size_t kLopsidedMiddle = 4;
 
 bool is_possible(FrameShape shape) {
   return shape.rows >= 1 && shape.rows <= kMaxLines && shape.cols >= 1 && shape.cols <= kMaxLines;
@@ -41,12 +43,13 @@ double change_along(const NumberArray& array, std::size_t axis, std::span<const 
   return count == 0 ? std::numeric_limits<double>::infinity() : sum / static_cast<double>(count);
 }
 
-/// The axes, first or last, that may count the frames.
+/// The axes that may count the frames: the first or last, or the middle one where the shape is told.
 std::vector<std::size_t> possible_axes(const NumberArray& array, const ArrayHints& hints) {
   std::vector<std::size_t> possible;
   std::vector<std::size_t> timed;
-  for (const std::size_t axis : {0U, 2U}) {
+  for (const std::size_t axis : {0U, 2U, 1U}) {
     const FrameShape shape = axes_of(array, axis).shape;
+    if (axis == 1 && !hints.shape) break;
     if (!is_possible(shape) || (hints.shape && shape != *hints.shape)) continue;
     possible.push_back(axis);
     if (array.sizes[axis] == hints.times) timed.push_back(axis);
@@ -54,8 +57,19 @@ std::vector<std::size_t> possible_axes(const NumberArray& array, const ArrayHint
   return timed.empty() ? possible : timed;
 }
 
+bool is_long_between(const NumberArray& array) {
+  return array.sizes[1] >= kLopsidedMiddle * std::max({array.sizes[0], array.sizes[2], kFewestFrames});
+}
+
 bool is_doubtful(const NumberArray& array) {
-  return array.sizes[2] >= kFewestFrames && array.sizes[2] > array.sizes[0];
+  return (array.sizes[2] >= kFewestFrames && array.sizes[2] > array.sizes[0]) || is_long_between(array);
+}
+
+/// Frames between rows and cols change least along the middle axis.
+bool may_stand_between(const NumberArray& array, std::span<const float> values) {
+  if (!is_long_between(array) || values.empty()) return false;
+  const double others = std::min(change_along(array, 0, values), change_along(array, 2, values));
+  return change_along(array, 1, values) < kClearly * others;
 }
 
 /// Frames that stand last change least along the last axis. A long one is asked for, where frames do not clearly stand
@@ -71,15 +85,16 @@ bool may_stand_last(const NumberArray& array, std::span<const float> values) {
 
 std::string reading(const NumberArray& array, const ArrayHints& hints, std::size_t time) {
   const FrameAxes axes = axes_of(array, time);
-  const std::string order = time == 0 ? "[frames, rows, cols]" : "[rows, cols, frames]";
+  constexpr std::array kOrders = {"[frames, rows, cols]", "[rows, frames, cols]", "[rows, cols, frames]"};
+  const std::string order = kOrders[time];
   return std::to_string(axes.frames) + " frames of " + size_text(axes.shape) + ", as " +
          in_quotes(hints.source + order);
 }
 
-Error both_ways(const NumberArray& array, const ArrayHints& hints) {
+Error both_ways(const NumberArray& array, const ArrayHints& hints, std::size_t time) {
   const std::string of_chosen = hints.axes.empty() ? "" : ", with the axes that are left after [" + hints.axes + "]";
   return bad_input("is " + array.sizes_text() + ", which can be read in two ways: " + reading(array, hints, 0) +
-                   ", or " + reading(array, hints, 2) + of_chosen);
+                   ", or " + reading(array, hints, time) + of_chosen);
 }
 
 Error not_this(const NumberArray& array, const ArrayHints& hints) {
@@ -220,8 +235,9 @@ std::optional<std::size_t> smoothest_axis(const NumberArray& array, const std::v
 bool needs_values(const NumberArray& array, const ArrayHints& hints) {
   const Result<ChosenArray> chosen = choose_axes(array, hints);
   if (!chosen || chosen->is_told || chosen->array.sizes.size() != 3) return false;
-  return possible_axes(chosen->array, hints).size() == 2 && is_doubtful(chosen->array) &&
-         array.value_count() <= kMostArrayValues;
+  const std::vector<std::size_t> possible = possible_axes(chosen->array, hints);
+  const bool is_between = !possible.empty() && !hints.shape && is_long_between(chosen->array);
+  return (possible.size() > 1 || is_between) && is_doubtful(chosen->array) && array.value_count() <= kMostArrayValues;
 }
 
 Result<FrameAxes> frame_axes(const NumberArray& array, const ArrayHints& hints, std::span<const float> values) {
@@ -232,7 +248,8 @@ Result<FrameAxes> frame_axes(const NumberArray& array, const ArrayHints& hints, 
   if (chosen->is_told) return axes_that_were_told(left, hints);
   const std::vector<std::size_t> possible = possible_axes(left, hints);
   if (possible.empty()) return not_this(left, hints);
-  if (possible.size() == 2 && is_doubtful(left) && may_stand_last(left, values)) return both_ways(left, hints);
+  if (!hints.shape && may_stand_between(left, values)) return both_ways(left, hints, 1);
+  if (possible.size() > 1 && is_doubtful(left) && may_stand_last(left, values)) return both_ways(left, hints, 2);
   return axes_of(left, possible.front());
 }
 

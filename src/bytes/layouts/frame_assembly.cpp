@@ -21,7 +21,7 @@ bool FrameAssembly::add(const Piece& piece, std::span<const float> numbers, std:
   }
   if (filled_ > 0 && piece.frame != first_.frame) end_frame();
   std::optional<std::size_t> begin = begin_of(piece, numbers.size());
-  if (begin && is_filled(*begin, numbers.size())) {
+  if (begin && has_come(*begin, numbers.size())) {
     end_frame();
     begin = begin_of(piece, numbers.size());
   }
@@ -56,10 +56,12 @@ std::optional<std::size_t> FrameAssembly::begin_of(const Piece& piece, std::size
   return begin + count <= readings_.size() ? std::optional(begin) : std::nullopt;
 }
 
-bool FrameAssembly::is_filled(std::size_t begin, std::size_t count) const noexcept {
-  if (filled_ == 0) return false;
-  const auto first = is_filled_.begin() + static_cast<std::ptrdiff_t>(begin);
-  return std::find(first, first + static_cast<std::ptrdiff_t>(count), 1) != first + static_cast<std::ptrdiff_t>(count);
+/// Readings that came already, but for a part that overlaps with the end of the one before.
+bool FrameAssembly::has_come(std::size_t begin, std::size_t count) const noexcept {
+  if (filled_ == 0 || count == 0) return false;
+  const std::span<const std::uint8_t> part = std::span(is_filled_).subspan(begin, count);
+  const bool goes_on = part.front() == 1 && part.back() == 0;
+  return !goes_on && std::ranges::find(part, 1) != part.end();
 }
 
 void FrameAssembly::begin_frame(const Piece& piece) {
@@ -72,8 +74,10 @@ void FrameAssembly::fill(std::size_t begin, std::span<const float> numbers) {
   const std::span<float> readings = std::span(readings_).subspan(begin, numbers.size());
   std::copy_n(numbers.begin(), numbers.size(), readings.begin());
   fields_.scale(readings);
-  std::fill_n(is_filled_.data() + begin, numbers.size(), std::uint8_t{1});
-  filled_ += numbers.size();
+  const auto first = is_filled_.begin() + static_cast<std::ptrdiff_t>(begin);
+  const auto last = first + static_cast<std::ptrdiff_t>(numbers.size());
+  filled_ += static_cast<std::size_t>(std::count(first, last, 0));
+  std::fill(first, last, std::uint8_t{1});
 }
 
 /// Before the first frame, a part of one is the end of a frame whose beginning nobody saw.

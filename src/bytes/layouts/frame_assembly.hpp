@@ -38,7 +38,7 @@ class FrameAssembly {
 
  private:
   [[nodiscard]] std::optional<std::size_t> begin_of(const Piece& piece, std::size_t count) const noexcept;
-  [[nodiscard]] bool is_filled(std::size_t begin, std::size_t count) const noexcept;
+  [[nodiscard]] bool has_come(std::size_t begin, std::size_t count) const noexcept;
   bool is_outside(const Piece& piece);
   void begin_frame(const Piece& piece);
   void fill(std::size_t begin, std::span<const float> numbers);

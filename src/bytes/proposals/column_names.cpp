@@ -171,7 +171,8 @@ std::string stem_of(std::string_view name) {
 std::vector<std::string> names_of_columns(const std::vector<Line>& lines, std::size_t line) {
   for (std::size_t back = 1; back <= std::min(line, kMostLinesBack); ++back) {
     const Line& head = lines[line - back];
-    if (!has_letters(head.text)) continue;
+    const bool is_json = head.text.starts_with('{') || head.text.starts_with('[');
+    if (!has_letters(head.text) || is_json) continue;
     for (const char separator : {';', '\t', ',', ' '}) {
       std::vector<std::string> names = names_in(head, lines[line], separator);
       if (!names.empty()) return names;

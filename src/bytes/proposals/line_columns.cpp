@@ -30,8 +30,8 @@ std::string label_of(std::string_view text) {
 
 class ColumnReader {
  public:
-  ColumnReader(const std::vector<Line>& lines, const LineGroup& group, const Numerals& numerals)
-      : lines_(lines), group_(group) {
+  ColumnReader(const std::vector<Line>& lines, const LineGroup& group, const Numerals& numerals, bool is_head)
+      : lines_(lines), group_(group), is_head_(is_head) {
     find_runs(numerals);
     if (!columns_.empty() && columns_.back().run >= kMostRuns) columns_.clear();
     name_columns();
@@ -72,12 +72,15 @@ class ColumnReader {
                                   columns_.back().kind == Token::Kind::number && is_separator(before, numerals);
       const bool is_glued = k > 1 && is_part_of_word(tokens, k - 2);
       const std::size_t run = columns_.empty() ? 0 : columns_.back().run + (follows_number && !is_glued ? 0 : 1);
+      const bool is_marked =
+          !numerals.is_hexadecimal && (tokens[k].text.starts_with("0x") || tokens[k].text.starts_with("0X"));
       std::string separator(follows_number ? before : std::string_view());
       std::erase(separator, ' ');
       columns_.push_back({.kind = tokens[k].kind,
                           .run = run,
                           .label = follows_number ? "" : label_of(before),
-                          .before = std::move(separator)});
+                          .before = std::move(separator),
+                          .field = is_marked ? "skip" : ""});
       before = {};
     }
   }
@@ -243,7 +246,8 @@ class ColumnReader {
     const std::size_t place = place_in_run(k);
     const bool is_last = place + 1 == run_size(k);
     if (place > 0 && columns_[k - 1].field.empty()) return false;
-    return !is_last || run_size(k) == 1;
+    const bool are_readings_behind = k + 1 < columns_.size();
+    return is_head_ || are_readings_behind || !is_last || run_size(k) == 1;
   }
 
   /// Others stand behind the same words, as the readings of places do.
@@ -279,17 +283,19 @@ class ColumnReader {
 
   const std::vector<Line>& lines_;
   const LineGroup& group_;
+  bool is_head_ = false;  // no readings stand in the lines
   std::vector<Column> columns_;
   std::vector<Series> all_series_;
 };
 
 }  // namespace
 
-std::vector<Column> columns_of(const std::vector<Line>& lines, const LineGroup& group, const Numerals& numerals) {
-  std::vector<Column> columns = ColumnReader(lines, group, numerals).read();
+std::vector<Column> columns_of(const std::vector<Line>& lines, const LineGroup& group, const Numerals& numerals,
+                               bool is_head) {
+  std::vector<Column> columns = ColumnReader(lines, group, numerals, is_head).read();
   const bool stands_still = std::ranges::none_of(columns, &Column::varies);
   const bool has_fractions = std::ranges::any_of(columns, &Column::has_fractions);
-  if (stands_still && has_fractions && group.members.size() >= kEnoughToFlicker) columns.clear();
+  if (!is_head && stands_still && has_fractions && group.members.size() >= kEnoughToFlicker) columns.clear();
   return columns;
 }
 

@@ -31,7 +31,8 @@ struct Column {
 /// The columns of a group of lines, with the fields of those that hold something else than readings. A column that
 /// counts through the same numbers has the field "cycle", one whose few numbers come in turn "turn". Empty where there
 /// is too much text between numbers, and where all stands still for 20 lines, fractions too.
+/// `is_head`: no readings stand in these lines.
 [[nodiscard]] std::vector<Column> columns_of(const std::vector<Line>& lines, const LineGroup& group,
-                                             const Numerals& numerals);
+                                             const Numerals& numerals, bool is_head);
 
 }  // namespace dermis::bytes::proposals

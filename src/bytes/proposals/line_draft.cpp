@@ -85,7 +85,7 @@ std::string head_of(const LinesAlike& text, const std::vector<std::size_t>& head
   if (std::any_of(heads.begin(), heads.end(), is_other)) return {};
   std::vector<Place> places;
   bool tells = false;
-  for (const Column& column : columns_of(text.lines, group, text.numerals)) {
+  for (const Column& column : columns_of(text.lines, group, text.numerals, true)) {
     const bool is_told = column.field == "frame" || role_of(column.field) == layouts::Role::time;
     tells = tells || is_told;
     places.push_back({is_told ? written(column.field, role_of(column.field), text.numerals) : "skip", places.size() + 1,
@@ -104,7 +104,11 @@ Draft begin_line_draft(const LinesAlike& text, const LineFields& fields, const K
   }
   if (text.numerals.decimal_point == ',') draft.keys.emplace_back("decimal_point", "\",\"");
   if (text.numerals.is_hexadecimal) draft.keys.emplace_back("digits", "\"hexadecimal\"");
-  if (text.numerals.width > 0) draft.keys.emplace_back("width", std::to_string(text.numerals.width));
+  if (text.numerals.width > 0) {
+    draft.keys.emplace_back("width", std::to_string(text.numerals.width));
+    draft.doubts.push_back("nothing stands between the numbers: that each has " + std::to_string(text.numerals.width) +
+                           " digits is what fits best");
+  }
   if (!text.numerals.separator.empty())
     draft.keys.emplace_back("separator", files::quoted_toml(text.numerals.separator));
   const std::string unit = unit_of_name(text.columns[fields.spans.front().begin].name);

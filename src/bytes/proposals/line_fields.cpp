@@ -140,7 +140,7 @@ std::vector<Span> arrays_among(std::vector<Span> spans) {
 std::string key_of(const Column& column) {
   std::string key;
   for (const char c : without_digits(column.label)) {
-    const bool is_part = std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_';
+    const bool is_part = std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '(';
     if (is_part) key += c;
   }
   return key;

@@ -51,6 +51,11 @@ std::string skeleton_of(const std::vector<Token>& tokens, const Numerals& numera
   return skeleton;
 }
 
+std::string_view without_blanks(std::string_view text) {
+  const std::size_t begin = std::min(text.find_first_not_of(kBlanks), text.size());
+  return text.substr(begin, text.find_last_not_of(kBlanks) + 1 - begin);
+}
+
 /// What stands between most numbers, where layouts must be told.
 std::string unusual_separator(const std::vector<Line>& lines, const Numerals& numerals) {
   std::map<std::string_view, std::size_t> counts;
@@ -61,16 +66,14 @@ std::string unusual_separator(const std::vector<Line>& lines, const Numerals& nu
                               line.tokens[k - 1].kind == Token::Kind::number &&
                               line.tokens[k + 1].kind == Token::Kind::number;
       if (!is_between) continue;
-      ++counts[line.tokens[k].text];
+      ++counts[without_blanks(line.tokens[k].text)];
       ++all;
     }
   }
   const auto most =
       std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   if (most == counts.end() || 3 * most->second < 2 * all || is_separator(most->first, numerals)) return {};
-  std::string_view separator = most->first;
-  while (!separator.empty() && kBlanks.find(separator.front()) != std::string_view::npos) separator.remove_prefix(1);
-  while (!separator.empty() && kBlanks.find(separator.back()) != std::string_view::npos) separator.remove_suffix(1);
+  const std::string_view separator = most->first;
   const bool is_hexadecimal_mark = separator.ends_with("0x") || separator.ends_with("0X");
   const std::string_view signs = separator.substr(0, separator.size() - (is_hexadecimal_mark ? 2 : 0));
   const bool has_letters =
@@ -111,7 +114,8 @@ bool is_separator(std::string_view text, const Numerals& numerals) {
     if (!is_sign && kPassedOver.find(c) == std::string_view::npos) return false;
     signs += is_sign ? 1 : 0;
   }
-  return signs <= 1;
+  const bool opens_alone = text.find('(') != std::string_view::npos && text.find(')') == std::string_view::npos;
+  return signs <= 1 && (signs == 1 || !opens_alone);
 }
 
 void tokenise(std::vector<Line>& lines, Numerals& numerals) {

@@ -35,22 +35,28 @@ std::vector<std::string_view> words_of(std::string_view line) {
 std::vector<Numerals> hexadecimal_numerals(const std::vector<Line>& lines) {
   std::size_t words = 0;
   std::size_t hexadecimal = 0;
-  std::size_t with_letters = 0;  // or the mark 0x
+  std::size_t with_marks = 0;    // 0x
+  std::size_t with_letters = 0;  // but at the ends of a line, where checksums stand
   std::map<std::size_t, std::size_t> sizes;
   for (std::size_t k = 0; k < std::min(lines.size(), kLinesLooked); ++k) {
-    for (std::string_view word : words_of(lines[k].text)) {
+    const std::vector<std::string_view> of_line = words_of(lines[k].text);
+    for (std::size_t at = 0; at < of_line.size(); ++at) {
+      std::string_view word = of_line[at];
+      const bool is_at_end = of_line.size() > 2 && (at == 0 || at + 1 == of_line.size());
       ++words;
       const bool has_mark = word.size() > 2 && (word.starts_with("0x") || word.starts_with("0X"));
       if (has_mark) word.remove_prefix(2);
       if (!std::all_of(word.begin(), word.end(), is_hexadecimal)) continue;
       ++hexadecimal;
-      with_letters += has_mark || !std::all_of(word.begin(), word.end(), is_digit) ? 1 : 0;
+      with_marks += has_mark ? 1 : 0;
+      with_letters += !has_mark && !is_at_end && !std::all_of(word.begin(), word.end(), is_digit) ? 1 : 0;
       ++sizes[has_mark ? 2 : word.size()];
     }
   }
   const auto usual =
       std::max_element(sizes.begin(), sizes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-  if (words == 0 || 10 * hexadecimal < 7 * words || 50 * with_letters < words) return {};
+  const bool are_marked = 2 * with_marks > words;
+  if (words == 0 || 10 * hexadecimal < 7 * words || (!are_marked && 50 * with_letters < words)) return {};
   const std::size_t size = usual->first;
   const bool are_equal = 10 * usual->second >= 6 * hexadecimal;
   if (are_equal && size >= 2 && size <= 8) return {Numerals{.is_hexadecimal = true}};

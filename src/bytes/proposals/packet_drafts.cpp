@@ -3,6 +3,7 @@
 #include "bytes/proposals/packet_drafts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <utility>
 
@@ -35,9 +36,8 @@ class CutDrafts {
     end_ = checksum_ ? checksum_->at : packets.size - packets.end_mark_size;
     const std::size_t leading = std::min(end_, packets.mark_size + kMostLeading);
     fields_ = fields_in(packets, packets.mark_size, leading);
-    if (end_ > leading + kMostTrailing) {
-      for (PacketField& field : fields_in(packets, end_ - kMostTrailing, end_)) fields_.push_back(std::move(field));
-    }
+    const std::size_t trailing = std::max(leading, end_ - std::min(end_, kMostTrailing));
+    for (PacketField& field : fields_in(packets, trailing, end_)) fields_.push_back(std::move(field));
   }
 
   std::vector<Draft> all() {
@@ -77,9 +77,17 @@ class CutDrafts {
 
   [[nodiscard]] const PacketField* number_in_turn(const ValueSpan& span) const {
     for (const PacketField& field : fields_) {
-      if (!field.numbers.empty() && (field.at + field.size <= span.begin || field.at >= span.end)) return &field;
+      const bool is_outside = field.at + field.size <= span.begin || field.at >= span.end;
+      if (is_outside && !field.numbers.empty() && !is_low_byte(field, span)) return &field;
     }
     return nullptr;
+  }
+
+  /// Its numbers are all multiples of a step that a byte holds: rather a part of a clock than places in runs of others.
+  [[nodiscard]] static bool is_low_byte(const PacketField& field, const ValueSpan& span) {
+    const std::uint64_t step = field.numbers[1] - field.numbers[0];
+    return step > 1 && step * field.numbers.size() == 256 && field.numbers.back() + step == 256 + field.numbers[0] &&
+           span.count % step != 0;
   }
 
   void add(const ValueSpan& span, const PacketField* turn, const std::string& meaning) {
@@ -124,12 +132,13 @@ class CutDrafts {
     for (std::size_t k = 1; k < runs; ++k) {
       if (turn.numbers[k] != turn.numbers[0] + k * step) return;
     }
-    const std::size_t channels = runs * span.count;
+    const bool do_overlap = step > 1 && step < span.count && span.count % step != 0;
+    const std::size_t channels = (runs - 1) * (do_overlap ? step : span.count) + span.count;
     const std::size_t taxels = known_.rows && known_.cols ? *known_.rows * *known_.cols : channels;
-    if (span.count % step != 0 || taxels > channels || taxels + span.count <= channels) return;
+    if ((span.count % step != 0 && !do_overlap) || taxels > channels || taxels + span.count <= channels) return;
     const bool are_rows = step == 1 && known_.cols.value_or(span.count) == span.count;
     if (are_rows) return;
-    const std::uint64_t factor = span.count / step;
+    const std::uint64_t factor = do_overlap ? 1 : span.count / step;
     if (factor > 1) turn.options = " *" + std::to_string(factor);
     if (turn.numbers[0] > 0) turn.options += " -" + std::to_string(factor * turn.numbers[0]);
     span.type += " x" + std::to_string(span.count);
@@ -141,6 +150,7 @@ class CutDrafts {
       draft.arrays.push_back({"", shape});
       draft.reasons.push_back("byte " + std::to_string(turn.at + 1) + " tells the first of each " +
                               std::to_string(span.count) + " readings");
+      if (do_overlap) draft.reasons.emplace_back("the parts of a frame overlap");
       if (taxels < channels)
         draft.reasons.push_back("the last " + std::to_string(channels - taxels) + " of " + std::to_string(channels) +
                                 " readings reach beyond the array");
@@ -176,11 +186,45 @@ class CutDrafts {
       draft.reasons.push_back("each " + std::to_string(packets_.size) + " bytes are like those before them");
       draft.doubts.emplace_back("nothing marks where a frame begins: the first byte is taken for the first of a frame");
     }
+    if (are_of_seven_bits(span))
+      draft.doubts.emplace_back(
+          "no byte of the readings has its highest bit: they may be of 7 bits each, "
+          "which a layout cannot say");
+    if (const std::size_t count = unexplained_beside(span); count > 0)
+      draft.doubts.push_back("bytes beside the readings change, and nothing explains them (" + std::to_string(count) +
+                             " of a packet): the readings may begin elsewhere, or others stand there");
     draft.is_weak = !checksum_ && packets_.escape.empty() && mark_size() < 2;
     if (!checksum_) return draft;
     draft.reasons.push_back("the " + checksum_->entry + " is right");
     draft.merit += 1.0;
     return draft;
+  }
+
+  /// Bytes that change, and are neither readings nor another field.
+  [[nodiscard]] std::size_t unexplained_beside(const ValueSpan& span) const {
+    std::size_t count = 0;
+    for (std::size_t at = packets_.mark_size; at < end_; ++at) {
+      const auto holds = [&](const PacketField& field) { return at >= field.at && at < field.at + field.size; };
+      const bool is_known = (at >= span.begin && at < span.end) || std::ranges::any_of(fields_, holds);
+      count += is_known || is_constant(packets_, at) ? 0 : 1;
+    }
+    return count;
+  }
+
+  /// Both bytes of each reading stay below 128, and both change.
+  [[nodiscard]] bool are_of_seven_bits(const ValueSpan& span) const {
+    if (!span.type.starts_with("u16")) return false;
+    std::array<std::uint8_t, 2> most{};
+    std::array<std::uint8_t, 2> least{255, 255};
+    for (const Bytes& packet : packets_.packets) {
+      for (std::size_t at = span.begin; at < span.end; ++at) {
+        const std::size_t half = (at - span.begin) % 2;
+        most[half] = std::max(most[half], packet[at]);
+        least[half] = std::min(least[half], packet[at]);
+      }
+    }
+    const auto [smaller, larger] = std::minmax(most[0], most[1]);
+    return larger < 128 && larger > 119 && smaller > 1 && least[0] < most[0] && least[1] < most[1];
   }
 
   [[nodiscard]] std::size_t mark_size() const { return std::max(packets_.mark_size, packets_.end_mark_size); }
@@ -213,10 +257,12 @@ class CutDrafts {
 /// Sizes of frames that are nothing but readings.
 std::vector<std::size_t> sizes_without_mark(std::span<const std::uint8_t> bytes, const Known& known) {
   const std::size_t taxels = known.rows.value_or(0) * known.cols.value_or(0);
-  if (taxels > 1) return {taxels, 2 * taxels, 4 * taxels};
+  std::vector<std::size_t> sizes;
+  if (taxels > 1) sizes = {taxels, 2 * taxels, 4 * taxels};
   const std::vector<float> numbers(bytes.begin(), bytes.end());
   const std::size_t period = period_of(numbers, kFewestBytes);
-  return period > 0 ? std::vector{period} : std::vector<std::size_t>();
+  if (period > 0 && std::ranges::find(sizes, period) == sizes.end()) sizes.push_back(period);
+  return sizes;
 }
 
 }  // namespace

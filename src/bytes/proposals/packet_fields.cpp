@@ -3,6 +3,7 @@
 #include "bytes/proposals/packet_fields.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <optional>
 
@@ -12,6 +13,8 @@ namespace dermis::bytes::proposals {
 namespace {
 
 constexpr std::size_t kFewest = 5;  // packets, to tell a clock from chance
+constexpr double kEarliest = 1e-3;  // of a clock, in any unit: smaller floats are other bytes
+constexpr double kLatest = 1e19;
 
 Series series_at(const Packets& packets, std::size_t at, std::size_t size, bool is_big_endian) {
   Series series;
@@ -32,7 +35,7 @@ template <typename Test>
 std::optional<PacketField> growing_at(const Packets& packets, std::size_t at, std::size_t end, Test is_it) {
   std::optional<PacketField> best;
   std::size_t most = 0;
-  for (const std::size_t size : {1U, 2U, 4U}) {
+  for (const std::size_t size : {1U, 2U, 3U, 4U}) {
     if (at + size > end) break;
     std::size_t changing = 0;
     for (std::size_t k = at; k < at + size; ++k) changing += varies(packets, k) ? 1 : 0;
@@ -44,6 +47,28 @@ std::optional<PacketField> growing_at(const Packets& packets, std::size_t at, st
     }
   }
   return best;
+}
+
+/// Seconds or the like in a float of 64 bits.
+std::optional<PacketField> float_clock_at(const Packets& packets, std::size_t at, std::size_t end) {
+  constexpr std::size_t kSize = sizeof(double);
+  if (at + kSize > end || packets.packets.size() < kFewest) return std::nullopt;
+  for (const bool is_big_endian : {false, true}) {
+    Series series;
+    for (const Bytes& packet : packets.packets) {
+      std::uint64_t bits = 0;
+      for (std::size_t k = 0; k < kSize; ++k) bits = bits << 8U | packet[at + (is_big_endian ? k : kSize - 1 - k)];
+      series.push_back(std::bit_cast<double>(bits));
+    }
+    const bool is_possible = std::ranges::all_of(series, [](double one) { return one >= 0.0 && one < kLatest; });
+    if (!is_possible || series.back() < kEarliest || !is_time(series, 0.0)) continue;
+    return PacketField{.at = at,
+                       .size = kSize,
+                       .field = time_field_of(series, 0.0),
+                       .order = is_big_endian ? "be" : "le",
+                       .kind = 'f'};
+  }
+  return std::nullopt;
 }
 
 /// A byte that counts through the same numbers, or is one of a few in turn.
@@ -75,7 +100,8 @@ std::optional<PacketField> field_at(const Packets& packets, std::size_t at, std:
 std::vector<PacketField> fields_in(const Packets& packets, std::size_t begin, std::size_t end) {
   std::vector<PacketField> fields;
   for (std::size_t at = begin; at < end;) {
-    std::optional<PacketField> field = varies(packets, at) ? field_at(packets, at, end) : std::nullopt;
+    std::optional<PacketField> field = float_clock_at(packets, at, end);
+    if (!field && varies(packets, at)) field = field_at(packets, at, end);
     at += field ? field->size : 1;
     if (!field) continue;
     const auto is_same = [&](const PacketField& one) {

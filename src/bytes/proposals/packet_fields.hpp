@@ -19,6 +19,7 @@ struct PacketField {
   std::string order{};                   ///< "le", "be", or empty of one byte
   std::vector<std::uint64_t> numbers{};  ///< Of those that count in turn.
   std::string options{};                 ///< " *8 -8", as in a layout.
+  char kind = 'u';                       ///< 'f': a float
 };
 
 /// Those in the bytes from `begin` to `end`, in order.

@@ -73,6 +73,18 @@ std::vector<std::size_t> places_of(std::span<const std::uint8_t> bytes, const Pa
   return places;
 }
 
+/// Places that have another one a packet before or behind them; the others are readings that look like the mark.
+std::vector<std::size_t> those_in_a_row(const std::vector<std::size_t>& places, std::size_t size) {
+  std::vector<std::size_t> kept;
+  for (const std::size_t place : places) {
+    const bool is_in_packet = !kept.empty() && place < kept.back() + size;
+    const bool has_next = std::binary_search(places.begin(), places.end(), place + size);
+    const bool has_last = place >= size && std::binary_search(places.begin(), places.end(), place - size);
+    if (!is_in_packet && (has_next || has_last)) kept.push_back(place);
+  }
+  return kept;
+}
+
 /// The bytes of which nearly all come again at one distance, and that distance.
 std::vector<std::pair<std::size_t, std::vector<std::size_t>>> single_marks_in(std::span<const std::uint8_t> bytes) {
   std::array<std::vector<std::size_t>, 256> places;
@@ -84,7 +96,8 @@ std::vector<std::pair<std::size_t, std::vector<std::size_t>>> single_marks_in(st
     for (std::size_t k = 1; k < at.size(); ++k) ++gaps[at[k] - at[k - 1]];
     const auto most = std::ranges::max_element(gaps, {}, [](const auto& gap) { return gap.second; });
     const bool is_even = 10 * most->second >= 9 * (at.size() - 1) && most->first >= kSmallest;
-    if (is_even && 2 * most->first * at.size() >= bytes.size()) found.emplace_back(most->first, std::move(at));
+    if (is_even && 2 * most->first * at.size() >= bytes.size())
+      found.emplace_back(most->first, those_in_a_row(at, most->first));
   }
   return found;
 }

@@ -68,8 +68,8 @@ void PacketWriter::add_values(bool are_named) {
 void PacketWriter::add_field(const PacketField& field, const std::string& name) {
   add_constant(field.at);
   const bool is_from_1 = name == "row" && field.numbers.front() == 1;
-  add(name + " u" + std::to_string(8 * field.size) + (field.size > 1 ? field.order : "") + (is_from_1 ? " -1" : "") +
-          field.options,
+  add(name + " " + field.kind + std::to_string(8 * field.size) + (field.size > 1 ? field.order : "") +
+          (is_from_1 ? " -1" : "") + field.options,
       field.size, role_of(name));
   draft_.merit += 0.05;
   if (!field.numbers.empty()) return;

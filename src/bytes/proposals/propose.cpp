@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string_view>
 #include <utility>
@@ -56,9 +57,26 @@ void doubt_absent(const Readings& readings, Draft& draft) {
     const auto count = std::ranges::count_if(all, is_it);
     if (count == 0 || std::ranges::count_if(all, is_beyond) > count || std::ranges::all_of(all, is_it)) continue;
     const std::string text = std::to_string(static_cast<std::int64_t>(number));
-    draft.doubts.push_back("some readings are " + text + ", far from all others: write absent = " + text +
-                           " where it stands for none");
+    draft.doubts.push_back(std::string("some readings are ")
+                               .append(text)
+                               .append(", far from all others: write absent = ")
+                               .append(text)
+                               .append(" where it stands for none"));
   }
+}
+
+/// Bytes in hexadecimal digits of which every second one is small.
+void doubt_halves(const Readings& readings, Draft& draft) {
+  const bool is_hexadecimal = std::ranges::any_of(draft.keys, [](const auto& key) { return key.first == "digits"; });
+  std::array<float, 2> most{};
+  for (const std::vector<float>& frame : readings) {
+    for (std::size_t k = 0; k < frame.size(); ++k) most[k % 2] = std::max(most[k % 2], frame[k]);
+  }
+  const auto [smaller, larger] = std::minmax(most[0], most[1]);
+  if (!is_hexadecimal || smaller > 15.0F || larger < 128.0F || larger > 255.0F) return;
+  draft.doubts.emplace_back(
+      "every second byte is small: two may be one reading; make bytes of these digits "
+      "('xxd -r -p'), and describe those");
 }
 
 bool are_whole(const Readings& readings) {
@@ -121,6 +139,7 @@ std::optional<Judged> judge(Draft draft, std::span<const std::uint8_t> bytes, co
   if (draft.is_weak && along > kNoise && in_time > kNoise) return std::nullopt;
   const bool is_changed = describe_falling(*trial, draft);
   if (!is_changed) doubt_absent(trial->readings, draft);
+  doubt_halves(trial->readings, draft);
   Judged judged{.merit = draft.merit + (1.0 - left) - 0.3 * along - 0.2 * in_time};
   Proposal& proposal = judged.proposal;
   proposal.toml = toml_of(draft);

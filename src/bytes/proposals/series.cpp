@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kMost = 0.9;  // of the steps are as expected: lines and packets may be missing
 constexpr std::size_t kManySteps = 8;
+constexpr std::size_t kFewestAbove = 16;  // packets
 constexpr std::size_t kMostLines = 1024;
 constexpr std::size_t kMostInTurn = 64;
 
@@ -54,6 +55,26 @@ double median(Series values) {
   return *middle;
 }
 
+/// Steps of one size, or of several that were lost.
+bool are_even(const Series& steps) {
+  const double least = *std::min_element(steps.begin(), steps.end());
+  const auto is_even = [&](double step) { return step == least || (least > 1.0 && std::fmod(step, least) == 0.0); };
+  return std::all_of(steps.begin(), steps.end(), is_even) &&
+         are_most(steps, [&](double step) { return step == least; });
+}
+
+/// Its high bytes count evenly, and what stands below them does not go on with them: it is something else.
+bool counts_above_others(const Series& series, const Series& steps, double modulus) {
+  if (series.size() < kFewestAbove || steps.empty() || are_even(steps)) return false;
+  for (double unit = 256.0; unit < modulus; unit *= 256.0) {
+    Series high;
+    for (const double value : series) high.push_back(std::floor(value / unit));
+    const Series high_steps = steps_of(high, modulus / unit);
+    if (high_steps.size() + 1 == series.size() && are_even(high_steps)) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::optional<Cycle> cycle_of(const Series& series) {
@@ -82,6 +103,7 @@ bool is_frame_number(const Series& series, double modulus) {
 
 bool is_time(const Series& series, double modulus) {
   const Series steps = steps_of(series, modulus);
+  if (counts_above_others(series, steps, modulus)) return false;
   if (steps.size() < 3 || *std::min_element(series.begin(), series.end()) < 0.0) return false;
   const bool never_falls =
       modulus == 0.0 && steps.size() >= kManySteps && *std::min_element(steps.begin(), steps.end()) > 0.0;

@@ -45,7 +45,8 @@ std::size_t datetime_at(std::string_view text) {
   const std::size_t clock = clock_at(text.substr(date + 1));
   if (clock == 0) return 0;
   const std::size_t size = date + 1 + clock;
-  return size + (size < text.size() && text[size] == 'Z' ? 1 : 0);
+  const std::string_view zone = text.substr(size);
+  return size + std::max({as_pictured(zone, "Z"), as_pictured(zone, "+00:00"), as_pictured(zone, "-00:00")});
 }
 
 /// Digits with a sign, a fraction and an exponent where they have them.
@@ -92,6 +93,14 @@ std::size_t hexadecimal_at(std::string_view text, std::size_t width, char before
   return size > 8 || (size < text.size() && is_letter(text[size])) ? 0 : size;
 }
 
+/// "0x4F" among decimal numbers.
+std::size_t marked_at(std::string_view text, char before) {
+  if (is_digit(before) || is_letter(before) || (as_pictured(text, "0x") == 0 && as_pictured(text, "0X") == 0)) return 0;
+  std::size_t size = 2;
+  while (size < text.size() && is_hexadecimal(text[size])) ++size;
+  return size > 2 ? size : 0;
+}
+
 double value_of(std::string_view text, const Numerals& numerals) {
   std::string plain(text.starts_with('+') ? text.substr(1) : text);
   std::replace(plain.begin(), plain.end(), numerals.decimal_point, '.');
@@ -110,6 +119,8 @@ Token token_at(std::string_view text, const Numerals& numerals, char before) {
   std::size_t size = 0;
   if (numerals.is_hexadecimal || numerals.width > 0) {
     size = hexadecimal_at(text, numerals.width, before);
+  } else if (const std::size_t marked = marked_at(text, before); marked > 0) {
+    return {Token::Kind::number, text.substr(0, marked)};
   } else {
     size = std::max(decimal_at(text, numerals.decimal_point, before), nan_at(text, before));
   }

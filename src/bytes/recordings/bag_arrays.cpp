@@ -49,11 +49,14 @@ class Search {
   [[nodiscard]] bool has_all() const { return missing_ && missing_->empty(); }
 
   void look(const McapMessage& message) {
-    if (!seen_.insert(message.channel).second) return;
-    if (missing_) missing_->erase(message.channel);
+    if (seen_.contains(message.channel)) return;
     const McapChannel& channel = mcap_.channels().at(message.channel);
     if (!may_be_readings(channel)) return;
-    if (const Status read = read_readings(channel, message.data, readings_); !read) {
+    const Status read = read_readings(channel, message.data, readings_);
+    if (read && readings_.empty()) return;  // a later one may hold some
+    seen_.insert(message.channel);
+    if (missing_) missing_->erase(message.channel);
+    if (!read) {
       if (why_.empty()) {
         why_ = "the first message of " + printable(channel.topic) + " cannot be read: " + read.error().message;
       }

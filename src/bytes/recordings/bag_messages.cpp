@@ -12,6 +12,7 @@
 namespace dermis::bytes::recordings {
 namespace {
 
+constexpr std::string_view kJson = "json";
 constexpr std::string_view kText = "std_msgs/msg/String";
 
 const ros_messages::TouchType* touch_type_of(const McapChannel& channel) {
@@ -41,17 +42,22 @@ Status read_touch(const ros_messages::TouchType& type, std::span<const std::uint
   return Done{};
 }
 
+Status read_json(std::string_view text, std::vector<BagReading>& readings) {
+  readings = readings_of_json(text);
+  if (!readings.empty()) return Done{};
+  return bad_input("the text holds no list of numbers in JSON");
+}
+
 Status read_text(std::span<const std::uint8_t> message, std::vector<BagReading>& readings) {
   const Result<std::string_view> text = ros_messages::decode_text(message);
   if (!text) return text.error();
-  readings = readings_of_json(*text);
-  if (!readings.empty()) return Done{};
-  return bad_input("the text holds no list of numbers in JSON");
+  return read_json(*text, readings);
 }
 
 }  // namespace
 
 bool may_be_readings(const McapChannel& channel) {
+  if (channel.encoding == kJson) return true;
   if (channel.encoding != "cdr") return false;
   const MessageKind kind = kind_of(channel);
   if (kind != MessageKind::none) return kind == MessageKind::image;
@@ -60,6 +66,8 @@ bool may_be_readings(const McapChannel& channel) {
 
 Status read_readings(const McapChannel& channel, std::span<const std::uint8_t> message,
                      std::vector<BagReading>& readings) {
+  if (channel.encoding == kJson)
+    return read_json({reinterpret_cast<const char*>(message.data()), message.size()}, readings);
   if (kind_of(channel) == MessageKind::image) return read_image(channel, message, readings);
   if (channel.schema_name == kText) return read_text(message, readings);
   const ros_messages::TouchType* const type = touch_type_of(channel);

@@ -188,6 +188,8 @@ Status decode_multi_array(Message message, std::span<TouchReading> readings) {
   const std::size_t count = reader.read<std::uint32_t>();
   if (!sizes || !reader.good() || count > message.size() / sizeof(T)) return not_whole(multi_array_name<T>().c_str());
   if (offset > count) return bad_input("the message has a data_offset behind its values");
+  readings.front().shape = {};
+  if (offset == count) return Done{};  // some nodes begin with nothing
   skip<T>(reader, offset);
   const Result<FrameShape> shape = shape_of(*sizes, count - offset);
   if (!shape) return shape.error();

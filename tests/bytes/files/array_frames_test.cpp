@@ -68,6 +68,16 @@ TEST(ArrayFrames, that_may_stand_last_are_asked_for_with_both_ways_to_say_it) {
   EXPECT_FALSE(needs_values(NumberArray::last_fastest({100, 16, 16}), {"f"}));
 }
 
+TEST(ArrayFrames, that_may_stand_between_rows_and_columns_are_asked_for) {
+  const NumberArray array = NumberArray::last_fastest({4, 150, 16});
+  EXPECT_TRUE(needs_values(array, {"f"}));
+  EXPECT_EQ(axes_in(array, "", {}, 0, smooth_along(array, 1)).error().message,
+            "is 4 x 150 x 16, which can be read in two ways: 4 frames of 150x16, as 'f.npz#touch[frames, rows, cols]', "
+            "or 150 frames of 4x16, as 'f.npz#touch[rows, frames, cols]'");
+  EXPECT_EQ(axes_in(array, "", {}, 0, smooth_along(array, 0))->frames, 4U);
+  EXPECT_EQ(axes_in(array, "", FrameShape{4, 16})->frames, 150U);
+}
+
 TEST(ArrayFrames, long_arrays_whose_first_axis_is_clearly_the_time_are_not_asked_for) {
   const NumberArray array = NumberArray::last_fastest({10, 8, 32});
   EXPECT_TRUE(axes_in(array, "", {}, 0, smooth_along(array, 0)));

@@ -613,6 +613,15 @@ TEST(PacketLayout, a_run_may_reach_beyond_the_array) {
   EXPECT_EQ(readings_of("packet = [\"AA\", \"first u8 *3\", \"values u8 x3\", \"FF\"]\n", counted), kOneToEight);
 }
 
+TEST(PacketLayout, runs_of_a_frame_may_overlap) {
+  const std::string keys = "packet = [\"AA\", \"first u8\", \"values u8 x3\", \"FF\"]\n";
+  EXPECT_EQ(readings_of(keys, {0xAA, 0, 1, 2, 3, 0xFF, 0xAA, 1, 2, 3, 4, 0xFF,  //
+                               0xAA, 0, 5, 6, 7, 0xFF, 0xAA, 1, 6, 7, 8, 0xFF}),
+            kOneToEight);
+  const Bytes without_a_beginning = {0xAA, 1, 2, 3, 4, 0xFF, 0xAA, 0, 5, 6, 7, 0xFF, 0xAA, 1, 6, 7, 8, 0xFF};
+  EXPECT_EQ(readings_of(keys, without_a_beginning), (std::vector<std::vector<float>>{{5, 6, 7, 8}}));
+}
+
 TEST(PacketLayout, frames_of_one_size_need_no_mark) {
   const Bytes bytes = {0, 1, 0, 2, 0, 3, 0, 4, 0, 5, 0, 6, 0, 7, 0, 8, 0};
   EXPECT_EQ(readings_of("packet = [\"values u16be\"]\n", bytes), kOneToEight);

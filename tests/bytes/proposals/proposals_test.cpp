@@ -6,9 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <span>
 #include <string>
 #include <vector>
@@ -128,6 +130,21 @@ const std::vector<Stream>& text_streams() {
          return in_taxels(f, [](std::size_t r, std::size_t c,
                                 int v) { return number(r) + "," + number(c) + "," + std::to_string(v) + "\n"; }) +
                 "\n";
+       }},
+      {"two indices in brackets",
+       [](const Frame& f, std::size_t) {
+         return in_taxels(f, [](std::size_t r, std::size_t c, int v) {
+           return "V[" + number(r) + "][" + number(c) + "]: " + std::to_string(v) + "mV\n";
+         });
+       }},
+      {"a table with lines",
+       [](const Frame& f, std::size_t) {
+         return "+----+----+\n" +
+                in_rows(f, [](std::size_t, const Frame& row) { return "|" + joined(row, "|", "%5d") + "|\n"; });
+       }},
+      {"a date with a zone",
+       [](const Frame& f, std::size_t k) {
+         return "2026-11-29T10:15:" + number(10 + k) + ".250+02:00\t" + joined(f, "\t", "%d.0e0") + "\n";
        }},
       {"an index and a reading",
        [](const Frame& f, std::size_t) {
@@ -304,6 +321,204 @@ TEST(Proposals, packets_may_come_in_runs_beyond_the_array) {
     });
     EXPECT_NE(proposal.toml.find(factor == 1 ? "\"first u8\"" : "\"first u8 *8\""), std::string::npos) << proposal.toml;
   }
+}
+
+TEST(Proposals, parts_may_overlap) {
+  const FrameShape shape{5, 8};
+  const Proposal proposal = first_of(test::pressed_frames(shape), shape, [](const Frame& f, std::size_t) {
+    Bytes bytes;
+    for (const int first : {0, 12, 24}) {
+      bytes.insert(bytes.end(), {0xAB, 0xCD, static_cast<std::uint8_t>(first)});
+      test::add_readings(bytes, {f.begin() + first, f.begin() + first + 16});
+    }
+    return bytes;
+  });
+  EXPECT_NE(proposal.toml.find("\"first u8\", \"values u16le x16\""), std::string::npos) << proposal.toml;
+}
+
+TEST(Proposals, rows_are_found_where_readings_look_like_the_mark) {
+  const FrameShape shape{6, 5};
+  const std::vector<Frame> frames = test::pressed_frames(shape, 2500.0);
+  Bytes bytes;
+  for (const Frame& f : frames) {
+    for (std::size_t row = 0; row < shape.rows; ++row) {
+      Bytes packet = {0xAA, static_cast<std::uint8_t>(row)};
+      test::add_readings(packet, row_of(f, row, shape.cols), 2, true);
+      packet.push_back(static_cast<std::uint8_t>(std::accumulate(packet.begin(), packet.end(), 0)));
+      bytes.insert(bytes.end(), packet.begin(), packet.end());
+    }
+  }
+  for (const Known& known : {Known{}, Known{.rows = 6, .cols = 5}}) {
+    const std::vector<Proposal> proposals = propose(bytes, known);
+    ASSERT_FALSE(proposals.empty());
+    EXPECT_EQ(frames_of(proposals.front().toml, bytes), frames) << proposals.front().toml;
+  }
+}
+
+TEST(Proposals, readings_beside_a_counter_are_no_part_of_it) {
+  std::vector<Frame> frames = test::pressed_frames(kShape, 900.0);
+  const Proposal behind = first_of(frames, kShape, [](const Frame& f, std::size_t k) {
+    Bytes bytes = {0xFE, 0x43};
+    test::add_readings(bytes, f);
+    bytes.push_back(static_cast<std::uint8_t>(k));
+    return bytes;
+  });
+  EXPECT_NE(behind.toml.find("\"frame u8\""), std::string::npos) << behind.toml;
+  const Proposal before = first_of(frames, kShape, [](const Frame& f, std::size_t k) {
+    Bytes bytes = {0xA5, 0x5A};
+    test::add_number(bytes, 10 * k, 4, true);
+    test::add_packed(bytes, f, 12);
+    return bytes;
+  });
+  EXPECT_NE(before.toml.find("\"time_ms u32be\", \"values u12be\""), std::string::npos) << before.toml;
+}
+
+TEST(Proposals, floats_of_64_bits_are_readings_and_clocks) {
+  const Proposal proposal = first_of(test::pressed_frames(kShape), kShape, [](const Frame& f, std::size_t k) {
+    Bytes bytes = {'T', 'A', 'C', 'T'};
+    test::add_number(bytes, std::bit_cast<std::uint64_t>(100.0 + 0.02 * static_cast<double>(k)), 8);
+    for (const int value : f) test::add_number(bytes, std::bit_cast<std::uint64_t>(static_cast<double>(value)), 8);
+    return bytes;
+  });
+  EXPECT_NE(proposal.toml.find("\"time_s f64le\", \"values f64le\""), std::string::npos) << proposal.toml;
+}
+
+TEST(Proposals, upper_bytes_of_small_numbers_with_a_sign_are_no_readings) {
+  std::vector<Frame> frames = test::pressed_frames(kShape, 600.0);
+  for (Frame& frame : frames) std::ranges::transform(frame, frame.begin(), [](int v) { return v - 40; });
+  const Proposal proposal = first_of(frames, kShape, [](const Frame& f, std::size_t) {
+    Bytes bytes = {0x24, 0x25};
+    test::add_readings(bytes, f, 2, true);
+    return bytes;
+  });
+  EXPECT_NE(proposal.toml.find("\"values i16be\""), std::string::npos) << proposal.toml;
+}
+
+TEST(Proposals, the_number_of_a_reading_may_stand_above_it) {
+  const FrameShape shape{4, 4};
+  const Proposal proposal = first_of(test::pressed_frames(shape, 3000.0), shape, [](const Frame& f, std::size_t) {
+    Bytes bytes = {0xF1, 0xF2};
+    for (std::size_t k = 0; k < f.size(); ++k) test::add_number(bytes, k << 12U | static_cast<unsigned>(f[k]), 2, true);
+    return bytes;
+  });
+  EXPECT_NE(proposal.toml.find("mask=0FFF"), std::string::npos) << proposal.toml;
+}
+
+TEST(Proposals, readings_of_seven_bits_a_byte_are_doubted) {
+  Bytes bytes;
+  for (const Frame& frame : test::pressed_frames(kShape, 3000.0)) {
+    bytes.push_back(0xFF);
+    for (const int value : frame) {
+      bytes.insert(bytes.end(), {static_cast<std::uint8_t>(value >> 7), static_cast<std::uint8_t>(value & 0x7F)});
+    }
+  }
+  const std::vector<Proposal> proposals = propose(bytes, {.rows = kShape.rows, .cols = kShape.cols});
+  ASSERT_FALSE(proposals.empty());
+  EXPECT_TRUE(has_doubt(proposals.front(), "7 bits each")) << proposals.front().toml;
+}
+
+TEST(Proposals, bytes_that_nothing_explains_are_doubted) {
+  Bytes bytes;
+  std::size_t k = 0;
+  for (const Frame& frame : test::pressed_frames(kShape, 900.0)) {
+    bytes.insert(bytes.end(), {0xFA, 0xF5});
+    test::add_readings(bytes, frame);
+    for (const std::size_t factor : {37U, 53U}) test::add_number(bytes, factor * k * k % 400, 2);
+    bytes.push_back(0x0A);
+    ++k;
+  }
+  const std::vector<Proposal> proposals = propose(bytes, {.rows = kShape.rows, .cols = kShape.cols});
+  ASSERT_FALSE(proposals.empty());
+  EXPECT_TRUE(has_doubt(proposals.front(), "nothing explains them")) << proposals.front().toml;
+}
+
+TEST(Proposals, volts_may_stand_in_brackets_behind_each_reading) {
+  const Proposal proposal = first_of(test::pressed_frames(kShape), kShape, [](const Frame& f, std::size_t k) {
+    std::string line = number(k) + ".5s";
+    for (const int value : f) {
+      line += " | ";
+      line += std::to_string(value) + " (" + std::to_string(value / 200) + ".25 V)";
+    }
+    return bytes_of(line + "\n");
+  });
+  EXPECT_TRUE(has_doubt(proposal, "the readings may also be")) << proposal.toml;
+}
+
+TEST(Proposals, a_mark_behind_the_readings_is_none_of_them) {
+  const FrameShape shape{8, 8};
+  const auto between_marks = [](const Frame& f, std::size_t) {
+    Bytes bytes = {0xAA, 0x55, 0x03, 0x99};
+    test::add_readings(bytes, f);
+    bytes.insert(bytes.end(), {0x55, 0xAA});
+    return bytes;
+  };
+  const Proposal proposal = first_of(test::pressed_frames(shape), shape, between_marks);
+  EXPECT_NE(proposal.toml.find("\"values u16le\", \"55 AA\""), std::string::npos) << proposal.toml;
+}
+
+TEST(Proposals, a_clock_may_be_cut_by_what_seems_a_mark) {
+  const FrameShape shape{6, 6};
+  Bytes bytes;
+  const std::vector<Frame> frames = test::pressed_frames(shape);
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    test::add_number(bytes, 1764512345000000U + 20000 * k, 8);
+    test::add_readings(bytes, frames[k]);
+  }
+  const std::vector<Proposal> proposals = propose(bytes, {.rows = 6, .cols = 6});
+  ASSERT_FALSE(proposals.empty());
+  std::vector<Frame> found = frames_of(proposals.front().toml, bytes);
+  EXPECT_EQ(found.size() + 1, frames.size()) << proposals.front().toml;
+  EXPECT_TRUE(std::ranges::equal(found, std::span(frames).first(found.size()))) << proposals.front().toml;
+}
+
+TEST(Proposals, decimal_readings_before_a_checksum_of_hexadecimal_digits_stay_decimal) {
+  for (const std::string mark : {"0x", ""}) {
+    const Proposal proposal = first_of(test::pressed_frames(kShape), kShape, [&](const Frame& f, std::size_t k) {
+      char checksum[8];
+      std::snprintf(checksum, sizeof checksum, "%02X", static_cast<unsigned>(97 * k % 256));
+      return bytes_of(number(50 * k) + "\t" + joined(f, "\t") + (mark.empty() ? "*" : "\t") + mark + checksum + "\n");
+    });
+    EXPECT_NE(proposal.toml.find("{time_ms}"), std::string::npos) << proposal.toml;
+  }
+}
+
+TEST(Proposals, zeros_may_stand_before_a_frame_that_nothing_marks) {
+  std::vector<Frame> frames = test::pressed_frames(kShape, 250.0);
+  for (Frame& frame : frames) std::ranges::transform(frame, frame.begin(), [](int v) { return std::clamp(v, 1, 255); });
+  first_of(frames, kShape, [](const Frame& f, std::size_t) {
+    Bytes bytes = {0, 0};
+    test::add_readings(bytes, f, 1);
+    return bytes;
+  });
+}
+
+TEST(Proposals, a_line_before_rows_tells_their_time) {
+  const Proposal proposal = first_of(test::pressed_frames(kShape), kShape, [](const Frame& f, std::size_t k) {
+    return bytes_of(
+        "--- frame " + number(k) + " (" + number(33 * k) + " ms) ---\n" +
+        in_rows(f, [](std::size_t r, const Frame& row) { return "R" + number(r) + ": " + joined(row, " ") + "\n"; }) +
+        "\n");
+  });
+  EXPECT_NE(proposal.toml.find(R"("--- frame {frame} ({time_ms} ms) ---", "R{row}: {values}")"), std::string::npos)
+      << proposal.toml;
+}
+
+TEST(Proposals, halves_of_readings_in_digits_are_doubted) {
+  std::string spaced;
+  std::string packed;
+  for (const Frame& frame : test::pressed_frames(kShape, 3000.0)) {
+    for (const int value : frame) {
+      char text[16];
+      std::snprintf(text, sizeof text, "%02X %02X ", value & 255, value >> 8);
+      spaced += text;
+      std::snprintf(text, sizeof text, "%03X", value);
+      packed += text;
+    }
+    spaced += "\n";
+    packed += "A5\n";
+  }
+  EXPECT_TRUE(has_doubt(propose(bytes_of(spaced), {}).at(0), "every second byte is small"));
+  EXPECT_TRUE(has_doubt(propose(bytes_of(packed), {}).at(0), "nothing stands between the numbers"));
 }
 
 TEST(Proposals, a_frame_without_a_mark_is_proposed_with_its_doubt) {
