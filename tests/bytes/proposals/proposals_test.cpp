@@ -585,7 +585,7 @@ TEST(Proposals, a_document_of_json_is_no_lines) {
       const char* const separator = k > 0 ? "," : "";
       const std::string list = fmt::format("[{0}{1}{0}]", end, joined(frames[k], "," + end));
       objects += fmt::format("{0}{1}{{{1}\"t\": {2},{1}\"data\": {3}{1}}}", separator, end, 20 * k, list);
-      lists += separator + end + list;
+      lists += fmt::format("{}{}{}", separator, end, list);
     }
     for (const std::string& text : {objects + end + "]}\n", lists + end + "]\n"}) {
       const std::vector<Proposal> proposals = propose(bytes_of(text), {.rows = kShape.rows, .cols = kShape.cols});
