@@ -566,6 +566,18 @@ TEST(Proposals, readings_may_stand_behind_labels) {
   });
 }
 
+TEST(Proposals, labels_that_count_leave_the_shape_open) {
+  std::string text;
+  for (const Frame& frame : test::pressed_frames(kShape)) {
+    for (std::size_t k = 0; k < frame.size(); ++k) text += " S" + number(k) + "=" + std::to_string(frame[k]);
+    text += "\n";
+  }
+  const std::vector<Proposal> proposals = propose(bytes_of(text), {});
+  ASSERT_FALSE(proposals.empty());
+  EXPECT_EQ(proposals.front().shape, kShape) << proposals.front().toml;
+  EXPECT_EQ(proposals.front().open, (std::vector<std::string>{"rows", "cols"}));
+}
+
 TEST(Proposals, two_readings_a_line_are_an_array) {
   std::string text;
   for (const Frame& frame : test::pressed_frames({1, 2})) text += joined(frame, ",") + "\n";
