@@ -18,6 +18,7 @@
 #include "dermis/bytes/proposals/proposals.hpp"
 #include "dermis/bytes/recordings/frame_file_info.hpp"
 #include "dermis/bytes/recordings/frame_files.hpp"
+#include "dermis/live/buses/candump.hpp"
 #include "dermis/live/sources/source_name.hpp"
 #include "stop_flag.hpp"
 
@@ -61,12 +62,17 @@ std::optional<bytes::recordings::FrameFormat> proven_format(const std::string& p
   return info && info->frames > 0 ? std::optional(*format) : std::nullopt;
 }
 
+bool is_candump(std::string_view text) {
+  return live::buses::parse_candump_line(text.substr(0, text.find_first_of("\r\n"))).has_value();
+}
+
 Result<SourceBytes> bytes_of_file(const std::string& path) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) return bytes::files::open_input(path).error();
   SourceBytes found;
   const std::string text = bytes::files::first_bytes_of(path, bytes::proposals::kMostBytes);
   if (const auto format = proven_format(path, text)) found.known = bytes::recordings::to_string(*format);
+  if (found.known.empty() && is_candump(text)) found.known = "a log of candump (candump:" + path + "?map=MAP)";
   found.bytes.assign(text.begin(), text.end());
   return found;
 }

@@ -21,7 +21,7 @@ bool FrameAssembly::add(const Piece& piece, std::span<const float> numbers, std:
   }
   if (filled_ > 0 && piece.frame != first_.frame) end_frame();
   std::optional<std::size_t> begin = begin_of(piece, numbers.size());
-  if (begin && has_come(*begin, numbers.size())) {
+  if (begin && (has_come(*begin, numbers.size()) || begins_again(*begin, numbers.size()))) {
     end_frame();
     begin = begin_of(piece, numbers.size());
   }
@@ -64,6 +64,12 @@ bool FrameAssembly::has_come(std::size_t begin, std::size_t count) const noexcep
   return !goes_on && std::ranges::find(part, 1) != part.end();
 }
 
+/// The first readings come directly behind the last ones: those of this frame were lost. Two parts may come in any
+/// order.
+bool FrameAssembly::begins_again(std::size_t begin, std::size_t count) const noexcept {
+  return begin == 0 && last_end_ == readings_.size() && filled_ > count;
+}
+
 void FrameAssembly::begin_frame(const Piece& piece) {
   first_ = piece;
   bytes_ = 0;
@@ -78,6 +84,7 @@ void FrameAssembly::fill(std::size_t begin, std::span<const float> numbers) {
   const auto last = first + static_cast<std::ptrdiff_t>(numbers.size());
   filled_ += static_cast<std::size_t>(std::count(first, last, 0));
   std::fill(first, last, std::uint8_t{1});
+  last_end_ = begin + numbers.size();
 }
 
 /// Before the first frame, a part of one is the end of a frame whose beginning nobody saw.

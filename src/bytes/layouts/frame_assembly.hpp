@@ -39,6 +39,7 @@ class FrameAssembly {
  private:
   [[nodiscard]] std::optional<std::size_t> begin_of(const Piece& piece, std::size_t count) const noexcept;
   [[nodiscard]] bool has_come(std::size_t begin, std::size_t count) const noexcept;
+  [[nodiscard]] bool begins_again(std::size_t begin, std::size_t count) const noexcept;
   bool is_outside(const Piece& piece);
   void begin_frame(const Piece& piece);
   void fill(std::size_t begin, std::span<const float> numbers);
@@ -50,6 +51,7 @@ class FrameAssembly {
 
   std::vector<float> readings_;
   std::vector<std::uint8_t> is_filled_;
+  std::size_t last_end_ = 0;  // of the part before
   std::size_t filled_ = 0;
   std::size_t bytes_ = 0;
   std::size_t most_filled_ = 0;   ///< The most of a frame that was not complete.

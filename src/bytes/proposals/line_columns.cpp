@@ -72,15 +72,13 @@ class ColumnReader {
                                   columns_.back().kind == Token::Kind::number && is_separator(before, numerals);
       const bool is_glued = k > 1 && is_part_of_word(tokens, k - 2);
       const std::size_t run = columns_.empty() ? 0 : columns_.back().run + (follows_number && !is_glued ? 0 : 1);
-      const bool is_marked =
-          !numerals.is_hexadecimal && (tokens[k].text.starts_with("0x") || tokens[k].text.starts_with("0X"));
       std::string separator(follows_number ? before : std::string_view());
       std::erase(separator, ' ');
       columns_.push_back({.kind = tokens[k].kind,
                           .run = run,
                           .label = follows_number ? "" : label_of(before),
                           .before = std::move(separator),
-                          .field = is_marked ? "skip" : ""});
+                          .field = tokens[k].has_mark ? "skip" : ""});
       before = {};
     }
   }

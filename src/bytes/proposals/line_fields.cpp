@@ -174,8 +174,12 @@ std::vector<Labelled> labelled_of(const std::vector<Column>& columns, const std:
   std::vector<Labelled> found;
   const auto add = [&](const std::string& key, const std::vector<std::size_t>& places) {
     const auto varies = [&](std::size_t column) { return columns[column].varies; };
-    const std::optional<Span> span = evenly_spaced(places);
+    std::optional<Span> span = evenly_spaced(places);
     if (!span || std::ranges::none_of(places, varies)) return;
+    const auto is_numbered = [&](std::size_t column) {
+      return column > 0 && columns[column - 1].kind == Token::Kind::number && !columns[column - 1].varies;
+    };
+    if (std::ranges::all_of(places, is_numbered)) span->shown_shape.reset();  // numbers in labels are no places
     found.push_back({key, *span, 2 * rank_of_key(key) + (columns[places.front()].has_fractions ? 0 : 1)});
   };
   for (const auto& [key, places] : by_key) {

@@ -15,7 +15,8 @@ struct Token {
   enum class Kind { text, number, clock, datetime };
   Kind kind = Kind::text;
   std::string_view text;
-  double value = 0.0;  ///< number
+  double value = 0.0;     ///< number
+  bool has_mark = false;  ///< Of hexadecimal digits among decimal numbers: "0x4F", or "*4F" at the end of a line
 };
 
 /// How the numbers of a text are written.

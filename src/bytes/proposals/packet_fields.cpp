@@ -30,17 +30,28 @@ bool varies(const Packets& packets, std::size_t at) {
   return !is_constant(packets, at);
 }
 
+std::size_t zeros_before(const Packets& packets, std::size_t at) {
+  std::size_t zeros = 0;
+  while (zeros < at && packets.packets.front()[at - zeros - 1] == 0 && !varies(packets, at - zeros - 1)) ++zeros;
+  return zeros;
+}
+
 /// The number at this place that has the most of the bytes that change, and no more, and goes on as `is_it` says.
 template <typename Test>
 std::optional<PacketField> growing_at(const Packets& packets, std::size_t at, std::size_t end, Test is_it) {
   std::optional<PacketField> best;
   std::size_t most = 0;
+  const std::size_t left = 4 - zeros_before(packets, at) % 4;  // of a number whose high bytes have not changed yet
   for (const std::size_t size : {1U, 2U, 3U, 4U}) {
+    const bool is_cut = at + 4 > end;  // by a mark in the middle of a clock
     if (at + size > end) break;
     std::size_t changing = 0;
     for (std::size_t k = at; k < at + size; ++k) changing += varies(packets, k) ? 1 : 0;
     for (const char* order : {"le", "be"}) {
-      const Series series = series_at(packets, at, size, order[0] == 'b');
+      const bool is_big_endian = order[0] == 'b';
+      const bool has_odd_size = size == 3 && !is_cut && !(is_big_endian && left == 3);
+      if (has_odd_size || (is_big_endian && size > left)) continue;
+      const Series series = series_at(packets, at, size, is_big_endian);
       if (changing <= most || !is_it(series, std::pow(256.0, static_cast<double>(size)))) continue;
       best = PacketField{at, size, "frame", size == 1 ? "" : order};
       most = changing;
@@ -85,7 +96,10 @@ std::optional<PacketField> in_turn_at(const Packets& packets, std::size_t at, bo
 }
 
 std::optional<PacketField> field_at(const Packets& packets, std::size_t at, std::size_t end) {
-  if (auto counter = growing_at(packets, at, end, is_frame_number)) return counter;
+  if (auto counter = growing_at(packets, at, end, is_frame_number)) {
+    const auto clock = growing_at(packets, at, end, is_even_clock);
+    if (!clock || clock->size <= counter->size) return counter;
+  }
   if (auto turn = in_turn_at(packets, at, false)) return turn;
   if (auto clock = packets.packets.size() >= kFewest ? growing_at(packets, at, end, is_time) : std::nullopt) {
     const double modulus = std::pow(256.0, static_cast<double>(clock->size));

@@ -79,6 +79,11 @@ void doubt_halves(const Readings& readings, Draft& draft) {
       "('xxd -r -p'), and describe those");
 }
 
+void doubt_readings(const Readings& readings, Draft& draft) {
+  doubt_absent(readings, draft);
+  doubt_halves(readings, draft);
+}
+
 bool are_whole(const Readings& readings) {
   return std::all_of(readings.begin(), readings.end(), [](const std::vector<float>& frame) {
     return std::all_of(frame.begin(), frame.end(),
@@ -138,8 +143,7 @@ std::optional<Judged> judge(Draft draft, std::span<const std::uint8_t> bytes, co
   const double in_time = roughness_in_time(trial->readings);
   if (draft.is_weak && along > kNoise && in_time > kNoise) return std::nullopt;
   const bool is_changed = describe_falling(*trial, draft);
-  if (!is_changed) doubt_absent(trial->readings, draft);
-  doubt_halves(trial->readings, draft);
+  if (!is_changed) doubt_readings(trial->readings, draft);
   Judged judged{.merit = draft.merit + (1.0 - left) - 0.3 * along - 0.2 * in_time};
   Proposal& proposal = judged.proposal;
   proposal.toml = toml_of(draft);

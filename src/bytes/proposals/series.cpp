@@ -113,6 +113,14 @@ bool is_time(const Series& series, double modulus) {
   return usual > 0.0 && are_most(steps, [&](double step) { return step > 0.0 && step < 4.0 * usual; });
 }
 
+bool is_even_clock(const Series& series, double modulus) {
+  const Series steps = steps_of(series, modulus);
+  if (steps.size() + 1 != series.size() || !is_time(series, modulus)) return false;
+  const double usual = median(steps);
+  return usual > 1.0 &&
+         std::all_of(steps.begin(), steps.end(), [&](double step) { return step > 0.5 * usual && step < 2.0 * usual; });
+}
+
 std::string time_field_of(const Series& series, double modulus) {
   const double value = series.back();
   if (value > 1e17) return "time_ns";  // since 1970

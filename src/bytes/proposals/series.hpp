@@ -27,6 +27,9 @@ struct Cycle {
 /// Grows evenly, or never falls; `modulus` as above.
 [[nodiscard]] bool is_time(const Series& series, double modulus);
 
+/// Grows by steps that are all nearly as long, and not by 1: its high bytes alone may seem to count.
+[[nodiscard]] bool is_even_clock(const Series& series, double modulus);
+
 /// "time_ms" of such a series: the unit in which its steps and its value make sense.
 [[nodiscard]] std::string time_field_of(const Series& series, double modulus);
 

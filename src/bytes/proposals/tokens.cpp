@@ -93,8 +93,10 @@ std::size_t hexadecimal_at(std::string_view text, std::size_t width, char before
   return size > 8 || (size < text.size() && is_letter(text[size])) ? 0 : size;
 }
 
-/// "0x4F" among decimal numbers.
+/// "0x4F" among decimal numbers, or the checksum of "*4F" at the end of a line.
 std::size_t marked_at(std::string_view text, char before) {
+  const bool is_checksum = before == '*' && text.size() <= 8 && std::ranges::all_of(text, is_hexadecimal);
+  if (is_checksum) return text.size();
   if (is_digit(before) || is_letter(before) || (as_pictured(text, "0x") == 0 && as_pictured(text, "0X") == 0)) return 0;
   std::size_t size = 2;
   while (size < text.size() && is_hexadecimal(text[size])) ++size;
@@ -120,7 +122,7 @@ Token token_at(std::string_view text, const Numerals& numerals, char before) {
   if (numerals.is_hexadecimal || numerals.width > 0) {
     size = hexadecimal_at(text, numerals.width, before);
   } else if (const std::size_t marked = marked_at(text, before); marked > 0) {
-    return {Token::Kind::number, text.substr(0, marked)};
+    return {Token::Kind::number, text.substr(0, marked), 0.0, true};
   } else {
     size = std::max(decimal_at(text, numerals.decimal_point, before), nan_at(text, before));
   }

@@ -135,7 +135,8 @@ class ValueSearch {
     span.merit -= kOfLeading * static_cast<double>(this->unexplained(packets_.mark_size, begin));
     span.merit -= has_mark_at_an_end(span.readings) ? 0.3 : 0.0;
     const bool is_behind_number = std::ranges::any_of(fields_, [&](const PacketField& field) {
-      return !field.numbers.empty() && field.at + field.size == begin && unexplained == 0;
+      const bool is_before = !field.numbers.empty() && field.at + field.size <= begin && unexplained == 0;
+      return is_before && this->are_constant(field.at + field.size, begin);
     });
     span.merit += (is_behind_number ? 0.3 : 0.0) + (is_masked ? kOfTags : 0.0);
     span.merit -= type.bits == 8 && have_sign_bytes(span.readings) ? 0.3 : 0.0;
@@ -164,6 +165,12 @@ class ValueSearch {
   }
 
  private:
+  [[nodiscard]] bool are_constant(std::size_t begin, std::size_t end) const {
+    return std::all_of(is_constant_.begin() + static_cast<std::ptrdiff_t>(begin),
+                       is_constant_.begin() + static_cast<std::ptrdiff_t>(end),
+                       [](std::uint8_t one) { return one != 0; });
+  }
+
   /// The upper four of 16 bits count the readings of each packet.
   [[nodiscard]] bool has_tags(std::size_t begin, std::size_t end, bool is_big_endian) const {
     for (const Bytes& packet : packets_.packets) {

@@ -108,11 +108,13 @@ CanAssembly::Taken CanAssembly::take(const CanFrame& frame) {
   const std::optional<std::size_t> begin = first_reading(frame);
   const std::size_t count = begin ? readings_in(frame, *begin) : 0;
   if (count == 0) return Taken::nothing;
-  if (has_come_[*begin]) {
+  const bool begins_again = *begin == 0 && last_end_ == counts_.size() && missing_ + count < counts_.size();
+  if (has_come_[*begin] || begins_again) {
     ++incomplete_;
     has_come_.assign(has_come_.size(), false);
     missing_ = counts_.size();
   }
+  last_end_ = *begin + count;
   const std::size_t size = size_of(array_.value);
   for (std::size_t k = 0; k < count; ++k) {
     const double number = number_of(array_.value, Bytes(frame.data).subspan(array_.first + k * size, size));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,7 @@ constexpr std::size_t kLongestLine = 1024;
 constexpr std::uint32_t kMostId = 0x1FFFFFFF;  // above: flags of an error
 constexpr std::size_t kDigitsOfFraction = 9;
 constexpr std::int64_t kNanosPerSecond = 1'000'000'000;
+constexpr Nanos kJitter = std::chrono::milliseconds(1);
 
 std::optional<std::uint32_t> hexadecimal(std::string_view text, std::size_t most_digits) {
   std::uint32_t value = 0;
@@ -61,6 +63,24 @@ std::optional<Nanos> time_of(std::string_view text) {
   std::int64_t nanos = 0;
   if (!bytes::files::parse_number(fraction, nanos) || nanos < 0) return std::nullopt;
   return Nanos(seconds * kNanosPerSecond + nanos);
+}
+
+/// "2026-11-29" and "14:03:00.249713" of candump -t A: local times, counted as if they were UTC.
+std::optional<Nanos> date_time_of(std::string_view date, std::string_view clock) {
+  std::array<int, 5> numbers{};  // year, month, day, hours, minutes
+  const auto read = [&](std::size_t k, std::string_view text, std::size_t at, std::size_t size) {
+    return at < text.size() && bytes::files::parse_number(text.substr(at, size), numbers[k]) && numbers[k] >= 0;
+  };
+  if (!read(0, date, 0, 4) || !read(1, date, 5, 2) || !read(2, date, 8, date.size())) return std::nullopt;
+  if (!read(3, clock, 0, 2) || !read(4, clock, 3, 2)) return std::nullopt;
+  const std::chrono::year_month_day day{std::chrono::year(numbers[0]),
+                                        std::chrono::month(static_cast<unsigned>(numbers[1])),
+                                        std::chrono::day(static_cast<unsigned>(numbers[2]))};
+  const std::optional<Nanos> seconds = time_of(clock.substr(std::min<std::size_t>(6, clock.size())));
+  if (!day.ok() || !seconds || numbers[3] > 23 || numbers[4] > 59 || *seconds > std::chrono::seconds(61))
+    return std::nullopt;
+  return std::chrono::sys_days(day).time_since_epoch() + std::chrono::hours(numbers[3]) +
+         std::chrono::minutes(numbers[4]) + *seconds;
 }
 
 /// "044#2A366C2BBA", "044##12A366C2B" of CAN FD, "044#R4"
@@ -129,6 +149,7 @@ class CandumpFrames final : public FrameSource {
       const CanAssembly::Taken taken = assembly_.take((*line)->frame);
       if (taken == CanAssembly::Taken::nothing) continue;
       if (const Status only = check_interface((*line)->interface); !only) return only.error();
+      if (const Status in_order = check_order((*line)->time); !in_order) return in_order.error();
       if (taken == CanAssembly::Taken::part) continue;
       if (const Status timed = set_time(**line, frame); !timed) return timed.error();
       frame.counts = assembly_.counts();
@@ -180,6 +201,14 @@ class CandumpFrames final : public FrameSource {
                  "; choose, as interface=" + interface_);
   }
 
+  /// Differences from line to line fall and rise.
+  Status check_order(std::optional<Nanos> time) {
+    if (!time) return Done{};
+    if (*time + kJitter < last_) return error("the times go back; log with candump -l or -t a, not with differences");
+    last_ = std::max(last_, *time);
+    return Done{};
+  }
+
   Status set_time(const CandumpLine& line, RawFrame& frame) {
     frame.acquisition = {};
     if (!line.time && !options_.rate_hz) {
@@ -191,8 +220,7 @@ class CandumpFrames final : public FrameSource {
     };
     const std::optional<Nanos> time = line.time ? line.time : by_rate();
     if (!time) return error("would be later than 9e9 seconds; give a higher rate");
-    if (*time < last_) return error("the times go back; log with candump -l or -t a, not with differences");
-    frame.time = last_ = *time;
+    frame.time = *time;
     if (line.time) frame.acquisition.arrival_utc = *time;
     ++frames_;
     return Done{};
@@ -207,7 +235,7 @@ class CandumpFrames final : public FrameSource {
   std::size_t line_ = 0;
   std::size_t frames_ = 0;
   std::string interface_;
-  Nanos last_{};
+  Nanos last_{};  // time of a part
 };
 
 }  // namespace
@@ -217,8 +245,10 @@ std::optional<CandumpLine> parse_candump_line(std::string_view text) {
   CandumpLine line;
   std::string_view word = words.take();
   if (word.starts_with('(')) {
+    const std::string_view date = word.ends_with(')') ? std::string_view() : std::exchange(word, words.take());
     if (!word.ends_with(')')) return std::nullopt;
-    line.time = time_of(word.substr(1, word.size() - 2));
+    word.remove_suffix(1);
+    line.time = date.empty() ? time_of(word.substr(1)) : date_time_of(date.substr(1), word);
     if (!line.time) return std::nullopt;
     word = words.take();
   }

@@ -622,6 +622,18 @@ TEST(PacketLayout, runs_of_a_frame_may_overlap) {
   EXPECT_EQ(readings_of(keys, without_a_beginning), (std::vector<std::vector<float>>{{5, 6, 7, 8}}));
 }
 
+TEST(TextLayout, rows_of_two_frames_are_never_one) {
+  const std::string keys = "[layout]\nrows = 3\ncols = 1\nline = \"{row}: {values}\"\n";
+  const auto frames = [&](const std::string& text) {
+    const auto decoder = make_decoder(layout_of(keys), 0, true);
+    return readings_of(frames_of(*decoder, Bytes(text.begin(), text.end())));
+  };
+  const Readings last = {{7, 8, 9}};
+  EXPECT_EQ(frames("1: 2\n2: 3\n0: 4\n2: 6\n0: 7\n1: 8\n2: 9\n"), last);  // each first row but one is lost
+  EXPECT_EQ(frames("1: 2\n2: 3\n0: 7\n1: 8\n2: 9\n"), last);  // the middle of a frame is the first that came
+  EXPECT_EQ(frames("2: 9\n1: 8\n0: 7\n"), last);
+}
+
 TEST(PacketLayout, frames_of_one_size_need_no_mark) {
   const Bytes bytes = {0, 1, 0, 2, 0, 3, 0, 4, 0, 5, 0, 6, 0, 7, 0, 8, 0};
   EXPECT_EQ(readings_of("packet = [\"values u16be\"]\n", bytes), kOneToEight);

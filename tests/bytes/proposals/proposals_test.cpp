@@ -373,6 +373,21 @@ TEST(Proposals, readings_beside_a_counter_are_no_part_of_it) {
   EXPECT_NE(before.toml.find("\"time_ms u32be\", \"values u12be\""), std::string::npos) << before.toml;
 }
 
+TEST(Proposals, clocks_that_jitter_end_before_the_readings) {
+  for (const bool is_big : {false, true}) {
+    for (const std::size_t step : {10'000U, 16'777U, 66'000U}) {
+      const Proposal proposal = first_of(test::pressed_frames(kShape), kShape, [&](const Frame& f, std::size_t k) {
+        Bytes bytes = {0xAA, 0xBB};
+        test::add_number(bytes, 123'456 + step * k + 151 * k % 97, 4, is_big);
+        test::add_readings(bytes, f, 2, is_big);
+        return bytes;
+      });
+      EXPECT_NE(proposal.toml.find(is_big ? "\"time_us u32be\"" : "\"time_us u32le\""), std::string::npos)
+          << proposal.toml;
+    }
+  }
+}
+
 TEST(Proposals, floats_of_64_bits_are_readings_and_clocks) {
   const Proposal proposal = first_of(test::pressed_frames(kShape), kShape, [](const Frame& f, std::size_t k) {
     Bytes bytes = {'T', 'A', 'C', 'T'};
@@ -565,6 +580,18 @@ TEST(Proposals, readings_may_stand_behind_labels) {
   (void)first_of(frames, shape, [&](const Frame& f, std::size_t) {
     return bytes_of(print(f, [&](std::size_t i, int v) { return "A" + number(i) + ": " + std::to_string(v); }) + "\n");
   });
+}
+
+TEST(Proposals, labels_that_count_leave_the_shape_open) {
+  std::string text;
+  for (const Frame& frame : test::pressed_frames(kShape)) {
+    for (std::size_t k = 0; k < frame.size(); ++k) text += " S" + number(k) + "=" + std::to_string(frame[k]);
+    text += "\n";
+  }
+  const std::vector<Proposal> proposals = propose(bytes_of(text), {});
+  ASSERT_FALSE(proposals.empty());
+  EXPECT_EQ(proposals.front().shape, kShape) << proposals.front().toml;
+  EXPECT_EQ(proposals.front().open, (std::vector<std::string>{"rows", "cols"}));
 }
 
 TEST(Proposals, two_readings_a_line_are_an_array) {

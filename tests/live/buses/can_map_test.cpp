@@ -103,6 +103,16 @@ TEST(CanMap, a_frame_without_all_its_parts_is_counted_and_left_out) {
   EXPECT_EQ(assembly.incomplete(), 1U);
 }
 
+TEST(CanMap, a_first_part_behind_the_last_one_begins_the_next_frame) {
+  CanAssembly assembly(array_of("id = 5\nrows = 3\ncols = 1\nrow = \"byte 0\"\n"));
+  for (const unsigned row : {1U, 2U, 0U, 1U}) {
+    EXPECT_EQ(assembly.take({5, std::vector<std::uint8_t>(2, static_cast<std::uint8_t>(row))}), Taken::part);
+  }
+  EXPECT_EQ(assembly.take({5, {2, 9}}), Taken::frame);
+  EXPECT_EQ(assembly.counts(), (std::vector<float>{0, 1, 9}));
+  EXPECT_EQ(assembly.incomplete(), 1U);
+}
+
 TEST(CanMap, names_what_is_wrong) {
   EXPECT_EQ(error_of("id = 5\nrows = 2\ncols = 2\nrow = \"bit 3\"\n"),
             "map.toml:6: can.array[0].row: must be \"byte 1\", \"high nibble 1\", \"low nibble 1\" or \"identifier\"");

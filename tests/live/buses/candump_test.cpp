@@ -37,6 +37,8 @@ TEST(Candump, lines_of_every_style_are_read) {
     EXPECT_EQ(read->frame.id, 0x44U);
     EXPECT_EQ(read->frame.data, (std::vector<std::uint8_t>{0x2A, 0x36, 0x6C, 0x2B, 0xBA})) << line;
   }
+  EXPECT_EQ(parse_candump_line(" (2015-07-10 05:44:12.249713)  vcan0  044   [0] ")->time,
+            Nanos(1'436'507'052'249'713'000));
   EXPECT_EQ(parse_candump_line("can0  1234ABCD   [0] ")->frame.id, 0x1234ABCDU);
   EXPECT_FALSE(parse_candump_line("can0  044   [0] ")->time);
   EXPECT_FALSE(parse_candump_line("(1.0) can0 044#R4")->has_data);
@@ -45,9 +47,11 @@ TEST(Candump, lines_of_every_style_are_read) {
 }
 
 TEST(Candump, what_is_no_line_is_none) {
-  for (const std::string line : {"", "can0", "time_s,r0c0", "(1.0) can0 044#2", "(1.0) can0 0G4#22", "(x) can0 044#22",
-                                 "(1.0 can0 044#22", "can0 044 [2] 2A", "can0 044 [99] 2A", "can0 044 [2] 2A GG",
-                                 "(1.0) can0 123456789#22", "(1.1234567890) can0 044#22", "(1.0) can0 044##"}) {
+  for (const std::string line :
+       {"", "can0", "time_s,r0c0", "(1.0) can0 044#2", "(1.0) can0 0G4#22", "(x) can0 044#22", "(1.0 can0 044#22",
+        "(2015-07-10 25:44:12.2) can0 044#22", "(2015-13-10 05:44:12.2) can0 044#22", "(2015 05) can0 044#22",
+        "(- :) can0 044#22", "can0 044 [2] 2A", "can0 044 [99] 2A", "can0 044 [2] 2A GG", "(1.0) can0 123456789#22",
+        "(1.1234567890) can0 044#22", "(1.0) can0 044##"}) {
     EXPECT_FALSE(parse_candump_line(line)) << line;
   }
 }
@@ -81,8 +85,14 @@ TEST(Candump, names_what_is_wrong_with_its_line) {
       1U);
   EXPECT_EQ(error_of("(1.0) can0 006#00\n"), "hand.log: has no frame of the array 'a'; is this its map?");
   EXPECT_EQ(error_of("(5.0) can0 005#000102\n(5.0) can0 005#010304\n(0.1) can0 005#000102\n(0.1) can0 005#010304\n"),
-            "hand.log:4: the times go back; log with candump -l or -t a, not with differences");
+            "hand.log:3: the times go back; log with candump -l or -t a, not with differences");
   EXPECT_EQ(error_of(std::string(5000, ' ') + "\n"), "hand.log:0: is longer than a line of candump");
+}
+
+TEST(Candump, differences_of_times_are_refused_where_whole_frames_are_as_long) {
+  std::string log = "(0.000) can0 005#000102\n";
+  for (int k = 0; k < 3; ++k) log += "(0.001) can0 005#010304\n(0.049) can0 005#000102\n";
+  EXPECT_EQ(error_of(log), "hand.log:4: the times go back; log with candump -l or -t a, not with differences");
 }
 
 TEST(Candump, a_last_line_that_is_cut_is_left_out) {
