@@ -33,6 +33,10 @@ TEST(Classes, with_tables_that_do_not_fit_together_are_refused) {
             "expert 'place' names features that do not exist");
   EXPECT_EQ(error_after([](Classes& classes) { classes.experts[0].columns.front() = -1; }),
             "expert 'place' names features that do not exist");
+  EXPECT_EQ(error_after([](Classes& classes) { classes.experts.back().centres.pop_back(); }),
+            "expert 'course' has tables of the wrong size");
+  EXPECT_EQ(error_after([](Classes& classes) { classes.experts.back().influences.clear(); }),
+            "expert 'course' has tables of the wrong size");
   EXPECT_EQ(error_after([](Classes& classes) { classes.examples.pop_back(); }), "each class must have examples");
 }
 
@@ -45,6 +49,12 @@ TEST(Classes, with_values_that_are_no_numbers_are_refused) {
             "expert 'place' holds values out of range");
   EXPECT_EQ(error_after([](Classes& classes) { classes.experts[0].class_means[0] = -1e30F; }),
             "expert 'place' holds values out of range");
+  EXPECT_EQ(error_after([](Classes& classes) { classes.experts.back().width = -1.0; }),
+            "expert 'course' holds values out of range");
+  EXPECT_EQ(error_after([](Classes& classes) { classes.experts.back().centres[0] = 1e30F; }),
+            "expert 'course' holds values out of range");
+  EXPECT_EQ(error_after([](Classes& classes) { classes.experts.back().influences[0] = NAN; }),
+            "expert 'course' holds values out of range");
   EXPECT_EQ(error_after([](Classes& classes) { classes.doubt_weight = 1e300; }), "the unknown score is out of range");
   EXPECT_EQ(error_after([](Classes& classes) { classes.experts[0].distances.clear(); }),
             "expert 'place' holds values out of range");

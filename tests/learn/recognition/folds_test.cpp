@@ -38,6 +38,25 @@ TEST(Folds, go_by_time_where_each_class_is_of_one_group) {
   EXPECT_EQ(folds.kind, Folds::Kind::by_time);
 }
 
+TEST(Folds, go_by_time_where_one_group_holds_nearly_everything) {
+  std::vector<std::string> groups(465, "a");
+  groups.resize(481, "b");
+  std::vector<std::size_t> classes;
+  for (std::size_t i = 0; i < groups.size(); ++i) classes.push_back(i % 10);
+  const Folds folds = make_folds(labels_of(groups), classes, Deal::in_turns);
+  EXPECT_EQ(folds.kind, Folds::Kind::by_time);
+  EXPECT_EQ(folds.count, 10U);
+}
+
+TEST(Folds, keep_groups_whole_that_leave_a_quarter_of_each_class) {
+  for (const std::size_t of_second : {9U, 10U}) {
+    std::vector<std::string> groups(40 - of_second, "a");
+    groups.resize(40, "b");
+    const Folds folds = make_folds(labels_of(groups), std::vector<std::size_t>(40, 0), Deal::in_turns);
+    EXPECT_EQ(folds.kind, of_second == 10 ? Folds::Kind::by_group : Folds::Kind::by_time) << of_second;
+  }
+}
+
 TEST(Folds, go_by_time_where_some_label_names_no_group) {
   const Folds folds = make_folds(labels_of({"a", "b", "", "b"}), {0, 0, 1, 1}, Deal::in_runs);
   EXPECT_EQ(folds.kind, Folds::Kind::by_time);

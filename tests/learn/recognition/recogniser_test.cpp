@@ -181,6 +181,9 @@ TEST(Recogniser, stays_finite_with_the_largest_tables_that_are_allowed) {
   for (Expert& expert : classes.experts) {
     std::fill(expert.axes.begin(), expert.axes.end(), 1e12F * 0.999F);
     std::fill(expert.class_means.begin(), expert.class_means.end(), -1e12F * 0.999F);
+    std::fill(expert.centres.begin(), expert.centres.end(), 1e12F * 0.999F);
+    std::fill(expert.influences.begin(), expert.influences.end(), -1e12F * 0.999F);
+    expert.width = 1e12;
     expert.weight = 1e12;
     expert.unknown_weight = 1e12;
   }

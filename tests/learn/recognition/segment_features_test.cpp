@@ -95,8 +95,11 @@ TEST(Features, of_a_frame_without_load_are_finite) {
     const std::span<const double> values = features.compute({frames, extras});
     EXPECT_EQ(values.size(), feature_columns(layout, moving).count);
     EXPECT_TRUE(std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); }));
-    EXPECT_EQ(values[values.size() - 4], 7.0);
-    EXPECT_EQ(values[values.size() - 1], 7.0);
+    for (const BlockColumns& block : feature_columns(layout, moving).blocks) {
+      if (block.block != Block::extra) continue;
+      EXPECT_EQ(values[block.begin], 7.0);
+      EXPECT_EQ(values[block.begin + 3], 7.0);
+    }
   }
 }
 
@@ -135,6 +138,53 @@ TEST(Features, of_the_expert_all_are_those_of_the_recipe) {
   std::vector<std::size_t> sizes;
   for (const ExpertColumns& expert : expert_columns(layout, true)) sizes.push_back(expert.columns.size());
   EXPECT_EQ(sizes, (std::vector<std::size_t>{296, 206, 222, 246, 24}));  // place, form, motion, all, state
+}
+
+TEST(Features, of_taxels_are_those_of_small_arrays) {
+  EXPECT_TRUE(tells_of_taxels(support::one_array(12, 12)));
+  EXPECT_FALSE(tells_of_taxels(support::one_array(12, 13)));
+  const std::vector<ExpertColumns> experts = expert_columns(support::one_array(5, 5), true);
+  std::vector<std::string> names;
+  for (const ExpertColumns& expert : experts) names.push_back(expert.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"place", "form", "motion", "all", "taxels", "pattern", "course"}));
+  EXPECT_EQ(experts[4].columns.size(), 100U);
+  EXPECT_EQ(experts[5].columns.size(), 25U);
+  EXPECT_EQ(experts[6].columns.size(), 75U);
+}
+
+std::vector<double> taxel_features(const Layout& examples, const Layout& source, const std::vector<float>& frames,
+                                   bool moving) {
+  SegmentFeatures features(examples, source, moving, frames.size() / source.readings);
+  const std::span<const double> all = features.compute({frames, {}});
+  std::vector<double> values;
+  for (const BlockColumns& block : feature_columns(examples, moving).blocks) {
+    if (block.block != Block::pattern && block.block != Block::course) continue;
+    const std::span<const double> part = all.subspan(block.begin, block.size);
+    values.insert(values.end(), part.begin(), part.end());
+  }
+  return values;
+}
+
+void expect_near(const std::vector<double>& values, const std::vector<double>& expected) {
+  ASSERT_EQ(values.size(), expected.size());
+  for (std::size_t i = 0; i < values.size(); ++i) EXPECT_NEAR(values[i], expected[i], 1e-6) << i;
+}
+
+TEST(Features, of_taxels_are_roots_of_what_they_read) {
+  Layout layout = support::one_array(1, 2);
+  layout.arrays.push_back({"second", 1, 1, 2});
+  layout.readings = 3;
+  // Held: the second frame. Means 5, 2, 2; deviations 4, 2, 2; changes 8, 4, 4.
+  expect_near(taxel_features(layout, layout, {1, 0, 0, 9, 4, 4}, true),
+              {3 / std::sqrt(17.0), 2 / std::sqrt(17.0), 2 / std::sqrt(17.0), std::sqrt(5.0), std::sqrt(2.0),
+               std::sqrt(2.0), 2, std::sqrt(2.0), std::sqrt(2.0), std::sqrt(8.0), 2, 2});
+}
+
+TEST(Features, of_taxels_of_another_size_are_shared_out_to_those_of_the_examples) {
+  const Layout examples = support::one_array(1, 2, 4.0);
+  const Layout source = support::one_array(1, 3, 4.0);
+  // The middle reading belongs to both halves: 9 and 4 + 5 to the first, 16 and 5 to the second.
+  expect_near(taxel_features(examples, source, {4, 10, 11}, false), {3.0 / 5.0, 4.0 / 5.0, 3, 4});
 }
 
 TEST(Regrid, keeps_the_sum_and_the_place) {

@@ -18,7 +18,8 @@ namespace dermis::learn::recognition {
 inline constexpr std::size_t kMostClasses = 1000;
 
 /// A linear discriminant on some of the features: y = axes z, z = clip((x - mean) scale, +- 4). y is in the space that
-/// the means of the classes span, where the covariance within the classes is 1.
+/// the means of the classes span, where the covariance within the classes is 1. Or, with centres, a kernel regression:
+/// the score of class k is the sum of influences[c, k] exp(-width |z - centre c|^2).
 struct Expert {
   std::string name{};
   double weight = 0.0;                  ///< Weight of its scores in the answer, 0 ... 1e12.
@@ -29,6 +30,9 @@ struct Expert {
   std::vector<float> axes{};            ///< [rank, columns], at most 1e12 in size
   std::vector<float> class_means{};     ///< [classes, rank], at most 1e12 in size
   std::vector<float> distances{};       ///< Rising: of examples that it had not learned from, to the class answered.
+  double width = 0.0;                   ///< Of the kernel, 0 ... 1e12.
+  std::vector<float> centres{};         ///< [centres, columns], at most 1e12 in size
+  std::vector<float> influences{};      ///< [centres, classes], at most 1e12 in size
   double unknown_weight = 0.0;          ///< Weight of the distance's rank in the unknown score, 0 ... 1e12.
 
   bool operator==(const Expert&) const = default;

@@ -44,6 +44,8 @@ struct LearningReport {
   bool by_group = false;  ///< Whole subjects or sessions were held out; else runs in order of time.
   std::size_t folds = 0;
   std::size_t groups = 0;                  ///< Subjects or sessions that the labels name; 0 where some name none.
+  std::size_t largest_group = 0;           ///< Examples of the largest of those.
+  std::vector<std::size_t> in_one_fold{};  ///< [classes]: examples in the fold that has most of a class.
   std::vector<std::size_t> confusion;      ///< [classes, classes]: right class, answered class; of examples.
   std::size_t judged = 0;                  ///< Examples in `confusion`: not those whose class was in no other fold.
   double accuracy = 0.0;                   ///< Share of those that were right, 0 ... 1.

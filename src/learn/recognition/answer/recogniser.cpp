@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "dermis/bytes/files/text.hpp"
+#include "learn/recognition/answer/kernel_distance.hpp"
 #include "learn/recognition/answer/rank_table.hpp"
 #include "learn/recognition/answer/softmax.hpp"
 #include "learn/recognition/features/segment_features.hpp"
@@ -45,6 +46,19 @@ class ExpertAtWork {
       const double clipped = std::clamp(deviation, -kMostDeviations, kMostDeviations);
       deviations_[i] = std::isfinite(deviation) ? static_cast<float>(clipped) : 0.0F;
     }
+    if (expert.centres.empty()) return discriminate(expert);
+    compare(expert);
+  }
+
+  [[nodiscard]] const std::vector<double>& scores() const noexcept { return scores_; }
+  [[nodiscard]] double distance(const Expert& expert, std::size_t label) const {
+    return expert.centres.empty() ? std::sqrt(std::max(square_ - 2.0 * scores_[label], 0.0))
+                                  : kernel_distance(scores_[label]);
+  }
+
+ private:
+  void discriminate(const Expert& expert) {
+    const std::size_t columns = expert.columns.size();
     for (std::size_t axis = 0; axis < expert.rank; ++axis) {
       place_[axis] = static_cast<float>(dot(expert.axes.data() + axis * columns, deviations_, columns));
     }
@@ -54,12 +68,20 @@ class ExpertAtWork {
     }
   }
 
-  [[nodiscard]] const std::vector<double>& scores() const noexcept { return scores_; }
-  [[nodiscard]] double distance(std::size_t label) const {
-    return std::sqrt(std::max(square_ - 2.0 * scores_[label], 0.0));
+  /// Compares with the centres of the kernels.
+  void compare(const Expert& expert) {
+    const std::size_t columns = expert.columns.size();
+    const FloatMap here(deviations_.data(), index(columns));
+    std::fill(scores_.begin(), scores_.end(), 0.0);
+    const float* influence = expert.influences.data();
+    for (const float* centre = expert.centres.data(); influence != expert.influences.data() + expert.influences.size();
+         centre += columns) {
+      const auto square = static_cast<double>((here - FloatMap(centre, index(columns))).squaredNorm());
+      const double likeness = std::exp(-expert.width * square);
+      for (double& score : scores_) score += likeness * static_cast<double>(*influence++);
+    }
   }
 
- private:
   std::vector<double> half_squares_;  ///< Of the means of the classes.
   std::vector<float> deviations_;
   std::vector<float> place_;  ///< Along the axes.
@@ -189,7 +211,7 @@ Answer Recogniser::recognise(const Segment& segment) {
   double weights = 0.0;
   for (std::size_t i = 0; i < experts.size(); ++i) {
     const Expert& expert = classes.experts[i];
-    strangeness += expert.unknown_weight * rank_in(expert.distances, experts[i].distance(likeliest));
+    strangeness += expert.unknown_weight * rank_in(expert.distances, experts[i].distance(expert, likeliest));
     weights += expert.unknown_weight;
   }
   const double doubt = rank_in(classes.doubts, 1.0 - probabilities[likeliest]);

@@ -48,11 +48,13 @@ Status check_expert(const Expert& expert, std::size_t feature_count, std::size_t
   if (Status checked = check_columns(expert, feature_count); !checked) return checked;
   const bool has_sizes = expert.mean.size() == columns && expert.scale.size() == columns &&
                          expert.rank <= std::min(class_count, columns) && expert.axes.size() == expert.rank * columns &&
-                         expert.class_means.size() == class_count * expert.rank;
+                         expert.class_means.size() == class_count * expert.rank &&
+                         expert.centres.size() * class_count == expert.influences.size() * columns;
   if (!has_sizes) return bad_input("expert '" + expert.name + "' has tables of the wrong size");
   const bool has_numbers = are_finite(expert.mean) && are_finite(expert.scale) && are_moderate(expert.axes) &&
-                           are_moderate(expert.class_means) && are_ranks(expert.distances);
-  if (!has_numbers || !is_weight(expert.weight) || !is_weight(expert.unknown_weight)) {
+                           are_moderate(expert.class_means) && are_moderate(expert.centres) &&
+                           are_moderate(expert.influences) && are_ranks(expert.distances);
+  if (!has_numbers || !is_weight(expert.weight) || !is_weight(expert.width) || !is_weight(expert.unknown_weight)) {
     return bad_input("expert '" + expert.name + "' holds values out of range");
   }
   return Done{};

@@ -142,6 +142,9 @@ Json description_of(const Classes& classes) {
                        {"rank", expert.rank},
                        {"unknown_weight", expert.unknown_weight},
                        {"distances", expert.distances.size()}});
+    if (expert.centres.empty()) continue;
+    experts.back()["width"] = expert.width;
+    experts.back()["centres"] = expert.influences.size() / classes.names.size();
   }
   return {{"layout", to_json(classes.layout)},
           {"moving", classes.moving ? 1U : 0U},
@@ -180,6 +183,11 @@ Expert expert_from(const Json& json, std::size_t place, std::size_t class_count,
   get("axes", {expert.rank, columns}, expert.axes);
   get("class_means", {class_count, expert.rank}, expert.class_means);
   get("distances", {reader.count(json, "distances")}, expert.distances);
+  if (!json.contains("centres")) return expert;
+  const std::size_t centres = reader.count(json, "centres");
+  expert.width = reader.number(json, "width");
+  get("centres", {centres, columns}, expert.centres);
+  get("influences", {centres, class_count}, expert.influences);
   return expert;
 }
 
@@ -229,6 +237,10 @@ Status write_classes(const std::string& path, const Classes& classes) {
     put_tensor(file, tensor_name(place, "axes"), {expert.rank, expert.columns.size()}, expert.axes);
     put_tensor(file, tensor_name(place, "class_means"), {classes.names.size(), expert.rank}, expert.class_means);
     put_tensor(file, tensor_name(place, "distances"), {expert.distances.size()}, expert.distances);
+    if (expert.centres.empty()) continue;
+    const std::size_t centres = expert.influences.size() / classes.names.size();
+    put_tensor(file, tensor_name(place, "centres"), {centres, expert.columns.size()}, expert.centres);
+    put_tensor(file, tensor_name(place, "influences"), {centres, classes.names.size()}, expert.influences);
   }
   return bytes::files::write_safetensors(path, file);
 }

@@ -11,6 +11,7 @@
 #include "learn/recognition/features/hog_block.hpp"
 #include "learn/recognition/features/polar_block.hpp"
 #include "learn/recognition/features/pose_block.hpp"
+#include "learn/recognition/features/taxel_block.hpp"
 #include "learn/recognition/features/time_block.hpp"
 
 namespace dermis::learn::recognition {
@@ -31,8 +32,9 @@ std::vector<FeatureGroup> changed(std::vector<FeatureGroup> groups) {
   return groups;
 }
 
-ExpertColumns expert_of(const std::string& name, const FeatureColumns& all, std::initializer_list<Block> blocks) {
-  ExpertColumns expert{name, {}};
+ExpertColumns expert_of(const std::string& name, const FeatureColumns& all, std::initializer_list<Block> blocks,
+                        Estimator estimator = Estimator::discriminant) {
+  ExpertColumns expert{name, {}, estimator};
   for (const BlockColumns& block : all.blocks) {
     if (std::find(blocks.begin(), blocks.end(), block.block) == blocks.end()) continue;
     const std::size_t before = expert.columns.size();
@@ -46,6 +48,11 @@ ExpertColumns expert_of(const std::string& name, const FeatureColumns& all, std:
 
 std::size_t hog_cells(std::size_t lines) {
   return std::clamp<std::size_t>(lines / 2, 1, kMostCells);
+}
+
+bool tells_of_taxels(const Layout& layout) {
+  constexpr std::size_t kLines = 2 * kMostCells;
+  return taxels_of(layout) <= kLines * kLines;
 }
 
 FeatureColumns feature_columns(const Layout& layout, bool moving) {
@@ -68,6 +75,10 @@ FeatureColumns feature_columns(const Layout& layout, bool moving) {
         {{"at the end", FeatureAspect::further, layout.extras},
          {"since the beginning", FeatureAspect::further, layout.extras}});
   }
+  if (tells_of_taxels(layout)) {
+    add(columns, Block::pattern, 0, {TaxelBlock::pattern_group(layout)});
+    add(columns, Block::course, 0, TaxelBlock::course_groups(layout, moving));
+  }
   return columns;
 }
 
@@ -79,6 +90,11 @@ std::vector<ExpertColumns> expert_columns(const Layout& layout, bool moving) {
   if (moving) experts.push_back(expert_of("motion", all, {Block::time, Block::changed_form}));
   experts.push_back(expert_of("all", all, {Block::form, Block::time, Block::pose, Block::share, Block::extra}));
   if (layout.extras > 0) experts.push_back(expert_of("state", all, {Block::extra, Block::share, Block::pose}));
+  if (tells_of_taxels(layout)) {
+    experts.push_back(expert_of("taxels", all, {Block::pattern, Block::course}));
+    experts.push_back(expert_of("pattern", all, {Block::pattern}, Estimator::kernel));
+    experts.push_back(expert_of("course", all, {Block::course}, Estimator::kernel));
+  }
   return experts;
 }
 

@@ -11,7 +11,7 @@
 
 namespace dermis::learn::recognition {
 
-enum class Block { hog, pose, polar, form, time, changed_form, share, extra };
+enum class Block { hog, pose, polar, form, time, changed_form, share, extra, pattern, course };
 
 /// Where a block of features stands among all.
 struct BlockColumns {
@@ -28,19 +28,27 @@ struct FeatureColumns {
   std::size_t count = 0;
 };
 
+/// Whether features tell of each taxel: where there are fewer than an image needs, in which all cells have two lines.
+[[nodiscard]] bool tells_of_taxels(const Layout& layout);
+
 /// Cells of the histograms along one axis of an array of so many lines.
 [[nodiscard]] std::size_t hog_cells(std::size_t lines);
 
 /// `moving`: whether time counts.
 [[nodiscard]] FeatureColumns feature_columns(const Layout& layout, bool moving);
 
+/// How an expert learns from its features.
+enum class Estimator { discriminant, kernel };
+
 /// The features of one expert.
 struct ExpertColumns {
   std::string name;
   std::vector<std::size_t> columns;  ///< Rising.
+  Estimator estimator = Estimator::discriminant;
 };
 
-/// The experts: place, form, motion (where time counts), all, and state (where there are further readings).
+/// The experts: place, form, motion (where time counts), all, and state (where there are further readings). Where
+/// features tell of each taxel, also taxels, and by kernels pattern and course.
 [[nodiscard]] std::vector<ExpertColumns> expert_columns(const Layout& layout, bool moving);
 
 }  // namespace dermis::learn::recognition

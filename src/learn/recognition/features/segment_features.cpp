@@ -67,6 +67,7 @@ SegmentFeatures::ArrayFeatures::ArrayFeatures(const SensedArray& examples, const
       hog(lattice, hog_cells(examples.rows), hog_cells(examples.cols)),
       form(lattice, least_reading),
       time(least_reading, most_frames),
+      taxels(examples, lattice),
       image(lattice.taxels()),
       before(lattice.taxels()),
       held(lattice.taxels()),
@@ -77,6 +78,7 @@ SegmentFeatures::ArrayFeatures::ArrayFeatures(const SensedArray& examples, const
 SegmentFeatures::SegmentFeatures(const Layout& examples, const Layout& source, bool moving, std::size_t most_frames)
     : source_(source),
       moving_(moving),
+      tells_of_taxels_(tells_of_taxels(examples)),
       most_frames_(most_frames),
       source_frames_per_frame_(frames_per_frame(examples, source)),
       columns_(feature_columns(examples, moving)),
@@ -141,6 +143,7 @@ void SegmentFeatures::accumulate(ArrayFeatures& array, const Segment& segment) {
   const double area_from = kAreaLevel * *std::max_element(series.peak.begin(), series.peak.end());
   std::fill(array.held.begin(), array.held.end(), 0.0);
   std::fill(array.changed.begin(), array.changed.end(), 0.0);
+  array.taxels.begin();
   std::size_t held_frames = 0;
   for (std::size_t frame = 0; frame < series.frames(); ++frame) {
     image_at(array, segment, frame);
@@ -148,6 +151,7 @@ void SegmentFeatures::accumulate(ArrayFeatures& array, const Segment& segment) {
       ++held_frames;
       std::transform(array.held.begin(), array.held.end(), array.image.begin(), array.held.begin(), std::plus<>());
     }
+    if (tells_of_taxels_) array.taxels.add(array.image);
     if (!moving_) continue;
     set_centre(series, frame, moments_of(array.lattice, array.image));
     series.area[frame] = static_cast<double>(
@@ -173,6 +177,8 @@ void SegmentFeatures::write(const BlockColumns& block, const Segment& segment, s
     case Block::changed_form: array.analysis.analyse(array.changed); return array.form.write(array.analysis, out);
     case Block::share: return write_shares(out);
     case Block::extra: return write_extras(segment, out);
+    case Block::pattern: return write_pattern(out);
+    case Block::course: return write_course(out);
   }
 }
 
@@ -184,6 +190,31 @@ void SegmentFeatures::write_shares(std::span<double> out) const {
     sum += out[i];
   }
   for (double& force : out) force = sum > 0.0 ? force / sum : 0.0;
+}
+
+/// Roots of the held readings of all arrays, over their length.
+void SegmentFeatures::write_pattern(std::span<double> out) {
+  std::span<double> rest = out;
+  for (ArrayFeatures& array : arrays_) {
+    array.taxels.write_roots(array.held, rest.first(array.taxels.taxels()));
+    rest = rest.subspan(array.taxels.taxels());
+  }
+  const double length = std::sqrt(std::inner_product(out.begin(), out.end(), out.begin(), 0.0));
+  for (double& value : out) value = length > 0.0 ? value / length : 0.0;
+}
+
+/// Mean, and where time counts deviation and change: each of all arrays.
+void SegmentFeatures::write_course(std::span<double> out) {
+  const auto put = [&](auto&& write_array) {
+    for (ArrayFeatures& array : arrays_) {
+      write_array(array, out.first(array.taxels.taxels()));
+      out = out.subspan(array.taxels.taxels());
+    }
+  };
+  put([](ArrayFeatures& array, std::span<double> part) { array.taxels.write_mean(part); });
+  if (!moving_) return;
+  put([](ArrayFeatures& array, std::span<double> part) { array.taxels.write_deviation(part); });
+  put([](ArrayFeatures& array, std::span<double> part) { array.taxels.write_roots(array.changed, part); });
 }
 
 }  // namespace dermis::learn::recognition

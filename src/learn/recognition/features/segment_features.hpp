@@ -13,6 +13,7 @@
 #include "learn/recognition/features/image_analysis.hpp"
 #include "learn/recognition/features/polar_block.hpp"
 #include "learn/recognition/features/regrid.hpp"
+#include "learn/recognition/features/taxel_block.hpp"
 #include "learn/recognition/features/time_block.hpp"
 
 namespace dermis::learn::recognition {
@@ -40,6 +41,7 @@ class SegmentFeatures {
     PolarBlock polar;
     FormBlock form;
     TimeBlock time;
+    TaxelBlock taxels;
     FrameSeries series;
     std::vector<double> image;
     std::vector<double> before;
@@ -52,9 +54,12 @@ class SegmentFeatures {
   void accumulate(ArrayFeatures& array, const Segment& segment);
   void write(const BlockColumns& block, const Segment& segment, std::span<double> out);
   void write_shares(std::span<double> out) const;
+  void write_pattern(std::span<double> out);
+  void write_course(std::span<double> out);
 
   Layout source_;
   bool moving_;
+  bool tells_of_taxels_;
   std::size_t most_frames_;
   double source_frames_per_frame_;
   FeatureColumns columns_;

@@ -5,13 +5,51 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
+
+#include "learn/recognition/answer/kernel_distance.hpp"
+#include "learn/recognition/learning/kernel_regression.hpp"
 
 namespace dermis::learn::recognition {
 namespace {
 
-using Path = std::array<Matrix, kShrinkages.size()>;
+constexpr std::array kNarrownesses{0.1, 0.3, 1.0, 3.0};
+constexpr std::array kPenalties{0.005, 0.1};
+
+/// Scores in the order of ways_of().
+using Path = std::vector<Matrix>;
+
+std::vector<LearningWay> ways_of(Estimator estimator, bool strays) {
+  std::vector<LearningWay> ways;
+  if (estimator == Estimator::discriminant) {
+    for (const double shrinkage : kShrinkages) ways.push_back({strays, shrinkage, 0.0});
+    return ways;
+  }
+  for (const double narrowness : kNarrownesses) {
+    for (const double penalty : kPenalties) ways.push_back({false, penalty, narrowness});
+  }
+  return ways;
+}
+
+Path score_by_kernels(const Teaching& teaching, const Matrix& others) {
+  const Matrix centres = centres_of(teaching);
+  Path path;
+  for (const double narrowness : kNarrownesses) {
+    const double width = narrowness / static_cast<double>(centres.cols());
+    const KernelEquations equations = equations_of(teaching, centres, width);
+    const Matrix of_others = likeness(others, centres, width);
+    for (const double penalty : kPenalties) path.push_back(of_others * influences_of(equations, penalty));
+  }
+  return path;
+}
+
+Path score_others(Estimator estimator, const Teaching& teaching, const Matrix& others) {
+  if (estimator == Estimator::kernel) return score_by_kernels(teaching, others);
+  std::array<Matrix, kShrinkages.size()> scores = score_others(teaching, others);
+  return {std::make_move_iterator(scores.begin()), std::make_move_iterator(scores.end())};
+}
 
 /// The examples of one fold, and the others.
 struct Parted {
@@ -37,14 +75,14 @@ Parted part(const TrainingTable& table, const Folds& folds, std::size_t fold) {
 
 /// Scores of all examples, each by what the other folds taught.
 Path score_out_of_fold(const TrainingTable& table, const ExpertColumns& expert, const Folds& folds, bool strays) {
-  Path all;
-  all.fill(Matrix::Zero(index(table.rows.size()), index(table.class_count)));
+  Path all(ways_of(expert.estimator, strays).size(), Matrix::Zero(index(table.rows.size()), index(table.class_count)));
   for (std::size_t fold = 0; fold < folds.count; ++fold) {
     const Parted parted = part(table, folds, fold);
     const Standardisation standardisation = standardisation_of(table.features, parted.taught, expert.columns);
     if (parted.asked.empty() || standardisation.columns.empty()) continue;
-    const Path path = score_others(teaching_of(table, parted.taught, parted.classes, standardisation, strays),
-                                   standardised(table.features, parted.asked, standardisation));
+    const Path path =
+        score_others(expert.estimator, teaching_of(table, parted.taught, parted.classes, standardisation, strays),
+                     standardised(table.features, parted.asked, standardisation));
     for (std::size_t i = 0; i < path.size(); ++i) {
       for (std::size_t place = 0; place < parted.places.size(); ++place) {
         all[i].row(index(parted.places[place])) = path[i].row(index(place));
@@ -83,6 +121,7 @@ Judged judged_by(const Folds& folds, const std::vector<std::size_t>& classes, st
 
 ExpertChoice choose_expert(const TrainingTable& table, const ExpertColumns& expert, const Folds& folds,
                            const Judged& judged, bool strays) {
+  strays = strays && expert.estimator == Estimator::discriminant;
   const Path path = score_out_of_fold(table, expert, folds, strays);
   ExpertChoice choice;
   double least = std::numeric_limits<double>::infinity();
@@ -95,13 +134,15 @@ ExpertChoice choose_expert(const TrainingTable& table, const ExpertColumns& expe
     best = i;
     choice.sharpness = sharpness;
   }
-  choice.way = {strays, kShrinkages[best]};
+  choice.way = ways_of(expert.estimator, strays)[best];
   choice.scores = choice.sharpness * path[best];
   return choice;
 }
 
 Matrix distances_out_of_fold(const TrainingTable& table, const ExpertColumns& expert, const Folds& folds,
-                             const LearningWay& way) {
+                             const ExpertChoice& choice) {
+  if (expert.estimator == Estimator::kernel) return (choice.scores / choice.sharpness).unaryExpr(&kernel_distance);
+  const LearningWay& way = choice.way;
   Matrix all = Matrix::Zero(index(table.rows.size()), index(table.class_count));
   for (std::size_t fold = 0; fold < folds.count; ++fold) {
     const Parted parted = part(table, folds, fold);

@@ -31,8 +31,9 @@ struct TrainingTable {
 
 /// How an expert learns.
 struct LearningWay {
-  bool strays = false;  ///< Whether the copies with a raised zero are strays.
-  double shrinkage = 0.0;
+  bool strays = false;      ///< Whether the copies with a raised zero are strays.
+  double shrinkage = 0.0;   ///< Of the covariance; the penalty of a kernel regression.
+  double narrowness = 0.0;  ///< Width of the kernels times the number of columns; 0 of a discriminant.
 };
 
 /// How an expert learns best, and what it says of each example by what the other folds taught.
@@ -42,12 +43,12 @@ struct ExpertChoice {
   Matrix scores{};         ///< [examples, classes], multiplied already
 };
 
-/// The shrinkage with the least log loss at its best sharpness.
+/// The way with the least log loss at its best sharpness. Kernels have no strays.
 [[nodiscard]] ExpertChoice choose_expert(const TrainingTable& table, const ExpertColumns& expert, const Folds& folds,
                                          const Judged& judged, bool strays);
 
-/// [examples, classes]: distances to the means of the classes, by what the other folds taught.
+/// [examples, classes]: distances to the classes, by what the other folds taught.
 [[nodiscard]] Matrix distances_out_of_fold(const TrainingTable& table, const ExpertColumns& expert, const Folds& folds,
-                                           const LearningWay& way);
+                                           const ExpertChoice& choice);
 
 }  // namespace dermis::learn::recognition

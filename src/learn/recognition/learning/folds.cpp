@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
-#include <set>
 #include <utility>
 
 namespace dermis::learn::recognition {
@@ -53,12 +52,19 @@ Folds folds_of_time(const std::vector<Label>& labels, const std::vector<std::siz
   return folds;
 }
 
-/// Examples whose class also has examples in other folds.
-std::size_t judged_count(const Folds& folds, const std::vector<std::size_t>& classes) {
-  std::map<std::size_t, std::set<std::size_t>> folds_of_class;
-  for (std::size_t i = 0; i < classes.size(); ++i) folds_of_class[classes[i]].insert(folds.fold_of[i]);
-  return static_cast<std::size_t>(std::count_if(classes.begin(), classes.end(),
-                                                [&](std::size_t label) { return folds_of_class[label].size() > 1; }));
+/// Examples of whose class the other folds have a quarter or more.
+std::size_t carried_count(const Folds& folds, const std::vector<std::size_t>& classes) {
+  std::map<std::size_t, std::size_t> of_class;
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> of_both;
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    ++of_class[classes[i]];
+    ++of_both[{classes[i], folds.fold_of[i]}];
+  }
+  std::size_t carried = 0;
+  for (const auto& [both, count] : of_both) {
+    if (!is_lopsided(count, of_class[both.first])) carried += count;
+  }
+  return carried;
 }
 
 }  // namespace
@@ -68,7 +74,7 @@ Folds make_folds(const std::vector<Label>& labels, const std::vector<std::size_t
       std::none_of(labels.begin(), labels.end(), [](const Label& label) { return label.group.empty(); });
   if (names_groups) {
     Folds folds = folds_of_groups(labels);
-    if (folds.count > 1 && 2 * judged_count(folds, classes) > classes.size()) return folds;
+    if (folds.count > 1 && 2 * carried_count(folds, classes) > classes.size()) return folds;
   }
   return folds_of_time(labels, classes, deal);
 }

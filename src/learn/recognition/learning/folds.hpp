@@ -24,8 +24,13 @@ enum class Deal {
   in_runs,   ///< A run of them, in order of time, to each of five: each is of a time that the others have not seen.
 };
 
-/// Whole groups (subjects, sessions) in at most ten folds, where all labels name one and most examples can then be
-/// judged. Else the examples of each class as `deal` says.
+/// Whether a fold with so many examples of a class leaves too few of `all` to learn it from: less than a quarter.
+[[nodiscard]] constexpr bool is_lopsided(std::size_t of_fold, std::size_t all) noexcept {
+  return 4 * (all - of_fold) < all;
+}
+
+/// Whole groups (subjects, sessions) in at most ten folds, where all labels name one and no fold is lopsided for most
+/// examples. Else the examples of each class as `deal` says.
 [[nodiscard]] Folds make_folds(const std::vector<Label>& labels, const std::vector<std::size_t>& classes, Deal deal);
 
 }  // namespace dermis::learn::recognition

@@ -18,6 +18,7 @@
 #include "learn/recognition/learning/expert_choice.hpp"
 #include "learn/recognition/learning/expert_fusion.hpp"
 #include "learn/recognition/learning/folds.hpp"
+#include "learn/recognition/learning/kernel_regression.hpp"
 #include "learn/recognition/learning/learning_judgement.hpp"
 #include "learn/recognition/learning/unknown_learning.hpp"
 #include "learn/recognition/names.hpp"
@@ -121,8 +122,15 @@ Expert train_expert(const TrainingTable& table, const ExpertColumns& columns, co
                 .columns = converted<std::int64_t>(standardisation.columns),
                 .mean = converted<float>(standardisation.mean),
                 .scale = converted<float>(standardisation.scale)};
-  const Discriminant discriminant =
-      train_discriminant(teaching_of(table, table.rows, table.classes, standardisation, way.strays), way.shrinkage);
+  const Teaching teaching = teaching_of(table, table.rows, table.classes, standardisation, way.strays);
+  if (columns.estimator == Estimator::kernel) {
+    expert.width = way.narrowness / static_cast<double>(standardisation.columns.size());
+    const KernelRegression kernels = train_kernels(teaching, expert.width, way.shrinkage);
+    expert.centres = converted<float>(kernels.centres.reshaped<Eigen::RowMajor>());
+    expert.influences = converted<float>(kernels.influences.reshaped<Eigen::RowMajor>());
+    return expert;
+  }
+  const Discriminant discriminant = train_discriminant(teaching, way.shrinkage);
   expert.rank = static_cast<std::size_t>(discriminant.axes.rows());
   expert.axes = converted<float>(discriminant.axes.reshaped<Eigen::RowMajor>());
   expert.class_means = converted<float>(discriminant.means.reshaped<Eigen::RowMajor>());
@@ -136,9 +144,10 @@ struct Panel {
 };
 
 Panel panel_of(const TrainingTable& table, const std::vector<ExpertColumns>& experts, const Folds& folds,
-               const Judged& judged, bool strays) {
+               const Judged& judged, Estimator estimator, bool strays) {
   Panel panel;
   for (const ExpertColumns& expert : experts) {
+    if (expert.estimator != estimator) continue;
     if (standardisation_of(table.features, table.rows, expert.columns).columns.empty()) continue;
     panel.columns.push_back(expert);
     panel.choices.push_back(choose_expert(table, expert, folds, judged, strays));
@@ -160,17 +169,21 @@ double log_loss_of(const Panel& panel, const Judged& judged) {
 /// With strays where the log likelihood gains 1 by them: Akaike's criterion for one more parameter.
 Panel choose_panel(const TrainingTable& table, const std::vector<ExpertColumns>& experts, const Folds& folds,
                    const Judged& judged) {
-  Panel plain = panel_of(table, experts, folds, judged, false);
-  if (plain.choices.empty()) return plain;
-  Panel steady = panel_of(table, experts, folds, judged, true);
+  Panel panel = panel_of(table, experts, folds, judged, Estimator::discriminant, false);
+  if (panel.choices.empty()) return panel;
+  Panel steady = panel_of(table, experts, folds, judged, Estimator::discriminant, true);
   const double least_gain = 1.0 / static_cast<double>(table.rows.size());
-  return log_loss_of(steady, judged) < log_loss_of(plain, judged) - least_gain ? steady : plain;
+  if (log_loss_of(steady, judged) < log_loss_of(panel, judged) - least_gain) panel = std::move(steady);
+  Panel kernels = panel_of(table, experts, folds, judged, Estimator::kernel, false);
+  std::move(kernels.columns.begin(), kernels.columns.end(), std::back_inserter(panel.columns));
+  std::move(kernels.choices.begin(), kernels.choices.end(), std::back_inserter(panel.choices));
+  return panel;
 }
 
 std::vector<Matrix> distances_of(const TrainingTable& table, const Panel& panel, const Folds& folds) {
   std::vector<Matrix> distances;
   for (std::size_t i = 0; i < panel.choices.size(); ++i) {
-    distances.push_back(distances_out_of_fold(table, panel.columns[i], folds, panel.choices[i].way));
+    distances.push_back(distances_out_of_fold(table, panel.columns[i], folds, panel.choices[i]));
   }
   return distances;
 }

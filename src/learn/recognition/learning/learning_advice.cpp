@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "dermis/learn/recognition/learning.hpp"
+#include "learn/recognition/learning/folds.hpp"
 
 namespace dermis::learn::recognition {
 namespace {
@@ -30,6 +31,11 @@ std::string need_of(const Learned& learned, std::size_t label) {
            std::to_string(kFewExamples);
   }
   if (judged == 0) return name + " needs examples of another subject or session: all are of one";
+  const std::size_t most = learned.report.by_group ? learned.report.in_one_fold[label] : 0;
+  if (is_lopsided(most, static_cast<std::size_t>(examples))) {
+    return name + " needs examples of another subject or session: " + std::to_string(most) + " of " +
+           std::to_string(examples) + " are held out at once, so its figures tell little";
+  }
   if (static_cast<double>(right) >= kPoorRecall * static_cast<double>(judged)) return {};
   return name + " needs more examples: " + std::to_string(right) + " of " + std::to_string(judged) + " were right";
 }
@@ -55,6 +61,15 @@ std::string confused_pair(const Learned& learned) {
   return line;
 }
 
+std::string lopsided_groups(const Learned& learned) {
+  std::size_t examples = 0;
+  for (const std::int64_t count : learned.classes.examples) examples += static_cast<std::size_t>(count);
+  return "the folds are by class, not by subject or session: most classes would have had too few examples left (the "
+         "largest subject or session has " +
+         std::to_string(learned.report.largest_group) + " of " + std::to_string(examples) +
+         "); what another one gives is not known";
+}
+
 }  // namespace
 
 std::vector<std::string> advice(const Learned& learned) {
@@ -66,6 +81,7 @@ std::vector<std::string> advice(const Learned& learned) {
   add_line(confused_pair(learned));
   if (learned.report.groups == 1)
     add_line("all examples are of one subject or session: what another one gives is not known");
+  if (learned.report.groups > 1 && !learned.report.by_group) add_line(lopsided_groups(learned));
   if (learned.report.calibration_error > kPoorCalibration) {
     add_line("the probabilities are not to be trusted: they are off by " +
              std::to_string(static_cast<int>(100.0 * learned.report.calibration_error)) + " % on average");

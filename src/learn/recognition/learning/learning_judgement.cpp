@@ -3,17 +3,31 @@
 #include "learn/recognition/learning/learning_judgement.hpp"
 
 #include <algorithm>
-#include <set>
+#include <map>
+#include <string>
 
 #include "learn/recognition/answer/calibration_error.hpp"
 
 namespace dermis::learn::recognition {
 namespace {
 
-std::size_t group_count(const std::vector<Label>& labels) {
-  std::set<std::string> groups;
-  for (const Label& label : labels) groups.insert(label.group);
-  return groups.contains("") ? 0 : groups.size();
+/// Subjects or sessions and how many examples each has; none where some label names none.
+std::map<std::string, std::size_t> groups_of(const std::vector<Label>& labels) {
+  std::map<std::string, std::size_t> groups;
+  for (const Label& label : labels) ++groups[label.group];
+  if (groups.contains("")) groups.clear();
+  return groups;
+}
+
+/// [classes]
+std::vector<std::size_t> most_in_one_fold(const Judged& judged, std::size_t folds, std::size_t class_count) {
+  std::vector<std::size_t> counts(folds * class_count, 0);
+  std::vector<std::size_t> most(class_count, 0);
+  for (std::size_t i = 0; i < judged.classes.size(); ++i) {
+    const std::size_t count = ++counts[judged.fold_of[i] * class_count + judged.classes[i]];
+    most[judged.classes[i]] = std::max(most[judged.classes[i]], count);
+  }
+  return most;
 }
 
 }  // namespace
@@ -25,7 +39,11 @@ LearningReport judge(const Judged& judged, const Folds& folds, const std::vector
   report.by_group = folds.kind == Folds::Kind::by_group;
   report.folds = folds.count;
   report.fold_of = folds.fold_of;
-  report.groups = group_count(labels);
+  for (const auto& [name, size] : groups_of(labels)) {
+    ++report.groups;
+    report.largest_group = std::max(report.largest_group, size);
+  }
+  report.in_one_fold = most_in_one_fold(judged, folds.count, class_count);
   report.confusion.assign(class_count * class_count, 0);
   Matrix probabilities = fused_out_of_fold(judged, scores);
   softmax(judged, probabilities);
