@@ -87,13 +87,13 @@ export class TaxelCloud {
     const facings = new Float32Array(3 * total);
     const radii = new Float32Array(total);
     let taxel = 0;
-    for (const { positions, normals, cols } of arrays) {
+    for (const { positions, normals, cols, places: discs } of arrays) {
       this.#firsts.push(taxel);
       const radius = 0.5 * FILL * nearestNeighbour(positions, cols);
       positions.forEach((position, index) => {
         places.set(position, 3 * taxel);
         facings.set(normals[index]!, 3 * taxel);
-        radii[taxel] = radius;
+        radii[taxel] = discs?.[index]?.[2] ?? radius;
         taxel += 1;
       });
     }
