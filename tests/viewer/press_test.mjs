@@ -83,7 +83,7 @@ it("places on a picture get their channels, and are shown there", async () => {
     await part(page, "press-back").click();
     await press(page, 0, "Press place 4 of 4");
     await press(page, 5, "All places were pressed");
-    assert.deepEqual(await page.locator(".press-mark").allTextContents(), ["4", "1", "0", "5"]);
+    assert.deepEqual(await page.locator(".press-mark").allTextContents(), ["c4", "c1", "c0", "c5"]);
     await part(page, "press-use").click();
     await page.locator("main").waitFor();
     await part(page, "maps").waitFor();

@@ -14,11 +14,14 @@ namespace {
 
 constexpr double kNoises = 6.0;         // a press is so many deviations from rest,
 constexpr double kOfTypical = 0.1;      // and this share of the presses before it
-constexpr double kReleased = 0.35;      // of its own peak
-constexpr double kRises = 0.25;         // of the last peak, where the array still remembers it
+constexpr double kReleased = 0.45;      // of its own peak
+constexpr double kRises = 0.15;         // of the last peak, where the array still remembers it
+constexpr double kForgotten = 0.5;      // of what would be a press
 constexpr double kShortest_s = 0.03;    // and two frames
-constexpr double kBetween_s = 0.15;     // and two frames: less is a finger that wobbles
-constexpr double kLongest_s = 15.0;     // more is no press, but another rest
+constexpr double kBetween_s = 0.1;      // and two frames: less is a finger that wobbles
+constexpr double kLongest_s = 15.0;     // more is no press, but another rest,
+constexpr double kWeakLongest_s = 2.0;  // and sooner
+constexpr double kFaint = 0.4;          // below this share of the presses before it
 constexpr double kFollows_s = 1.0;      // time constant of the rest,
 constexpr double kForgets_s = 0.3;      // and after a press
 constexpr double kLongestStep_s = 1.0;  // between two frames, as far as times are believed
@@ -58,13 +61,14 @@ Rest rest_of(std::span<const std::vector<float>> frames) {
   return rest;
 }
 
-PressFinder::PressFinder(Rest rest)
+PressFinder::PressFinder(Rest rest, double typical)
     : rest_(std::move(rest)),
       last_(rest_.level),
       earlier_(rest_.level),
       filtered_(rest_.level),
       change_(rest_.level.size()),
-      sums_(rest_.level.size()) {}
+      sums_(rest_.level.size()),
+      typical_(typical) {}
 
 void PressFinder::filter(std::span<const float> counts) {
   assert(counts.size() == last_.size());
@@ -163,7 +167,8 @@ std::optional<Press> PressFinder::end() {
 
 std::optional<Press> PressFinder::hold(std::size_t channel, double seconds) {
   gather(std::abs(static_cast<double>(change_[channel])), seconds);
-  if (std::abs(std::chrono::duration<double>(time_ - begin_).count()) > kLongest_s) {
+  const double longest = peak_ < kFaint * typical_ ? kWeakLongest_s : kLongest_s;
+  if (std::abs(std::chrono::duration<double>(time_ - begin_).count()) > longest) {
     rest_.level = filtered_;
     is_pressed_ = false;
     return std::nullopt;
@@ -183,7 +188,7 @@ std::optional<Press> PressFinder::add(std::span<const float> counts, Nanos time)
   if (is_pressed_) return hold(channel, seconds);
   const double change = std::abs(static_cast<double>(change_[channel]));
   const double least = threshold(channel);
-  if (change <= least) remembers_ = false;
+  if (change <= kForgotten * least) remembers_ = false;
   if (remembers_) least_since_ = std::min(least_since_, change);
   const double onset = remembers_ ? least_since_ + std::max(least, kRises * peak_) : least;
   if (change > onset) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <utility>
+#include <optional>
 
 #include "dermis/learn/arrangement/press_finder.hpp"
 #include "learn/arrangement/median.hpp"
@@ -14,8 +14,10 @@ namespace {
 using Frames = std::span<const RawFrame>;
 
 constexpr double kStretch_s = 0.25;
-constexpr std::size_t kFewest = 8;        // frames of a stretch
-constexpr double kMostDeviations = 20.0;  // that one channel has of a say
+constexpr std::size_t kFewest = 8;           // frames of a stretch
+constexpr double kStrong = 0.8;              // of the stretches are weaker
+constexpr double kPressed = 0.5;             // of the typical change: more than crosstalk
+constexpr std::size_t kFirstStretches = 32;  // 8 s
 
 std::size_t frames_of_stretch(Frames frames) {
   const double seconds = std::chrono::duration<double>(frames.back().time - frames.front().time).count();
@@ -48,54 +50,50 @@ Rest usual_of(const std::vector<Rest>& rests) {
   return usual;
 }
 
-/// How far a stretch is from what is usual, and how much it moves.
-double unrest_of(const Rest& rest, const Rest& usual) {
-  double unrest = 0.0;
-  for (std::size_t i = 0; i < rest.level.size(); ++i) {
-    const auto noise = static_cast<double>(usual.noise[i]);
-    unrest += std::min(std::abs(static_cast<double>(rest.level[i] - usual.level[i])) / noise, kMostDeviations);
-    unrest += std::min(static_cast<double>(rest.noise[i]) / noise, kMostDeviations);
-  }
-  return unrest;
+double difference(const Rest& a, const Rest& b, std::size_t channel) {
+  return std::abs(static_cast<double>(a.level[channel] - b.level[channel]));
 }
 
-/// Away from the quiet stretch, in the order in which `frame(k)` gives the frames.
-template <typename FrameAt>
-std::vector<Press> presses_from(const Rest& rest, std::size_t count, const FrameAt& frame) {
-  PressFinder finder(rest);
-  std::vector<Press> presses;
-  const auto take = [&](const std::optional<Press>& press) {
-    if (press) presses.push_back(*press);
-  };
-  for (std::size_t k = 0; k < count; ++k) take(finder.add(frame(k).counts, frame(k).time));
-  take(finder.finish());
-  return presses;
+/// Of a press: what nearly the strongest stretches show.
+double typical_change(const std::vector<Rest>& rests, const Rest& usual) {
+  std::vector<double> most(rests.size());
+  for (std::size_t k = 0; k < rests.size(); ++k)
+    for (std::size_t i = 0; i < usual.level.size(); ++i) most[k] = std::max(most[k], difference(rests[k], usual, i));
+  const auto strong = most.begin() + static_cast<std::ptrdiff_t>(kStrong * static_cast<double>(most.size() - 1));
+  std::nth_element(most.begin(), strong, most.end());
+  return *strong;
+}
+
+/// As the recording begins; a channel that is pressed then has what is usual in the first seconds.
+Rest first_rest(const std::vector<Rest>& rests, const Rest& usual, double typical) {
+  const std::size_t some = std::min(kFirstStretches, rests.size());
+  const Rest early = usual_of({rests.begin(), rests.begin() + static_cast<std::ptrdiff_t>(some)});
+  Rest rest{rests.front().level, usual.noise};
+  for (std::size_t i = 0; i < rest.level.size(); ++i) {
+    // Drift makes it unlike the one, and a long press after it unlike the other.
+    const double unlike = std::min(difference(rests.front(), early, i), difference(rests.front(), usual, i));
+    if (unlike > kPressed * typical) rest.level[i] = early.level[i];
+  }
+  return rest;
 }
 
 }  // namespace
 
 std::vector<Press> find_presses(Frames frames) {
   if (frames.empty() || frames.front().counts.empty()) return {};
-  const std::size_t length = frames_of_stretch(frames);
-  const std::vector<Rest> rests = rests_of(frames, length);
+  const std::vector<Rest> rests = rests_of(frames, frames_of_stretch(frames));
   const Rest usual = usual_of(rests);
-  std::vector<double> unrest(rests.size());
-  std::transform(rests.begin(), rests.end(), unrest.begin(), [&](const Rest& rest) { return unrest_of(rest, usual); });
-  const auto quiet = static_cast<std::size_t>(std::min_element(unrest.begin(), unrest.end()) - unrest.begin());
-  const Rest rest{rests[quiet].level, usual.noise};
-  const std::size_t first = quiet * length;
-  const std::size_t last = first + length;
-  std::vector<Press> presses =
-      presses_from(rest, last, [&](std::size_t k) -> const RawFrame& { return frames[last - 1 - k]; });
-  std::reverse(presses.begin(), presses.end());
-  for (Press& press : presses) std::swap(press.begin, press.end);
-  const std::vector<Press> later =
-      presses_from(rest, frames.size() - first, [&](std::size_t k) -> const RawFrame& { return frames[first + k]; });
-  presses.insert(presses.end(), later.begin(), later.end());
-  for (Press& press : presses) {
-    press.begin -= frames.front().time;
-    press.end -= frames.front().time;
-  }
+  const double typical = typical_change(rests, usual);
+  PressFinder finder(first_rest(rests, usual, typical), typical);
+  std::vector<Press> presses;
+  const auto take = [&](std::optional<Press> press) {
+    if (!press) return;
+    press->begin -= frames.front().time;
+    press->end -= frames.front().time;
+    presses.push_back(*press);
+  };
+  for (const RawFrame& frame : frames) take(finder.add(frame.counts, frame.time));
+  take(finder.finish());
   return presses;
 }
 

@@ -55,20 +55,24 @@ export class PressGuide {
       { class: "press-guide", "data-role": "press-guide" },
       element("summary", {}, "Press each place"),
       element(
-        "p",
-        { class: "dim" },
-        "Where channels are wired in an unknown order, or taxels are in no grid: press them one after another.",
+        "div",
+        { class: "press-fields" },
+        element(
+          "p",
+          { class: "dim" },
+          "Where channels are wired in an unknown order, or taxels are in no grid: press them one after another. c5 is channel 5, counted from 0.",
+        ),
+        ...field("Rows of places", this.#rows),
+        ...field("Columns of places", this.#cols),
+        ...field("Or a picture, to mark them on (it stays in this browser)", file),
+        ...field("From mark 1 to mark 2 [mm]", this.#distance),
+        this.#room,
+        button("Begin to press", () => void this.#begin(), { "data-role": "press-begin" }),
+        this.#words,
+        this.#keys,
+        this.#doubts,
+        this.#use,
       ),
-      ...field("Rows of places", this.#rows),
-      ...field("Columns of places", this.#cols),
-      ...field("Or a picture, to mark them on (it stays in this browser)", file),
-      ...field("From mark 1 to mark 2 [mm]", this.#distance),
-      this.#room,
-      button("Begin to press", () => void this.#begin(), { "data-role": "press-begin" }),
-      this.#words,
-      this.#keys,
-      this.#doubts,
-      this.#use,
     );
   }
 
@@ -131,7 +135,11 @@ export class PressGuide {
       const isNow = pressed?.ready === true && pressed.place === place;
       const state = isNow ? "now" : channel !== null ? "known" : pressed && place < pressed.place ? "silent" : "";
       const style = `left: ${(100 * x).toFixed(2)}%; top: ${(100 * y).toFixed(2)}%`;
-      return element("span", { class: "press-mark", "data-state": state, style }, String(channel ?? place + 1));
+      return element(
+        "span",
+        { class: "press-mark", "data-state": state, style },
+        channel === null ? String(place + 1) : `c${channel}`,
+      );
     });
     this.#marks.replaceChildren(...places);
   }

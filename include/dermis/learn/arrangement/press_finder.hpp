@@ -35,7 +35,8 @@ struct Press {
 /// and neither is what one frame alone shows. Not thread-safe.
 class PressFinder {
  public:
-  explicit PressFinder(Rest rest);
+  /// `typical`: the change by a press, where it is known; else the first presses tell it.
+  explicit PressFinder(Rest rest, double typical = 0.0);
 
   /// The next frame, one reading a channel; what is not finite keeps its last reading. Returns a press that has ended.
   std::optional<Press> add(std::span<const float> counts, Nanos time);
@@ -79,8 +80,7 @@ class PressFinder {
   bool has_time_ = false;
 };
 
-/// The presses of a whole recording, at times since its first frame. It may begin and end with one; some stretch of a
-/// quarter of a second is without.
+/// The presses of a whole recording, at times since its first frame. It may begin and end with one.
 [[nodiscard]] std::vector<Press> find_presses(std::span<const RawFrame> frames);
 
 }  // namespace dermis::learn::arrangement
