@@ -309,6 +309,10 @@ Option Command::output(const std::string& name, std::string& path, const std::st
   return Option(option);
 }
 
+void Command::outputs_beside(const std::string& name, std::function<std::vector<std::string>()> paths) {
+  places_->files.add_outputs(name, std::move(paths));
+}
+
 Option Command::output_model(const std::string& name, std::string& path, const std::string& help) {
   add_force();
   places_->files.add_model_output(name, path);

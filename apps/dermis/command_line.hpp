@@ -61,8 +61,10 @@ class Command {
   /// An option that names a file to write; "-" is the standard output. The action is not called where that would
   /// overwrite what is not to be.
   Option output(const std::string& name, std::string& path, const std::string& help);
-  /// The same for a model or classes, and not "-". The action keeps earlier ones by keep_earlier_model(), so they are
-  /// no reason.
+  /// Files that `name` writes beside its own.
+  void outputs_beside(const std::string& name, std::function<std::vector<std::string>()> paths);
+  /// The same as output() for a model or classes, and not "-". The action keeps earlier ones by keep_earlier_model(),
+  /// so they are no reason.
   Option output_model(const std::string& name, std::string& path, const std::string& help);
   /// The same for these files in a folder, and not "-".
   Option output_folder(const std::string& name, std::string& folder, const std::vector<std::string>& files,

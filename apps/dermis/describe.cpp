@@ -18,8 +18,10 @@
 #include "dermis/bytes/files/atomic_file.hpp"
 #include "dermis/bytes/files/text.hpp"
 #include "dermis/bytes/proposals/proposals.hpp"
+#include "dermis/learn/arrangement/arrangement.hpp"
 #include "dermis/touch/frames/array_description.hpp"
 #include "interruption.hpp"
+#include "pressing.hpp"
 #include "proposal_text.hpp"
 #include "source_bytes.hpp"
 #include "status_line.hpp"
@@ -37,6 +39,8 @@ struct DescribeOptions {
   std::string out;
   std::string asks;
   bool json = false;
+  std::string places;
+  double pitch_mm = 10.0;
 };
 
 const std::vector<std::string>& units() {
@@ -184,17 +188,30 @@ Status describe(const DescribeOptions& options) {
 void add_describe(Command& command) {
   auto options = std::make_shared<DescribeOptions>();
   command.input("source", options->source, "URI of a device (docs/devices.md), or a file").required();
-  command.option("--rows", options->rows, "Rows of the array, where they are known");
-  command.option("--cols", options->cols, "Columns of the array, where they are known");
-  command.option("--unit", options->unit, "What a reading is").one_of(units());
-  command.flag("--ask", options->asks, std::string(kUsualAsks),
-               "Send a silent device what boards usually wait for, or --ask=BYTES, until it answers");
-  command.output("--out", options->out,
-                 "layout.toml to write: the first layout, or the one that is chosen on a terminal");
+  const Option press =
+      command.input("--press", options->places,
+                    "places.csv, or a grid as 6x9: press these places in turn; tells which channel is where");
+  command.option("--pitch", options->pitch_mm, "From place to place of the grid [mm]").shows_default().needs(press);
+  command.option("--rows", options->rows, "Rows of the array, where they are known").excludes(press);
+  command.option("--cols", options->cols, "Columns of the array, where they are known").excludes(press);
+  command.option("--unit", options->unit, "What a reading is").one_of(units()).excludes(press);
+  const Option ask =
+      command.flag("--ask", options->asks, std::string(kUsualAsks),
+                   "Send a silent device what boards usually wait for, or --ask=BYTES, until it answers");
+  ask.excludes(press);
+  command.output(
+      "--out", options->out,
+      "layout.toml to write: the first layout, or the one that is chosen on a terminal; with --press, array.toml");
+  command.outputs_beside("--out", [options] {
+    if (options->places.empty() || options->out.empty()) return std::vector<std::string>();
+    const auto [array, positions, suit] = learn::arrangement::arrangement_files(options->out);
+    return std::vector{positions, suit};
+  });
   command.flag("--json", options->json, "As JSON");
   command.action([options] {
     end_when_interrupted();
-    return describe(*options);
+    if (options->places.empty()) return describe(*options);
+    return describe_pressing({options->source, options->places, options->pitch_mm, options->out, options->json});
   });
 }
 

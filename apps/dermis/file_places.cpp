@@ -110,6 +110,10 @@ void FilePlaces::add_output(const std::string& option, const std::string& path) 
   outputs_.push_back({option, [&path] { return written_at(path); }});
 }
 
+void FilePlaces::add_outputs(const std::string& option, std::function<std::vector<std::string>()> paths) {
+  outputs_.push_back({option, std::move(paths)});
+}
+
 void FilePlaces::add_model_output(const std::string& option, const std::string& path) {
   outputs_.push_back({option, [&path] { return written_at(path); }, true});
 }

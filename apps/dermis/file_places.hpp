@@ -24,6 +24,8 @@ class FilePlaces {
   void add_input(const std::string& option, const std::vector<std::string>& names);
 
   void add_output(const std::string& option, const std::string& path);
+  /// Files that the command writes beside.
+  void add_outputs(const std::string& option, std::function<std::vector<std::string>()> paths);
   /// A model or classes: the command keeps earlier ones.
   void add_model_output(const std::string& option, const std::string& path);
   /// Files in a folder. Those of a folder with an origin.toml were simulated, and can be again.

@@ -90,7 +90,9 @@ Status set_up_array(ServeOptions& options) {
   out::serve::DescribedArray array = (*setup)->run(stop_flag());
   options.place.from = std::move(array.from);
   options.place.model = std::move(array.model);
-  if (!options.place.model.empty()) print_notice("wrote " + options.place.model);
+  options.place.suit = std::move(array.suit);
+  const std::string& wrote = options.place.suit.empty() ? options.place.model : options.place.suit;
+  if (!wrote.empty()) print_notice("wrote " + wrote);
   return Done{};
 }
 

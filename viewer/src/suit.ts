@@ -45,6 +45,9 @@ export interface BodyDescription {
   links: { name: string; pose: PlacedPose; visuals: BodyVisual[] }[];
 }
 
+/** The disc of a taxel in no grid: x to the right, y down, radius [m]. */
+export type FreePlace = [number, number, number];
+
 /** One array, as /suit.json describes it. */
 export interface ArrayDescription {
   name: string;
@@ -56,6 +59,8 @@ export interface ArrayDescription {
   full_scale_n: number;
   positions: [number, number, number][];
   normals: [number, number, number][];
+  /** Of the taxels on a flat picture; missing where they are in a grid. */
+  places?: FreePlace[];
   /** Pose of the array's frame in the suit's, as the positions have it. */
   pose: PlacedPose;
   /** Link of the body that carries it; missing where there is none. */

@@ -8,28 +8,65 @@
 #include <utility>
 
 #include "dermis/bytes/files/array_toml.hpp"
+#include "dermis/bytes/files/input.hpp"
+#include "dermis/bytes/files/suit_toml.hpp"
 #include "dermis/bytes/recordings/frame_files.hpp"
 #include "dermis/live/forces/frame_output.hpp"
 #include "dermis/out/report/frame_picture.hpp"
 #include "dermis/touch/pipeline/direct_model.hpp"
 
 namespace dermis::views {
+namespace {
+
+constexpr std::size_t kLooked = 65536;
+
+/// array.toml has a table [array], suit.toml a list of them.
+bool is_suit(const std::string& path) {
+  return path.ends_with(".toml") && bytes::files::first_bytes_of(path, kLooked).find("[[array]]") != std::string::npos;
+}
+
+}  // namespace
 
 Result<std::unique_ptr<ArrayView>> ArrayView::open(const std::string& from, const std::string& model,
                                                    live::sources::SourceOptions options) {
   std::unique_ptr<ArrayView> view(new ArrayView());
   view->from_ = from;
   if (!model.empty()) {
-    Result<live::forces::ModelAtWork> work = live::forces::ModelAtWork::read(model);
-    if (!work) return work.error();
-    view->use(*std::move(work));
-    options.array = &view->work_->model.array;
+    const Status used = is_suit(model) ? view->use_suit(model) : view->use_model(model);
+    if (!used) return used.error();
+    options.array = view->work_ ? &view->work_->model.array : &*view->uncalibrated_;
   }
   Result<std::unique_ptr<FrameSource>> source = live::sources::open_source(from, options);
   if (!source) return source.error();
   view->source_ = *std::move(source);
   if (const Status described = view->describe(); !described) return described.error();
   return view;
+}
+
+Status ArrayView::use_model(const std::string& path) {
+  Result<live::forces::ModelAtWork> work = live::forces::ModelAtWork::read(path);
+  if (!work) return work.error();
+  use(*std::move(work));
+  return Done{};
+}
+
+Status ArrayView::use_suit(const std::string& path) {
+  const Result<SuitDescription> suit = bytes::files::read_suit(path);
+  if (!suit) return suit.error();
+  if (suit->arrays.size() != 1) return bad_input(path + ": has several arrays; name the model of one");
+  const SuitArray& one = suit->arrays.front();
+  const Result<ArrayDescription> described = bytes::files::read_array(one.model);
+  const bool has_counts_alone = described && described->readout.quantity == Quantity::counts;
+  if (has_counts_alone) {
+    uncalibrated_ = *described;
+  } else if (const Status used = use_model(one.model); !used) {
+    return used;
+  }
+  const ArrayDescription& array = has_counts_alone ? *uncalibrated_ : work_->model.array;
+  const Result<ArraySurface> surface = ArraySurface::create(array, one.shape);
+  if (!surface) return bad_input(path + ": " + surface.error().message);
+  places_ = free_places({array.rows, array.cols}, one.shape);
+  return Done{};
 }
 
 void ArrayView::use(live::forces::ModelAtWork work) {
@@ -53,6 +90,7 @@ Status ArrayView::set_array(const ArrayDescription& array) {
 /// By the model, else by what the file says of itself.
 Status ArrayView::describe() {
   if (work_) return set_array(work_->model.array);
+  if (uncalibrated_) return set_array(*uncalibrated_);
   const bytes::recordings::FrameNotes notes = live::sources::notes_of_source(*source_, from_);
   name_ = notes.name;
   if (name_.empty()) name_ = is_live() ? from_ : std::filesystem::path(from_).filename().string();

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "dermis/bytes/bodies/free_places.hpp"
 #include "dermis/live/forces/operation.hpp"
 #include "dermis/live/sources/open_source.hpp"
 #include "dermis/touch/contacts/contact_tracker.hpp"
@@ -21,8 +22,8 @@ namespace dermis::views {
 /// newtons and contacts. Otherwise it shows counts. Not thread-safe.
 class ArrayView {
  public:
-  /// `model`: as for bytes::models::read_model(), or empty. `from` and `options`: as for live::sources::open_source(),
-  /// but the array is that of the model where there is one.
+  /// `model`: as for bytes::models::read_model(), or empty; or a suit.toml of one array, whose places are taken, too.
+  /// `from` and `options`: as for live::sources::open_source(), but the array is that of the model where there is one.
   [[nodiscard]] static Result<std::unique_ptr<ArrayView>> open(const std::string& from, const std::string& model,
                                                                live::sources::SourceOptions options = {});
 
@@ -47,6 +48,8 @@ class ArrayView {
   /// End of a colour scale that covers the largest of the values. For forces it is out::report::force_scale(). For
   /// counts it is that of the ADC, as described or as large as needed.
   [[nodiscard]] double scale(double largest) const;
+  /// Of the taxels, where they are in no grid; else empty.
+  [[nodiscard]] const std::vector<FreePlace>& places() const noexcept { return places_; }
   [[nodiscard]] bool is_live() const { return source_->is_live(); }
   [[nodiscard]] bool has_model() const noexcept { return work_.has_value(); }
   [[nodiscard]] SourceStatistics statistics() const { return source_->statistics(); }
@@ -55,6 +58,8 @@ class ArrayView {
   ArrayView() = default;
   void use(live::forces::ModelAtWork work);
   [[nodiscard]] Status describe();
+  [[nodiscard]] Status use_suit(const std::string& path);
+  [[nodiscard]] Status use_model(const std::string& path);
   [[nodiscard]] Status set_array(const ArrayDescription& array);
 
   std::unique_ptr<FrameSource> source_;
@@ -66,6 +71,8 @@ class ArrayView {
   double row_pitch_m_ = ArrayDescription{}.row_pitch_m;
   double col_pitch_m_ = ArrayDescription{}.col_pitch_m;
   std::optional<double> full_scale_counts_;
+  std::optional<ArrayDescription> uncalibrated_;  ///< Of a suit: there are counts alone.
+  std::vector<FreePlace> places_;
   RawFrame raw_;
   ForceFrame force_;
   ContactReport report_;

@@ -35,6 +35,7 @@ FramePicture picture_of(const ArrayView& view, Nanos since_first) {
   picture.col_pitch_m = view.col_pitch_m();
   picture.values = view.values();
   picture.unit = view.unit();
+  picture.places = view.places();
   picture.contacts = view.contacts().contacts;
   return picture;
 }

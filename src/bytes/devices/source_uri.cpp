@@ -36,8 +36,8 @@ struct Scheme {
 };
 
 const std::set<std::string> kProtocolParameters = {
-    "protocol",  "layout",    "array",     "rows",      "cols",         "nodes_per_packet", "delimited",
-    "bit_shift", "transpose", "flip_rows", "flip_cols", "skip_columns", "row_order",        "col_order"};
+    "protocol",  "layout",    "array",     "rows",         "cols",      "nodes_per_packet", "delimited",  "bit_shift",
+    "transpose", "flip_rows", "flip_cols", "skip_columns", "row_order", "col_order",        "taxel_order"};
 
 /// Keys of [layout] that hold text, and a number.
 const std::set<std::string> kLayoutTexts = {"line",      "line_end", "separator", "comment",       "frame_begin",
@@ -241,16 +241,29 @@ class Parser {
   bool read_switch(const char* name) { return read<int>(name, 0, 1, "0 or 1").value_or(0) == 1; }
 
   /// "0,2,1"
-  void read_list(const char* name, std::vector<std::size_t>& list) {
+  void read_list(const char* name, std::vector<std::size_t>& list, std::size_t most = kMaxLines - 1) {
     const auto found = parameters_.find(name);
     if (found == parameters_.end()) return;
     for (std::size_t begin = 0; begin <= found->second.size();) {
       const std::size_t end = std::min(found->second.find(',', begin), found->second.size());
-      const auto line = number_within<std::size_t>(found->second.substr(begin, end - begin), 0, kMaxLines - 1);
+      const auto line = number_within<std::size_t>(found->second.substr(begin, end - begin), 0, most);
       if (!line) return fail(std::string(name) + ": must be lines from 0 on, such as 0,2,1");
       list.push_back(*line);
       begin = end + 1;
     }
+  }
+
+  /// "0,2;1,3": taxels of the array, with a semicolon between its rows.
+  void read_taxel_order(LineOrder& order) {
+    const auto found = parameters_.find("taxel_order");
+    if (found == parameters_.end()) return;
+    const auto shape = read_shape();
+    if (!shape) return fail("taxel_order: needs rows and cols of what is sent");
+    std::string& list = found->second;
+    order.taxel_rows = 1 + static_cast<std::size_t>(std::count(list.begin(), list.end(), ';'));
+    std::replace(list.begin(), list.end(), ';', ',');
+    read_list("taxel_order", order.taxel_order, kMaxLines * kMaxLines - 1);
+    order.taxels_sent = *shape;
   }
 
   void read_order() {
@@ -261,6 +274,7 @@ class Parser {
     order.skip_columns = read<std::size_t>("skip_columns", 0, kMaxLines - 1, "0 to 1023").value_or(0);
     read_list("row_order", order.row_order);
     read_list("col_order", order.col_order);
+    read_taxel_order(order);
     if (const Status valid = order.validate(); !valid) fail(valid.error().message);
   }
 

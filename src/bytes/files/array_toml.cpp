@@ -85,6 +85,22 @@ std::string temperatures_toml(const ArrayDescription& array) {
   return text + fmt::format("temperature_sensors = [{}]\n", fmt::join(places, ", "));
 }
 
+/// Taxels in any order fill the array; `sent` is its own shape where it is left out.
+void read_taxel_order(ConfigFile& file, const ArrayDescription& array, LineOrder& order) {
+  file.counts("array.taxel_order", order.taxel_order);
+  std::vector<std::size_t> sent;
+  file.counts("array.sent", sent);
+  if (order.taxel_order.empty()) {
+    if (!sent.empty()) file.fail("array.sent", "has no meaning without taxel_order");
+    return;
+  }
+  if (!sent.empty() && (sent.size() != 2 || sent[0] < 1 || sent[0] > kMaxLines || sent[1] < 1 || sent[1] > kMaxLines)) {
+    return file.fail("array.sent", "must be rows and columns of 1 to 1024, as [4, 8]");
+  }
+  order.taxels_sent = sent.empty() ? order.sent({array.rows, array.cols}) : FrameShape{sent[0], sent[1]};
+  order.taxel_rows = array.rows;
+}
+
 void read_order(ConfigFile& file, LineOrder& order) {
   file.count("array.skip_columns", order.skip_columns);
   file.boolean("array.transpose", order.transpose);
@@ -240,6 +256,7 @@ Result<ArrayDescription> read_array(ConfigFile& file) {
   read_absent(file, array);
   read_temperatures(file, array);
   read_order(file, array.order);
+  read_taxel_order(file, array, array.order);
   read_readout(file, array);
   file.ignore("layout");
   if (const Status read = file.finish(); !read) return read.error();
@@ -276,7 +293,9 @@ std::string order_toml(const LineOrder& order) {
   if (order.flip_cols) text += "flip_cols = true\n";
   if (!order.row_order.empty()) text += fmt::format("row_order = [{}]\n", fmt::join(order.row_order, ", "));
   if (!order.col_order.empty()) text += fmt::format("col_order = [{}]\n", fmt::join(order.col_order, ", "));
-  return text;
+  if (order.taxel_order.empty()) return text;
+  return text + fmt::format("taxel_order = [{}]\nsent = [{}, {}]\n", fmt::join(order.taxel_order, ", "),
+                            order.taxels_sent.rows, order.taxels_sent.cols);
 }
 
 std::string circuit_toml(const Readout& readout) {

@@ -8,6 +8,7 @@
 #include <cassert>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -84,11 +85,11 @@ class Painter {
   explicit Painter(const FramePicture& picture) : picture_(picture) {
     assert(picture.rows >= 1 && picture.cols >= 1 && picture.values.size() == picture.rows * picture.cols);
     assert(picture.high > 0.0 && std::isfinite(picture.high));
-    const double width_m = static_cast<double>(picture.cols) * picture.col_pitch_m;
-    const double height_m = static_cast<double>(picture.rows) * picture.row_pitch_m;
-    const double per_metre = kLargestSide / std::max(width_m, height_m);
-    cell_width_ = per_metre * picture.col_pitch_m;
-    cell_height_ = per_metre * picture.row_pitch_m;
+    assert(picture.places.empty() || picture.places.size() == picture.values.size());
+    find_bounds();
+    per_metre_ = kLargestSide / std::max(width_m_, height_m_);
+    cell_width_ = per_metre_ * picture.col_pitch_m;
+    cell_height_ = per_metre_ * picture.row_pitch_m;
   }
 
   [[nodiscard]] double width() const {
@@ -100,8 +101,12 @@ class Painter {
     brush.fill({0.0, 0.0}, width(), height(), kPaper);
     brush.text(Anchor::start, {kMargin, 30.0}, 12.0, kInk, picture_.title);
     brush.text(Anchor::start, {kMargin, 50.0}, 8.5, kMuted, picture_.subtitle);
-    paint_cells(brush);
-    paint_lines(brush);
+    if (picture_.places.empty()) {
+      paint_cells(brush);
+      paint_lines(brush);
+    } else {
+      paint_discs(brush);
+    }
     paint_scale(brush);
     for (const Contact& contact : picture_.contacts) {
       if (contact.phase != ContactPhase::release) paint_contact(brush, contact);
@@ -109,8 +114,61 @@ class Painter {
   }
 
  private:
-  [[nodiscard]] double array_width() const { return cell_width_ * static_cast<double>(picture_.cols); }
-  [[nodiscard]] double array_height() const { return cell_height_ * static_cast<double>(picture_.rows); }
+  void find_bounds() {
+    width_m_ = static_cast<double>(picture_.cols) * picture_.col_pitch_m;
+    height_m_ = static_cast<double>(picture_.rows) * picture_.row_pitch_m;
+    if (picture_.places.empty()) return;
+    left_m_ = top_m_ = std::numeric_limits<double>::infinity();
+    double right_m = -left_m_;
+    double bottom_m = -top_m_;
+    for (const auto& [x, y, radius] : picture_.places) {
+      left_m_ = std::min(left_m_, x - radius);
+      right_m = std::max(right_m, x + radius);
+      top_m_ = std::min(top_m_, y - radius);
+      bottom_m = std::max(bottom_m, y + radius);
+    }
+    width_m_ = right_m - left_m_;
+    height_m_ = bottom_m - top_m_;
+  }
+
+  [[nodiscard]] double array_width() const { return per_metre_ * width_m_; }
+  [[nodiscard]] double array_height() const { return per_metre_ * height_m_; }
+
+  [[nodiscard]] Point at(double x_m, double y_m) const {
+    return {kLeft + per_metre_ * (x_m - left_m_), kTop + per_metre_ * (y_m - top_m_)};
+  }
+
+  /// A dot is a line without a length.
+  void paint_discs(Brush& brush) const {
+    std::vector<std::vector<Point>> crosses;
+    for (std::size_t taxel = 0; taxel < picture_.places.size(); ++taxel) {
+      const auto& [x, y, radius_m] = picture_.places[taxel];
+      const Point centre = at(x, y);
+      const double value = picture_.values[taxel];
+      const double width = 2.0 * per_metre_ * radius_m;
+      brush.lines({{centre, centre}}, width, kMarkEdge);
+      brush.lines({{centre, centre}}, std::max(width - 2.0 * kGap, 0.5 * width),
+                  std::isfinite(value) ? sequential_colour(value / picture_.high) : kNothing);
+      if (std::isfinite(value)) continue;
+      const double reach = 0.35 * width;
+      crosses.push_back({{centre.x - reach, centre.y - reach}, {centre.x + reach, centre.y + reach}});
+      crosses.push_back({{centre.x - reach, centre.y + reach}, {centre.x + reach, centre.y - reach}});
+    }
+    if (!crosses.empty()) brush.lines(crosses, 1.0, kMuted);
+  }
+
+  /// Between the taxels that follow each other where they are in no grid.
+  [[nodiscard]] Point centre_of(const Contact& contact) const {
+    const double col = contact.position.x / picture_.col_pitch_m;
+    const double row = contact.position.y / picture_.row_pitch_m;
+    if (picture_.places.empty()) return {kLeft + cell_width_ * (col + 0.5), kTop + cell_height_ * (row + 0.5)};
+    const auto last = static_cast<double>(picture_.places.size() - 1);
+    const double along = std::clamp(picture_.rows == 1 ? col : row, 0.0, last);
+    const FreePlace& before = picture_.places[static_cast<std::size_t>(along)];
+    const FreePlace& after = picture_.places[static_cast<std::size_t>(std::ceil(along))];
+    const double share = along - std::floor(along);
+    return at(std::lerp(before.x, after.x, share), std::lerp(before.y, after.y, share));
+  }
   [[nodiscard]] double bar_height() const { return std::max(array_height(), kLeastHeight); }
 
   void paint_cells(Brush& brush) const {
@@ -169,8 +227,7 @@ class Painter {
 
   /// An ellipse of the area of the contact, long as its pressure is.
   void paint_contact(Brush& brush, const Contact& contact) const {
-    const Point centre{kLeft + cell_width_ * (contact.position.x / picture_.col_pitch_m + 0.5),
-                       kTop + cell_height_ * (contact.position.y / picture_.row_pitch_m + 0.5)};
+    const Point centre = centre_of(contact);
     const bool has_axes = contact.minor_axis_m > 0.0 && contact.major_axis_m > 0.0;
     const double ratio = has_axes ? std::min(contact.major_axis_m / contact.minor_axis_m, 4.0) : 1.0;
     const double minor = std::sqrt(contact.area_m2 / std::numbers::pi / ratio) * cell_width_ / picture_.col_pitch_m;
@@ -190,6 +247,11 @@ class Painter {
   }
 
   const FramePicture& picture_;
+  double left_m_ = 0.0;  // of the picture, in the plane of the places
+  double top_m_ = 0.0;
+  double width_m_ = 0.0;
+  double height_m_ = 0.0;
+  double per_metre_ = 0.0;
   double cell_width_ = 0.0;
   double cell_height_ = 0.0;
 };

@@ -139,6 +139,16 @@ TEST(SourceUri, takes_which_way_round_the_lines_are_sent) {
   EXPECT_EQ(parsed("file:a.bin?col_order=1,0").order.col_order, (std::vector<std::size_t>{1, 0}));
 }
 
+TEST(SourceUri, takes_an_order_of_single_taxels) {
+  const LineOrder order = parsed("file:a.mcap?rows=4&cols=8&taxel_order=7,3;0,31").order;
+  EXPECT_EQ(order.taxel_order, (std::vector<std::size_t>{7, 3, 0, 31}));
+  EXPECT_EQ(order.taxel_rows, 2U);
+  EXPECT_EQ(order.taxels_sent, (FrameShape{4, 8}));
+  expect_words(message("file:a.mcap?taxel_order=1,0"), {"taxel_order", "needs rows and cols"});
+  expect_words(message("file:a.mcap?rows=1&cols=2&taxel_order=1,1"), {"names reading 1 twice"});
+  expect_words(message("file:a.mcap?rows=1&cols=2&taxel_order=1,"), {"taxel_order", "such as 0,2,1"});
+}
+
 TEST(SourceUri, names_an_order_of_lines_that_cannot_be) {
   expect_words(message("serial:///dev/x?transpose=yes"), {"transpose", "0 or 1", "yes"});
   expect_words(message("serial:///dev/x?flip=1"), {"flip"});

@@ -333,6 +333,38 @@ TEST(ArrayToml, reads_and_writes_which_way_round_the_lines_are_sent) {
   EXPECT_TRUE(array_from_toml(kComplete, "array.toml")->order.is_plain());
 }
 
+constexpr const char* kPicked = R"([array]
+rows = 1
+cols = 3
+taxel_order = [7, 0, 4]
+sent = [2, 4]
+[readout]
+circuit = "none"
+adc_bits = 8
+)";
+
+TEST(ArrayToml, reads_and_writes_an_order_of_single_taxels) {
+  const Result<ArrayDescription> array = array_from_toml(kPicked, "array.toml");
+  ASSERT_TRUE(array) << array.error().message;
+  EXPECT_EQ(array->order, (LineOrder{.taxel_order = {7, 0, 4}, .taxel_rows = 1, .taxels_sent = {2, 4}}));
+  EXPECT_EQ(array_from_toml(array_to_toml(*array), "again")->order, array->order);
+}
+
+TEST(ArrayToml, refuses_an_order_of_taxels_that_cannot_be) {
+  const auto picked_with = [](const std::string& from, const std::string& to) {
+    std::string text = kPicked;
+    return text.replace(text.find(from), from.size(), to);
+  };
+  EXPECT_EQ(error_of(picked_with("7, 0, 4", "8, 0, 4")),
+            "array.toml:4: array.taxel_order: reading 8 is not among 8, counted from 0");
+  EXPECT_EQ(error_of(picked_with("7, 0, 4", "7, 7, 4")), "array.toml:4: array.taxel_order: names reading 7 twice");
+  EXPECT_EQ(error_of(picked_with("[2, 4]", "[2]")),
+            "array.toml:5: array.sent: must be rows and columns of 1 to 1024, as [4, 8]");
+  EXPECT_EQ(error_of(picked_with("taxel_order = [7, 0, 4]\n", "")),
+            "array.toml:4: array.sent: has no meaning without taxel_order");
+  EXPECT_NE(error_of(picked_with("7, 0, 4", "7, 0")), "");
+}
+
 TEST(ArrayToml, refuses_an_order_of_lines_that_cannot_be) {
   const auto turned_with = [](const std::string& from, const std::string& to) {
     std::string text = kTurned;

@@ -234,5 +234,39 @@ TEST(SuitToml, gives_a_value_or_a_one_line_error_for_mutations) {
   });
 }
 
+Result<std::vector<NamedPlace>> places_in(const std::string& text) {
+  std::istringstream in(text);
+  return read_places(in, "places.csv");
+}
+
+TEST(PlacesCsv, has_z_and_names_where_they_are_known) {
+  const auto flat = places_in("x_mm,y_mm\n1,2\n");
+  ASSERT_TRUE(flat) << flat.error().message;
+  EXPECT_EQ(flat->front().position, (Vector3{0.001, 0.002, 0.0}));
+  const auto named = places_in("x_mm,y_mm,z_mm,name\n1,2,3,index tip\n4,5,6,\n");
+  ASSERT_TRUE(named) << named.error().message;
+  EXPECT_EQ((*named)[0].name, "index tip");
+  EXPECT_EQ((*named)[1].name, "");
+  EXPECT_EQ((*named)[1].position.z, 0.006);
+}
+
+TEST(PlacesCsv, is_refused_with_its_line) {
+  const std::string header = "places.csv:1: the first line must be x_mm,y_mm, with z_mm, name or both behind them";
+  EXPECT_EQ(places_in("x_mm\n1\n").error().message, header);
+  EXPECT_EQ(places_in("name,x_mm,y_mm\nthumb,1,2\n").error().message, header);
+  const std::string line = "places.csv:2: must be what the first line says: numbers in mm, and a name where it has one";
+  for (const char* const text : {"x_mm,y_mm\n1\n", "x_mm,y_mm\n1,2,3\n", "x_mm,y_mm\nnan,2\n", "x_mm,y_mm,name\n1,2\n"})
+    EXPECT_EQ(places_in(text).error().message, line) << text;
+  EXPECT_EQ(places_in("x_mm,y_mm,name\n1,2,a\x1b[2Jb\n").error().message, line);
+}
+
+TEST(PositionsCsv, is_written_as_it_is_read) {
+  const std::vector<Vector3> places = {{0.001, -0.0025, 0.0}, {0.0123, 0.0, 0.004}};
+  std::istringstream in(positions_csv(places));
+  const Result<std::vector<Vector3>> read = read_positions(in, "p.csv");
+  ASSERT_TRUE(read) << read.error().message;
+  for (std::size_t k = 0; k < places.size(); ++k) EXPECT_NEAR((*read)[k].x, places[k].x, 1e-9);
+}
+
 }  // namespace
 }  // namespace dermis::bytes::files

@@ -33,5 +33,10 @@ TEST(RecordedOrder, of_a_recording_that_was_made_before_is_refused_with_the_mend
             "takes its frames from 'file:rec.mcap?skip_columns=1&flip_rows=1&row_order=0,2,1,3'");
 }
 
+TEST(RecordedOrder, of_single_taxels_is_a_parameter_with_the_shape_that_is_sent) {
+  EXPECT_EQ(order_parameters({.taxel_order = {7, 3, 0, 12}, .taxel_rows = 2, .taxels_sent = {4, 8}}),
+            "rows=4&cols=8&taxel_order=7,3;0,12");
+}
+
 }  // namespace
 }  // namespace dermis::live::sources

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "dermis/touch/frames/random.hpp"
 
@@ -107,6 +108,27 @@ TEST(LineOrder, every_taxel_of_any_array_has_a_place_of_its_own) {
     EXPECT_LT(places.back(), sent.taxel_count()) << i;
     for (const std::size_t place : places) EXPECT_GE(place % sent.cols, order.skip_columns) << i;
   }
+}
+
+LineOrder picking(std::vector<std::size_t> taxels, std::size_t rows) {
+  return {.taxel_order = std::move(taxels), .taxel_rows = rows, .taxels_sent = kSent};
+}
+
+TEST(LineOrder, picks_single_taxels_last) {
+  LineOrder order = picking({5, 0, 3, 1}, 2);
+  EXPECT_FALSE(order.is_plain());
+  EXPECT_EQ(*order.turned(kSent), (FrameShape{2, 2}));
+  EXPECT_EQ(order.sent_places(kSent), (Places{5, 0, 3, 1}));
+  EXPECT_EQ(order.sent({2, 2}), kSent);
+  order.flip_cols = true;
+  EXPECT_EQ(order.sent_places(kSent), (Places{3, 2, 5, 1}));
+}
+
+TEST(LineOrder, refuses_taxels_that_are_not_there) {
+  EXPECT_EQ(message(picking({1, 4, 1}, 1).validate()), "taxel_order: names reading 1 twice");
+  EXPECT_EQ(picking({0, 6}, 1).turned(kSent).error().message, "taxel_order: reading 6 is not among 6, counted from 0");
+  EXPECT_EQ(picking({0, 1, 2}, 2).turned(kSent).error().message, "taxel_order: 3 taxels do not fill 2 rows");
+  EXPECT_EQ(picking({0, 1}, 1).turned({3, 2}).error().message, "taxel_order: is for frames of 2x3, not of 3x2");
 }
 
 }  // namespace

@@ -5,7 +5,7 @@ import { CalibrationHint, CalibrationStage, type CalibrationState } from "../mes
 import { colorOf } from "../render/color_map";
 import type { ArrayDescription } from "../suit";
 import { cssColor } from "../theme";
-import { fitMap, taxelName } from "../views/array/geometry";
+import { cellOf, fitMap, taxelName } from "../views/array/geometry";
 
 const FONT = '11px "Inter", "Segoe UI", Roboto, "Helvetica Neue", "Liberation Sans", Arial, sans-serif';
 const LEAST_LABEL_PX = 16;
@@ -80,38 +80,36 @@ export class ArrayPicture {
     return `${array.rows} rows, ${array.cols} columns, ${presses} presses${target}`;
   }
 
-  #drawPresses(context: CanvasRenderingContext2D, area: Area, { rows, cols }: ArrayDescription): void {
+  #drawPresses(context: CanvasRenderingContext2D, area: Area, array: ArrayDescription): void {
     const presses = this.#state?.taxelPresses;
     const most = Math.max(1, ...(presses ?? []));
-    const [cellWidth, cellHeight] = [area.width / cols, area.height / rows];
-    const gap = Math.min(2, 0.1 * cellWidth);
+    const gap = Math.min(2, 0.1 * cellOf(area, array, 0).width);
     context.font = FONT;
     context.textAlign = "center";
     context.textBaseline = "middle";
-    for (let taxel = 0; taxel < rows * cols; ++taxel) {
+    for (let taxel = 0; taxel < array.rows * array.cols; ++taxel) {
       const count = presses?.[taxel] ?? 0;
       context.fillStyle =
         count === 0
           ? cssColor("--raised")
           : colorOf(FIRST_COLOR + (LAST_COLOR - FIRST_COLOR) * ((count - 1) / Math.max(1, most - 1)));
-      const left = area.left + (taxel % cols) * cellWidth;
-      const top = area.top + Math.floor(taxel / cols) * cellHeight;
-      context.fillRect(left, top, cellWidth - gap, cellHeight - gap);
-      if (count === 0 || Math.min(cellWidth, cellHeight) < LEAST_NUMBER_PX) continue;
+      const { left, top, width, height } = cellOf(area, array, taxel);
+      context.fillRect(left, top, width - gap, height - gap);
+      if (count === 0 || Math.min(width, height) < LEAST_NUMBER_PX) continue;
       context.fillStyle = count > 0.6 * most && most > 1 ? "#12171c" : "#ffffff";
-      context.fillText(String(count), left + 0.5 * (cellWidth - gap), top + 0.5 * (cellHeight - gap));
+      context.fillText(String(count), left + 0.5 * (width - gap), top + 0.5 * (height - gap));
     }
     context.strokeStyle = cssColor("--control-line");
     context.lineWidth = 1.5;
     for (const taxel of this.#planned) {
       if ((presses?.[taxel] ?? 0) > 0) continue;
-      const left = area.left + (taxel % cols) * cellWidth;
-      const top = area.top + Math.floor(taxel / cols) * cellHeight;
-      context.strokeRect(left + 1, top + 1, cellWidth - gap - 2, cellHeight - gap - 2);
+      const { left, top, width, height } = cellOf(area, array, taxel);
+      context.strokeRect(left + 1, top + 1, width - gap - 2, height - gap - 2);
     }
   }
 
-  #drawNumbers(context: CanvasRenderingContext2D, area: Area, { rows, cols }: ArrayDescription): void {
+  #drawNumbers(context: CanvasRenderingContext2D, area: Area, { rows, cols, places }: ArrayDescription): void {
+    if (places !== undefined) return;
     const [cellWidth, cellHeight] = [area.width / cols, area.height / rows];
     context.font = FONT;
     context.fillStyle = cssColor("--text-dim");
@@ -140,16 +138,14 @@ export class ArrayPicture {
   #ring(
     context: CanvasRenderingContext2D,
     area: Area,
-    { rows, cols }: ArrayDescription,
+    array: ArrayDescription,
     taxel: number,
     color: string,
     crossed: boolean,
   ): void {
-    const [width, height] = [area.width / cols, area.height / rows];
-    const left = area.left + (taxel % cols) * width;
-    const top = area.top + Math.floor(taxel / cols) * height;
+    const { left, top, width, height } = cellOf(area, array, taxel);
     context.strokeStyle = cssColor(color);
-    if (!crossed) {
+    if (!crossed && array.places === undefined) {
       context.lineWidth = 1;
       context.setLineDash([3, 3]);
       context.strokeRect(area.left, top, area.width, height);

@@ -3,7 +3,20 @@
 import { shaderSource } from "./color_map";
 
 const VERTEX = `#version 300 es
+precision highp sampler2D;
+uniform bool discs;
+uniform sampler2D places;
+uniform ivec2 size;
+out vec2 on_disc;
+flat out int disc;
 void main() {
+  disc = gl_InstanceID;
+  on_disc = 2.0 * vec2(gl_VertexID & 1, gl_VertexID >> 1) - 1.0;
+  if (discs) {
+    vec4 place = texelFetch(places, ivec2(disc % size.x, disc / size.x), 0);
+    gl_Position = vec4((2.0 * (place.xy + on_disc * place.zw) - 1.0) * vec2(1.0, -1.0), 0.0, 1.0);
+    return;
+  }
   gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
 }`;
 
@@ -22,6 +35,10 @@ uniform vec3 line;
 uniform vec3 fault;
 uniform vec3 fault_stripe;
 uniform float pixel_ratio;
+uniform bool discs;
+uniform sampler2D places;
+in vec2 on_disc;
+flat in int disc;
 out vec4 color;
 
 ${shaderSource()}
@@ -54,6 +71,12 @@ void main() {
   vec2 place = pixel / cell_pixels;
   ivec2 taxel = clamp(ivec2(place), ivec2(0), size - 1);
   vec2 inside = (place - vec2(taxel)) * cell_pixels;
+  if (discs) {
+    if (length(on_disc) > 1.0) discard;
+    taxel = ivec2(disc % size.x, disc / size.x);
+    cell_pixels = 2.0 * texelFetch(places, taxel, 0).zw * area.zw;
+    inside = (0.5 + 0.5 * on_disc) * cell_pixels;
+  }
   uint status = texelFetch(statuses, taxel, 0).r;
   vec3 shade;
   if (status > 2u) {
@@ -62,12 +85,12 @@ void main() {
   } else {
     float measured = texelFetch(values, taxel, 0).r;
     float smaller = min(cell_pixels.x, cell_pixels.y);
-    shade = color_map((interpolated ? between_taxels(place - 0.5) : measured) / scale_end);
+    shade = color_map((interpolated && !discs ? between_taxels(place - 0.5) : measured) / scale_end);
     bool on_dot = measured > scale_end && distance(inside, 0.5 * cell_pixels) < max(0.14 * smaller, pixel_ratio);
-    bool on_corner = status > 0u && inside.x + inside.y < 0.45 * smaller;
+    bool on_corner = status > 0u && inside.x + inside.y < (discs ? 0.75 : 0.45) * smaller;
     if (on_dot || on_corner) shade = vec3(opposite(shade));
   }
-  bool on_line = !interpolated && min(cell_pixels.x, cell_pixels.y) > 6.0 * pixel_ratio &&
+  bool on_line = !interpolated && !discs && min(cell_pixels.x, cell_pixels.y) > 6.0 * pixel_ratio &&
                  min(inside.x, inside.y) < pixel_ratio;
   color = vec4(on_line ? mix(shade, line, 0.6) : shade, 1.0);
 }`;
@@ -91,6 +114,9 @@ export interface Area {
 }
 
 interface Map {
+  places: WebGLTexture;
+  /** Taxels are discs at their places. */
+  discs: boolean;
   values: WebGLTexture;
   statuses: WebGLTexture;
   rows: number;
@@ -131,6 +157,7 @@ const UNIFORMS = [
   "fault_stripe",
   "pixel_ratio",
   "from_light",
+  "discs",
 ] as const;
 type Uniforms = Record<(typeof UNIFORMS)[number], WebGLUniformLocation | null>;
 
@@ -140,6 +167,7 @@ function useProgram(gl: WebGL2RenderingContext, program: WebGLProgram): Uniforms
   gl.useProgram(program);
   gl.uniform1i(gl.getUniformLocation(program, "values"), 0);
   gl.uniform1i(gl.getUniformLocation(program, "statuses"), 1);
+  gl.uniform1i(gl.getUniformLocation(program, "places"), 2);
   return Object.fromEntries(UNIFORMS.map((name) => [name, gl.getUniformLocation(program, name)])) as Uniforms;
 }
 
@@ -178,6 +206,8 @@ export class HeatMaps {
     const areas = this.#maps.splice(0).map(({ area, scaleEnd }) => ({ area, scaleEnd }));
     for (let index = 0; index < count; ++index) {
       this.#maps.push({
+        places: this.#texture(),
+        discs: false,
         values: this.#texture(),
         statuses: this.#texture(),
         rows: 0,
@@ -211,6 +241,17 @@ export class HeatMaps {
 
   place(index: number, area: Area): void {
     this.#maps[index]!.area = area;
+  }
+
+  /** Discs of taxels in no grid, each x, y and the two radii as shares of the map; empty: taxels are cells of a grid. */
+  setPlaces(index: number, cols: number, places: Float32Array): void {
+    const gl = this.#gl;
+    const map = this.#maps[index]!;
+    map.discs = places.length > 0;
+    if (!map.discs) return;
+    gl.activeTexture(gl.TEXTURE2);
+    gl.bindTexture(gl.TEXTURE_2D, map.places);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, cols, places.length / 4 / cols, 0, gl.RGBA, gl.FLOAT, places);
   }
 
   setScale(index: number, end: number): void {
@@ -258,7 +299,7 @@ export class HeatMaps {
     for (const map of maps) this.#drawMap(map, uniforms);
   }
 
-  #drawMap({ values, statuses, rows, cols, area, scaleEnd }: Map, uniforms: Uniforms): void {
+  #drawMap({ places, discs, values, statuses, rows, cols, area, scaleEnd }: Map, uniforms: Uniforms): void {
     const gl = this.#gl;
     const left = Math.round(area.left * this.#pixelRatio);
     const width = Math.round(area.width * this.#pixelRatio);
@@ -270,9 +311,13 @@ export class HeatMaps {
     gl.bindTexture(gl.TEXTURE_2D, values);
     gl.activeTexture(gl.TEXTURE1);
     gl.bindTexture(gl.TEXTURE_2D, statuses);
+    gl.activeTexture(gl.TEXTURE2);
+    gl.bindTexture(gl.TEXTURE_2D, places);
+    gl.uniform1i(uniforms.discs, discs ? 1 : 0);
     gl.uniform2i(uniforms.size, cols, rows);
     gl.uniform4f(uniforms.area, left, bottom, width, height);
     gl.uniform1f(uniforms.scale_end, scaleEnd);
-    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    if (discs) gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, rows * cols);
+    else gl.drawArrays(gl.TRIANGLES, 0, 3);
   }
 }

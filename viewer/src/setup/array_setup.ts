@@ -10,6 +10,7 @@ import { dumpOf } from "./first_bytes";
 import { KnownArrays } from "./known_arrays";
 import { LayoutChoice } from "./layout_choice";
 import { LivePicture } from "./live_picture";
+import { PressGuide } from "./press_guide";
 import { makeSourceChoice } from "./source_choice";
 import { type Shape, TouchFeed } from "./touch_feed";
 import "./setup.css";
@@ -86,7 +87,17 @@ export function makeArraySetup(stream: Stream, suit: Suit, theme: Theme): HTMLEl
     return shape !== undefined && shape.rows > 1 && shape.cols > 1 ? shape : undefined;
   };
   const corners = new CornerGuide(feed, twoCorners, ({ transpose }) => swapLines(transpose));
+  const presses = new PressGuide(
+    stream,
+    sentShape,
+    () => {
+      feed.stop();
+      picture.forget();
+    },
+    () => void ask("/array/arrange", { name: name.value }),
+  );
   const watch = (): void => {
+    presses.forget();
     picture.forget();
     const shape = sentShape();
     if (shape === undefined || !stream.services.value.has("/array/watch")) feed.stop();
@@ -186,6 +197,7 @@ export function makeArraySetup(stream: Stream, suit: Suit, theme: Theme): HTMLEl
     ...field("Columns", cols),
     picture.element,
     corners.element,
+    presses.element,
     ...field("From taxel to taxel [mm]", pitch),
     ...field("Bits of the ADC (10: Arduino Uno, 12: ESP32)", bits),
     element("p", { class: "dim" }, "This becomes an array.toml. The circuit is found by the calibration."),
@@ -221,7 +233,7 @@ export function makeArraySetup(stream: Stream, suit: Suit, theme: Theme): HTMLEl
     setHidden(bytes, setup.bytes === "");
     setHidden(again, setup.readable);
     setHidden(leave, !stream.services.value.has("/source/leave"));
-    setHidden(corners.element, !setup.turnable);
+    for (const guide of [corners, presses]) setHidden(guide.element, !setup.turnable);
     rows.value = setup.rows === null ? "" : String(setup.rows);
     cols.value = setup.cols === null ? "" : String(setup.cols);
     isSwapped = false;

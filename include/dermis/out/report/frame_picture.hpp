@@ -8,13 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "dermis/bytes/bodies/free_places.hpp"
 #include "dermis/out/report/svg.hpp"
 #include "dermis/touch/frames/contacts.hpp"
 
 namespace dermis::out::report {
 
 /// One frame of an array as a picture. Each measured taxel has the colour of a fixed scale with its unit, r0c0 at the
-/// top left. Contacts are ellipses with their forces. Nothing is interpolated.
+/// top left, or taxels in no grid at their places. Contacts are ellipses with their forces. Nothing is interpolated.
 struct FramePicture {
   std::string title;     ///< "chest"
   std::string subtitle;  ///< "12.340 s, total 23.4 N"
@@ -22,10 +23,11 @@ struct FramePicture {
   std::size_t cols = 0;  ///< >= 1
   double row_pitch_m = 0.010;
   double col_pitch_m = 0.010;
-  std::vector<double> values;     ///< [rows, cols]; NaN and infinity are crossed out.
-  double high = 1.0;              ///< End of the scale, which begins at 0; finite and > 0.
-  std::string unit;               ///< "N"
-  std::vector<Contact> contacts;  ///< Those that have ended are not drawn.
+  std::vector<double> values;       ///< [rows, cols]; NaN and infinity are crossed out.
+  double high = 1.0;                ///< End of the scale, which begins at 0; finite and > 0.
+  std::string unit;                 ///< "N"
+  std::vector<FreePlace> places{};  ///< Of the taxels; empty: they are in their grid.
+  std::vector<Contact> contacts;    ///< Those that have ended are not drawn.
 };
 
 /// 0 where none is finite.

@@ -16,6 +16,7 @@ namespace dermis::out::serve {
 /// The description by a client.
 struct DescribedArray {
   std::string from{};   ///< URI of its source.
+  std::string suit{};   ///< NAME.suit.toml, which has both, where its places were pressed; else empty.
   std::string model{};  ///< Its NAME.toml, or a model or array.toml from last time, in the current folder.
 };
 
@@ -40,7 +41,7 @@ class ArraySetup {
 
   [[nodiscard]] std::uint16_t port() const noexcept;
 
-  /// Waits until a client has described the array; both are empty where `stop` was set before. Call it once.
+  /// Waits until a client has described the array; all are empty where `stop` was set before. Call it once.
   [[nodiscard]] DescribedArray run(const std::atomic<bool>& stop);
 
  private:

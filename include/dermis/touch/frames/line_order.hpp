@@ -19,17 +19,22 @@ struct LineOrder {
   bool flip_cols = false;                ///< The last column becomes the first.
   std::vector<std::size_t> row_order{};  ///< Row i of the array is row row_order[i] so far; empty: row i.
   std::vector<std::size_t> col_order{};  ///< The same of columns.
+  /// Taxel i of the array, row-major, is reading taxel_order[i] so far, row-major; empty: reading i. Readings that are
+  /// not named are dropped.
+  std::vector<std::size_t> taxel_order{};
+  std::size_t taxel_rows = 1;    ///< Rows of the array, where there is a taxel_order.
+  FrameShape taxels_sent{0, 0};  ///< Shape of the frames that are sent, where there is a taxel_order.
 
   bool operator==(const LineOrder&) const = default;
 
   /// Nothing changes.
   [[nodiscard]] bool is_plain() const { return *this == LineOrder{}; }
 
-  /// Fails where a list does not name each of its lines once, as "row_order: ...".
+  /// Fails where a list does not name each of its lines once, as "row_order: ...", or a reading twice.
   [[nodiscard]] Status validate() const;
 
-  /// Shape of the array whose device sends frames of `sent`. Fails where nothing is left of them, and where a list is
-  /// not as long as its lines are many.
+  /// Shape of the array whose device sends frames of `sent`. Fails where nothing is left of them, where a list is not
+  /// as long as its lines are many, and where taxel_order is not for such frames.
   [[nodiscard]] Result<FrameShape> turned(FrameShape sent) const;
 
   /// Shape of the frames that the device of such an array sends.
@@ -37,6 +42,10 @@ struct LineOrder {
 
   /// For each taxel of the array, row-major, its place in a frame of `sent`, for which turned() does not fail.
   [[nodiscard]] std::vector<std::size_t> sent_places(FrameShape sent) const;
+
+ private:
+  [[nodiscard]] FrameShape lines_of(FrameShape sent) const noexcept;  // before the lists
+  [[nodiscard]] Result<FrameShape> picked(FrameShape sent, FrameShape lines) const;
 };
 
 }  // namespace dermis

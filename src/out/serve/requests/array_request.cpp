@@ -21,13 +21,14 @@ Result<std::uint64_t> whole(const JsonRequest& request, const char* field, const
   return **number;
 }
 
-Result<FrameShape> shape_of(const JsonRequest& request) {
-  const auto rows = whole(request, "rows", "1 to 1024");
+Result<FrameShape> shape_of(const JsonRequest& request, const char* rows_field = "rows",
+                            const char* cols_field = "cols") {
+  const auto rows = whole(request, rows_field, "1 to 1024");
   if (!rows) return rows.error();
-  const auto cols = whole(request, "cols", "1 to 1024");
+  const auto cols = whole(request, cols_field, "1 to 1024");
   if (!cols) return cols.error();
-  if (*rows < 1 || *rows > kMaxLines) return bad_field("rows", "must be 1 to 1024");
-  if (*cols < 1 || *cols > kMaxLines) return bad_field("cols", "must be 1 to 1024");
+  if (*rows < 1 || *rows > kMaxLines) return bad_field(rows_field, "must be 1 to 1024");
+  if (*cols < 1 || *cols > kMaxLines) return bad_field(cols_field, "must be 1 to 1024");
   return FrameShape{*rows, *cols};
 }
 
@@ -67,6 +68,10 @@ Result<ArrayDescription> array_request(std::string_view text) {
   if (Status order = read_order(*request, array.order); !order) return order.error();
   if (Status valid = array.validate(); !valid) return valid.error();
   return array;
+}
+
+Result<FrameShape> sent_shape_request(const JsonRequest& request) {
+  return shape_of(request, "sent_rows", "sent_cols");
 }
 
 Result<FrameShape> shape_request(std::string_view text) {

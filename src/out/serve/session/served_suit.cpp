@@ -183,7 +183,8 @@ Result<ServedArray> open_array(const SuitArray& described, const Pose& suit_from
                      .surface = *std::move(surface),
                      .suit_from_array = suit_from_array,
                      .description = std::move(known->description),
-                     .model_path = described.model};
+                     .model_path = described.model,
+                     .places = free_places({array.rows, array.cols}, described.shape)};
   if (Status read = read_classes_of_array(described.classes, notice, served); !read) return read.error();
   return served;
 }

@@ -23,6 +23,7 @@
 #include "out/serve/setup/first_look.hpp"
 #include "out/serve/setup/known_arrays.hpp"
 #include "out/serve/setup/layout_proposals.hpp"
+#include "out/serve/setup/press_watch.hpp"
 #include "out/serve/setup/source_choice.hpp"
 #include "out/serve/setup/touch_watch.hpp"
 
@@ -35,7 +36,8 @@ using nlohmann::ordered_json;
 constexpr std::chrono::milliseconds kPeriod{50};
 constexpr std::chrono::milliseconds kToAnswer{300};  // until a client has what it asked for
 constexpr std::size_t kMostFileName = 255;
-constexpr std::size_t kMostShown = 256;  // bytes of which no frame was made
+constexpr std::size_t kMostPlaces = 65536;  // bytes
+constexpr std::size_t kMostShown = 256;     // bytes of which no frame was made
 constexpr const char* kNoSource = "choose where the array is first";
 
 /// /suit.json of an array that is not described yet.
@@ -91,7 +93,7 @@ class ArraySetup::Implementation {
 
   DescribedArray run(const std::atomic<bool>& stop) {
     while (!stop) {
-      if (DescribedArray array = described(); !array.model.empty()) {
+      if (DescribedArray array = described(); !array.model.empty() || !array.suit.empty()) {
         std::this_thread::sleep_for(kToAnswer);
         return array;
       }
@@ -114,6 +116,10 @@ class ArraySetup::Implementation {
                                                 service("/layout/propose", &Implementation::propose),
                                                 service("/layout/use", &Implementation::use_layout),
                                                 service("/source/look", &Implementation::look),
+                                                service("/array/press", &Implementation::press),
+                                                service("/array/pressed", &Implementation::pressed),
+                                                service("/array/skip", &Implementation::skip),
+                                                service("/array/arrange", &Implementation::arrange),
                                                 {"/array/known", [](std::string_view) { return list_known(); }}};
     if (!with_choice) return services;
     services.push_back({"/source/list", [](std::string_view) { return Result<std::string>(source_choices()); }});
@@ -145,7 +151,7 @@ class ArraySetup::Implementation {
 
   /// A source that cannot be opened is not taken.
   Result<std::string> look_at(SourceName name) {
-    watch_.reset();  // a device can be opened once
+    close_watches();
     const Result<FirstLook> found = first_look(name, options_);
     if (!found) return found.error();
     name_ = std::move(name);
@@ -155,7 +161,7 @@ class ArraySetup::Implementation {
 
   /// Another source may be chosen.
   Result<std::string> leave(std::string_view /*request*/) {
-    watch_.reset();
+    close_watches();
     name_.reset();
     show({});
     return std::string("{}");
@@ -194,7 +200,7 @@ class ArraySetup::Implementation {
 
   Result<std::string> serve_as(const std::string& model) {
     const std::lock_guard lock(mutex_);
-    described_ = {name_->text, model};
+    described_ = {.from = name_->text, .model = model};
     return json_text(nlohmann::json{{"file", model}});
   }
 
@@ -217,8 +223,14 @@ class ArraySetup::Implementation {
     }
   }
 
+  /// A device can be opened once.
+  void close_watches() {
+    watch_.reset();
+    pressing_.reset();
+  }
+
   void begin_watch(FrameShape shape) {
-    watch_.reset();  // a device can be opened once
+    close_watches();
     watch_ = std::make_unique<TouchWatch>(*name_, shape, options_);
   }
 
@@ -273,12 +285,67 @@ class ArraySetup::Implementation {
     return json_text(answer);
   }
 
+  /// {"sent_rows": 1, "sent_cols": 54} and the places: somebody begins to press them.
+  Result<std::string> press(std::string_view text) {
+    if (!name_) return bad_input(kNoSource);
+    const Result<JsonRequest> request = JsonRequest::parse(text, kMostPlaces);
+    if (!request) return request.error();
+    const Result<FrameShape> sent = sent_shape_request(*request);
+    if (!sent) return sent.error();
+    Result<learn::arrangement::Places> places = press_places_request(*request);
+    if (!places) return places.error();
+    close_watches();
+    pressing_ = std::make_unique<PressWatch>(*name_, *sent, *std::move(places), options_);
+    return pressed({});
+  }
+
+  Result<std::string> pressed(std::string_view /*request*/) {
+    if (!pressing_) return bad_input("nothing is pressed");
+    return json_text(pressing_->progress());
+  }
+
+  /// {"back": true}: the last place again; else nothing answers at this one.
+  Result<std::string> skip(std::string_view text) {
+    if (!pressing_) return bad_input("nothing is pressed");
+    const Result<JsonRequest> request = JsonRequest::parse(text);
+    if (!request) return request.error();
+    const Result<bool> is_back = request->flag("back");
+    if (!is_back) return is_back.error();
+    *is_back ? pressing_->back() : pressing_->skip();
+    return pressed({});
+  }
+
+  /// {"name": "hand"}: writes what was found, and the array is served by it.
+  Result<std::string> arrange(std::string_view text) {
+    if (!pressing_) return bad_input("nothing is pressed");
+    const Result<JsonRequest> request = JsonRequest::parse(text);
+    if (!request) return request.error();
+    const Result<std::string> name = request->file_name("name");
+    if (!name) return name.error();
+    const learn::arrangement::ArrangementFiles files = learn::arrangement::arrangement_files(*name + ".toml");
+    for (const std::string& file : {files.array, files.positions, files.suit}) {
+      std::error_code ignored;
+      if (std::filesystem::exists(file, ignored)) {
+        return bad_field("name", file + " is there already: choose another name, or take the array from last time");
+      }
+    }
+    const Result<learn::arrangement::Arrangement> made = pressing_->arrange(*name);
+    if (!made) return made.error();
+    if (Status written = learn::arrangement::write_arrangement(files.array, *made, name_->text); !written)
+      return written.error();
+    close_watches();
+    const std::lock_guard lock(mutex_);
+    described_ = {.suit = files.suit};
+    return json_text(nlohmann::json{{"file", files.suit}, {"remarks", made->remarks}});
+  }
+
   std::mutex mutex_;
   DescribedArray described_;
   std::optional<SourceName> name_;  // this and the rest: of the services, which are called one at a time
   live::sources::SourceOptions options_;
-  std::vector<std::uint8_t> unread_;   // of which no frame was made
-  std::unique_ptr<TouchWatch> watch_;  // null: nobody asked for it
+  std::vector<std::uint8_t> unread_;      // of which no frame was made
+  std::unique_ptr<TouchWatch> watch_;     // null: nobody asked for it
+  std::unique_ptr<PressWatch> pressing_;  // the same
   std::unique_ptr<websocket::Server> server_;
 };
 

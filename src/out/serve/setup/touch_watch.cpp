@@ -9,8 +9,12 @@
 
 namespace dermis::out::serve {
 
-TouchWatch::TouchWatch(live::sources::SourceName name, FrameShape shape, live::sources::SourceOptions options)
-    : name_(std::move(name)), shape_(shape), thread_([this, options = std::move(options)]() mutable {
+TouchWatch::TouchWatch(live::sources::SourceName name, FrameShape shape, live::sources::SourceOptions options,
+                       Heard heard)
+    : name_(std::move(name)),
+      shape_(shape),
+      heard_(std::move(heard)),
+      thread_([this, options = std::move(options)]() mutable {
         const Status watched = watch(std::move(options));
         if (watched) return;
         const std::lock_guard lock(mutex_);
@@ -52,6 +56,7 @@ Status TouchWatch::watch(live::sources::SourceOptions options) {
     if (!first) first = frame.time;
     if (!(*source)->is_live() && !pacer.wait_until(live::sources::due_after(*first, frame.time))) break;
     finder.add(frame.counts);
+    if (heard_) heard_(frame);
     keep({frames, {frame.counts.begin(), frame.counts.end()}, finder.is_ready(), finder.touched()});
   }
   return stop_ || !(*source)->is_live() ? Status(Done{}) : failed("the source has ended");

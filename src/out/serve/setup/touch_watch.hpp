@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -28,8 +29,10 @@ class TouchWatch {
     std::string problem{};               ///< Why the source gives no frames (any more).
   };
 
-  /// `shape`: of the frames. The options `array` and `stop` are not used.
-  TouchWatch(live::sources::SourceName name, FrameShape shape, live::sources::SourceOptions options);
+  using Heard = std::function<void(const RawFrame&)>;
+
+  /// `shape`: of the frames. The options `array` and `stop` are not used. `heard` has each frame, in another thread.
+  TouchWatch(live::sources::SourceName name, FrameShape shape, live::sources::SourceOptions options, Heard heard = {});
   TouchWatch(const TouchWatch&) = delete;
   TouchWatch& operator=(const TouchWatch&) = delete;
   ~TouchWatch();
@@ -43,6 +46,7 @@ class TouchWatch {
 
   const live::sources::SourceName name_;
   const FrameShape shape_;
+  const Heard heard_;
   mutable std::mutex mutex_;
   Seen seen_;
   std::atomic<bool> stop_ = false;

@@ -111,6 +111,7 @@ nlohmann::ordered_json json_of(const ServedArray& array, const touch::pipeline::
     json["positions"].push_back(json_of(taxel.position));
     json["normals"].push_back(json_of(taxel.normal));
   }
+  for (const auto& [x, y, radius] : array.places) json["places"].push_back({x, y, radius});
   return json;
 }
 

@@ -11,7 +11,7 @@ import type { View, ViewContext, ViewFactory } from "../../view";
 import { drawAxes } from "./axes";
 import { ContactTable } from "./contact_table";
 import { Feeds } from "./feeds";
-import { fitMap, taxelAt, taxelName } from "./geometry";
+import { fitMap, sharesOf, taxelAt, taxelName } from "./geometry";
 import { MapPanel } from "./map_panel";
 import { MapPointer } from "./map_pointer";
 import { MapChoices, makeMapToolbar } from "./map_toolbar";
@@ -231,6 +231,7 @@ class ArrayView implements View {
     if (this.#array === undefined) return;
     for (const [index, panel] of this.#panels.entries()) {
       panel.describe(this.#array);
+      this.#maps.setPlaces(index, this.#array.cols, sharesOf(this.#array));
       this.#maps.setScale(index, panel.endFor(this.#array));
     }
     this.#mapsDue = true;

@@ -12,7 +12,7 @@ function stepOf(cellPixels: number): number {
   return STEPS.find((step) => step * cellPixels >= PIXELS_A_LABEL) ?? 500;
 }
 
-/** The numbers of rows and columns beside the maps. */
+/** The numbers of rows and columns beside the maps; of a grid. */
 export function drawAxes(
   canvas: HTMLCanvasElement,
   areas: readonly Area[],
@@ -25,6 +25,7 @@ export function drawAxes(
   pen.scale(pixelRatio, pixelRatio);
   pen.font = FONT;
   pen.fillStyle = cssColor("--text-dim");
+  if (array.places !== undefined) return;
   for (const area of areas) {
     if (area.width === 0) continue;
     const width = area.width / array.cols;

@@ -8,7 +8,7 @@ import type { Area } from "../../render/heat_maps";
 import type { ArrayDescription } from "../../suit";
 import { cssColor } from "../../theme";
 import { type LabelBox, LabelRoom } from "../label_room";
-import { AXIS_LEFT } from "./geometry";
+import { AXIS_LEFT, boundsOf, boxOf, cellOf, pointOn } from "./geometry";
 
 const TURN = 2 * Math.PI;
 const CENTRE_PIXELS = 7;
@@ -42,11 +42,13 @@ interface Scale {
 }
 
 function scaleOf(area: Area, array: ArrayDescription): Scale {
+  const [originX, originY] = pointOn(area, array, 0, 0);
+  const pixels = array.places && area.width / boundsOf(array.places).width;
   return {
-    originX: area.left + (0.5 * area.width) / array.cols,
-    originY: area.top + (0.5 * area.height) / array.rows,
-    pixelsX: area.width / (array.cols * array.pitch_m[1]),
-    pixelsY: area.height / (array.rows * array.pitch_m[0]),
+    originX,
+    originY,
+    pixelsX: pixels ?? area.width / (array.cols * array.pitch_m[1]),
+    pixelsY: pixels ?? area.height / (array.rows * array.pitch_m[0]),
   };
 }
 
@@ -95,31 +97,20 @@ export class Overlay {
     }
     if (load.width === 0) return;
     if (contacts !== undefined) this.#drawContacts(load, array, contacts, forces, room);
-    if (centre !== undefined) this.#drawCentre(centre, scaleOf(load, array));
+    if (centre !== undefined && array.places === undefined) this.#drawCentre(centre, scaleOf(load, array));
   }
 
   /** Returns where its name is on the map. */
   #drawRegion(area: Area, array: ArrayDescription, region: Region): LabelBox {
-    const [width, height] = [area.width / array.cols, area.height / array.rows];
-    const left = area.left + region.cols[0] * width;
-    const top = area.top + region.rows[0] * height;
+    const { left, top, width, height } = boxOf(area, array, region.rows, region.cols);
     const pen = this.#pen;
     pen.setLineDash([7, 4]);
-    this.#strokeTwice(
-      () =>
-        pen.strokeRect(
-          left,
-          top,
-          (region.cols[1] - region.cols[0] + 1) * width,
-          (region.rows[1] - region.rows[0] + 1) * height,
-        ),
-      2,
-    );
+    this.#strokeTwice(() => pen.strokeRect(left, top, width, height), 2);
     pen.setLineDash([]);
     pen.font = FONT;
     pen.textAlign = "left";
     pen.textBaseline = "bottom";
-    const bottom = top + (region.rows[1] - region.rows[0] + 1) * height - 3;
+    const bottom = top + height - 3;
     this.#textTwice(regionName(region), left + 4, bottom);
     const textWidth = pen.measureText(regionName(region)).width;
     return {
@@ -153,18 +144,12 @@ export class Overlay {
   }
 
   #drawCursor(area: Area, array: ArrayDescription, taxel: number): void {
-    const width = area.width / array.cols;
-    const height = area.height / array.rows;
-    const left = area.left + (taxel % array.cols) * width;
-    const top = area.top + Math.floor(taxel / array.cols) * height;
+    const { left, top, width, height } = cellOf(area, array, taxel);
     this.#strokeTwice(() => this.#pen.strokeRect(left + 0.5, top + 0.5, width, height), 1.5);
   }
 
   #drawPin(area: Area, array: ArrayDescription, taxel: number, label: number): void {
-    const width = area.width / array.cols;
-    const height = area.height / array.rows;
-    const left = area.left + (taxel % array.cols) * width;
-    const top = area.top + Math.floor(taxel / array.cols) * height;
+    const { left, top, width, height } = cellOf(area, array, taxel);
     const pen = this.#pen;
     pen.setLineDash([3, 2]);
     this.#strokeTwice(() => pen.strokeRect(left + 1, top + 1, width - 1, height - 1), 1);
@@ -193,8 +178,9 @@ export class Overlay {
       .slice(0, live.contacts.count)
       .filter(({ phase }) => phase !== ContactPhase.release);
     for (const contact of touching) {
-      this.#drawTrail(live, live.slots.indexOf(contact.id), originX, originY, pixelsX, pixelsY);
-      const [x, y] = [originX + contact.x * pixelsX, originY + contact.y * pixelsY];
+      if (array.places === undefined)
+        this.#drawTrail(live, live.slots.indexOf(contact.id), originX, originY, pixelsX, pixelsY);
+      const [x, y] = pointOn(area, array, contact.x, contact.y);
       this.#drawOutline(contact, x, y, pixelsX, pixelsY);
       const middle = { x: x - area.left, y: y - area.top };
       room.take({ ...middle, width: MIDDLE_PIXELS, height: MIDDLE_PIXELS });
@@ -202,8 +188,8 @@ export class Overlay {
     }
     for (const contact of touching) {
       const reach = 0.75 * Math.sqrt(contact.areaM2 / Math.PI);
-      const x = originX + (contact.x + reach) * pixelsX + 4;
-      const y = originY + (contact.y - reach) * pixelsY - 22;
+      const [middleX, middleY] = pointOn(area, array, contact.x, contact.y);
+      const [x, y] = [middleX + reach * pixelsX + 4, middleY - reach * pixelsY - 22];
       this.#drawLabel(
         contact,
         forces.get(contact.id) ?? contact.forceN,

@@ -4,6 +4,7 @@ import { element } from "../../dom";
 import { withUnit } from "../../format";
 import type { Area } from "../../render/heat_maps";
 import type { ArrayDescription, Limit, Zone } from "../../suit";
+import { boxOf } from "./geometry";
 
 /** The zones of an array, each with the limits that hold there. */
 export function limitedZones(array: ArrayDescription): Map<Zone, Limit[]> {
@@ -21,15 +22,8 @@ export function limitedZones(array: ArrayDescription): Map<Zone, Limit[]> {
 export function drawZones(layer: HTMLElement, area: Area | undefined, array: ArrayDescription): void {
   layer.replaceChildren();
   if (area === undefined || area.width === 0) return;
-  const [width, height] = [area.width / array.cols, area.height / array.rows];
   for (const [{ name, rows, cols }, limits] of limitedZones(array)) {
-    const box = {
-      left: area.left + cols[0] * width,
-      top: area.top + rows[0] * height,
-      width: (cols[1] - cols[0] + 1) * width,
-      height: (rows[1] - rows[0] + 1) * height,
-    };
-    const style = Object.entries(box)
+    const style = Object.entries(boxOf(area, array, rows, cols))
       .map(([side, pixels]) => `${side}: ${pixels.toFixed(1)}px`)
       .join("; ");
     const label = limits.map(({ limit, unit }) => withUnit(limit, unit)).join(", ");

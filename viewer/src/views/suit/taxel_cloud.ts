@@ -14,9 +14,11 @@ in float radius;
 in float newtons;
 in float status;
 in float chosen;
+in float disc;
 out float force;
 out float fault;
 out float marked;
+out float rounded;
 out vec2 inside;
 out float shade;
 
@@ -27,6 +29,7 @@ void main() {
   force = newtons;
   fault = status;
   marked = chosen;
+  rounded = disc;
   vec4 seen = modelViewMatrix * vec4(place + radius * (side * position.x + up * position.y), 1.0);
   vec3 normal_seen = normalMatrix * facing;
   float turned = dot(normalize(normal_seen), normalize(-seen.xyz));
@@ -44,6 +47,7 @@ uniform vec3 rim_color;
 in float force;
 in float fault;
 in float marked;
+in float rounded;
 in vec2 inside;
 in float shade;
 out vec4 color;
@@ -51,10 +55,12 @@ out vec4 color;
 ${shaderSource()}
 
 void main() {
+  float from_middle = rounded > 0.5 ? length(inside) : max(abs(inside.x), abs(inside.y));
+  if (from_middle > 1.0) discard;
   bool crossed = min(abs(inside.x - inside.y), abs(inside.x + inside.y)) < 0.3;
   vec3 taxel = fault > 2.5 ? (crossed ? stripe_color : fault_color) : color_map(force / scale_end);
   if (fault < 2.5 && force > scale_end && length(inside) < 0.24) taxel = vec3(opposite(taxel));
-  bool on_rim = max(abs(inside.x), abs(inside.y)) > 0.88;
+  bool on_rim = from_middle > 0.88;
   vec3 rim = marked > 0.5 ? chosen_color : rim_color;
   color = vec4((on_rim ? mix(taxel, rim, 0.6) : taxel) * shade, 1.0);
 }`;
@@ -86,14 +92,16 @@ export class TaxelCloud {
     const places = new Float32Array(3 * total);
     const facings = new Float32Array(3 * total);
     const radii = new Float32Array(total);
+    const rounded = new Float32Array(total);
     let taxel = 0;
-    for (const { positions, normals, cols } of arrays) {
+    for (const { positions, normals, cols, places: discs } of arrays) {
       this.#firsts.push(taxel);
       const radius = 0.5 * FILL * nearestNeighbour(positions, cols);
       positions.forEach((position, index) => {
         places.set(position, 3 * taxel);
         facings.set(normals[index]!, 3 * taxel);
-        radii[taxel] = radius;
+        rounded[taxel] = discs === undefined ? 0 : 1;
+        radii[taxel] = discs?.[index]?.[2] ?? radius;
         taxel += 1;
       });
     }
@@ -115,6 +123,7 @@ export class TaxelCloud {
     geometry.setAttribute("place", this.#places);
     geometry.setAttribute("facing", this.#facings);
     geometry.setAttribute("radius", new three.InstancedBufferAttribute(radii, 1));
+    geometry.setAttribute("disc", new three.InstancedBufferAttribute(rounded, 1));
     geometry.setAttribute("newtons", this.#newtons);
     geometry.setAttribute("status", this.#statuses);
     geometry.setAttribute("chosen", this.#chosen);
