@@ -30,6 +30,12 @@ bool varies(const Packets& packets, std::size_t at) {
   return !is_constant(packets, at);
 }
 
+std::size_t changing_bytes(const Packets& packets, std::size_t at, std::size_t size) {
+  std::size_t changing = 0;
+  for (std::size_t k = at; k < at + size; ++k) changing += varies(packets, k) ? 1 : 0;
+  return changing;
+}
+
 std::size_t zeros_before(const Packets& packets, std::size_t at) {
   std::size_t zeros = 0;
   while (zeros < at && packets.packets.front()[at - zeros - 1] == 0 && !varies(packets, at - zeros - 1)) ++zeros;
@@ -45,8 +51,7 @@ std::optional<PacketField> growing_at(const Packets& packets, std::size_t at, st
   for (const std::size_t size : {1U, 2U, 3U, 4U}) {
     const bool is_cut = at + 4 > end;  // by a mark in the middle of a clock
     if (at + size > end) break;
-    std::size_t changing = 0;
-    for (std::size_t k = at; k < at + size; ++k) changing += varies(packets, k) ? 1 : 0;
+    const std::size_t changing = changing_bytes(packets, at, size);
     for (const char* order : {"le", "be"}) {
       const bool is_big_endian = order[0] == 'b';
       const bool has_odd_size = size == 3 && !is_cut && !(is_big_endian && left == 3);
@@ -98,7 +103,8 @@ std::optional<PacketField> in_turn_at(const Packets& packets, std::size_t at, bo
 std::optional<PacketField> field_at(const Packets& packets, std::size_t at, std::size_t end) {
   if (auto counter = growing_at(packets, at, end, is_frame_number)) {
     const auto clock = growing_at(packets, at, end, is_even_clock);
-    if (!clock || clock->size <= counter->size) return counter;
+    const auto changing = [&](const PacketField& field) { return changing_bytes(packets, field.at, field.size); };
+    if (!clock || changing(*clock) <= changing(*counter)) return counter;
   }
   if (auto turn = in_turn_at(packets, at, false)) return turn;
   if (auto clock = packets.packets.size() >= kFewest ? growing_at(packets, at, end, is_time) : std::nullopt) {

@@ -388,6 +388,17 @@ TEST(Proposals, clocks_that_jitter_end_before_the_readings) {
   }
 }
 
+TEST(Proposals, a_counter_before_bytes_that_stay_is_no_clock) {
+  const Proposal proposal = first_of(test::pressed_frames(kShape), kShape, [](const Frame& f, std::size_t k) {
+    Bytes bytes = {0x01, 0xC3};
+    test::add_number(bytes, 20 * k, 4);
+    test::add_number(bytes, k, 2);
+    test::add_readings(bytes, f);
+    return bytes;
+  });
+  EXPECT_NE(proposal.toml.find("\"time_ms u32le\", \"frame u16le\""), std::string::npos) << proposal.toml;
+}
+
 TEST(Proposals, floats_of_64_bits_are_readings_and_clocks) {
   const Proposal proposal = first_of(test::pressed_frames(kShape), kShape, [](const Frame& f, std::size_t k) {
     Bytes bytes = {'T', 'A', 'C', 'T'};
