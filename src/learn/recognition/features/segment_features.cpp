@@ -67,7 +67,6 @@ SegmentFeatures::ArrayFeatures::ArrayFeatures(const SensedArray& examples, const
       hog(lattice, hog_cells(examples.rows), hog_cells(examples.cols)),
       form(lattice, least_reading),
       time(least_reading, most_frames),
-      taxels(examples, lattice),
       image(lattice.taxels()),
       before(lattice.taxels()),
       held(lattice.taxels()),
@@ -78,7 +77,6 @@ SegmentFeatures::ArrayFeatures::ArrayFeatures(const SensedArray& examples, const
 SegmentFeatures::SegmentFeatures(const Layout& examples, const Layout& source, bool moving, std::size_t most_frames)
     : source_(source),
       moving_(moving),
-      tells_of_taxels_(tells_of_taxels(examples)),
       most_frames_(most_frames),
       source_frames_per_frame_(frames_per_frame(examples, source)),
       columns_(feature_columns(examples, moving)),
@@ -88,6 +86,7 @@ SegmentFeatures::SegmentFeatures(const Layout& examples, const Layout& source, b
   const std::size_t most = resampled_count(most_frames, source_frames_per_frame_);
   for (std::size_t i = 0; i < examples.arrays.size(); ++i) {
     arrays_.emplace_back(examples.arrays[i], source.arrays[i], examples.least_reading(), most);
+    if (tells_of_taxels(examples)) arrays_.back().taxels.emplace(examples.arrays[i], arrays_.back().lattice);
   }
   force_.reserve(most);
 }
@@ -143,7 +142,7 @@ void SegmentFeatures::accumulate(ArrayFeatures& array, const Segment& segment) {
   const double area_from = kAreaLevel * *std::max_element(series.peak.begin(), series.peak.end());
   std::fill(array.held.begin(), array.held.end(), 0.0);
   std::fill(array.changed.begin(), array.changed.end(), 0.0);
-  array.taxels.begin();
+  if (array.taxels) array.taxels->begin();
   std::size_t held_frames = 0;
   for (std::size_t frame = 0; frame < series.frames(); ++frame) {
     image_at(array, segment, frame);
@@ -151,7 +150,7 @@ void SegmentFeatures::accumulate(ArrayFeatures& array, const Segment& segment) {
       ++held_frames;
       std::transform(array.held.begin(), array.held.end(), array.image.begin(), array.held.begin(), std::plus<>());
     }
-    if (tells_of_taxels_) array.taxels.add(array.image);
+    if (array.taxels) array.taxels->add(array.image);
     if (!moving_) continue;
     set_centre(series, frame, moments_of(array.lattice, array.image));
     series.area[frame] = static_cast<double>(
@@ -196,8 +195,8 @@ void SegmentFeatures::write_shares(std::span<double> out) const {
 void SegmentFeatures::write_pattern(std::span<double> out) {
   std::span<double> rest = out;
   for (ArrayFeatures& array : arrays_) {
-    array.taxels.write_roots(array.held, rest.first(array.taxels.taxels()));
-    rest = rest.subspan(array.taxels.taxels());
+    array.taxels->write_roots(array.held, rest.first(array.taxels->taxels()));
+    rest = rest.subspan(array.taxels->taxels());
   }
   const double length = std::sqrt(std::inner_product(out.begin(), out.end(), out.begin(), 0.0));
   for (double& value : out) value = length > 0.0 ? value / length : 0.0;
@@ -207,14 +206,14 @@ void SegmentFeatures::write_pattern(std::span<double> out) {
 void SegmentFeatures::write_course(std::span<double> out) {
   const auto put = [&](auto&& write_array) {
     for (ArrayFeatures& array : arrays_) {
-      write_array(array, out.first(array.taxels.taxels()));
-      out = out.subspan(array.taxels.taxels());
+      write_array(array, out.first(array.taxels->taxels()));
+      out = out.subspan(array.taxels->taxels());
     }
   };
-  put([](ArrayFeatures& array, std::span<double> part) { array.taxels.write_mean(part); });
+  put([](ArrayFeatures& array, std::span<double> part) { array.taxels->write_mean(part); });
   if (!moving_) return;
-  put([](ArrayFeatures& array, std::span<double> part) { array.taxels.write_deviation(part); });
-  put([](ArrayFeatures& array, std::span<double> part) { array.taxels.write_roots(array.changed, part); });
+  put([](ArrayFeatures& array, std::span<double> part) { array.taxels->write_deviation(part); });
+  put([](ArrayFeatures& array, std::span<double> part) { array.taxels->write_roots(array.changed, part); });
 }
 
 }  // namespace dermis::learn::recognition

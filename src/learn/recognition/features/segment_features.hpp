@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -41,7 +42,7 @@ class SegmentFeatures {
     PolarBlock polar;
     FormBlock form;
     TimeBlock time;
-    TaxelBlock taxels;
+    std::optional<TaxelBlock> taxels;  ///< Where features tell of each taxel.
     FrameSeries series;
     std::vector<double> image;
     std::vector<double> before;
@@ -59,7 +60,6 @@ class SegmentFeatures {
 
   Layout source_;
   bool moving_;
-  bool tells_of_taxels_;
   std::size_t most_frames_;
   double source_frames_per_frame_;
   FeatureColumns columns_;

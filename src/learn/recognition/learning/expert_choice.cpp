@@ -40,7 +40,7 @@ Path score_by_kernels(const Teaching& teaching, const Matrix& others) {
     const double width = narrowness / static_cast<double>(centres.cols());
     const KernelEquations equations = equations_of(teaching, centres, width);
     const Matrix of_others = likeness(others, centres, width);
-    for (const double penalty : kPenalties) path.push_back(of_others * influences_of(equations, penalty));
+    for (const double penalty : kPenalties) path.emplace_back(of_others * influences_of(equations, penalty));
   }
   return path;
 }

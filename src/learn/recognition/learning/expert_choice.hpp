@@ -32,7 +32,7 @@ struct TrainingTable {
 /// How an expert learns.
 struct LearningWay {
   bool strays = false;      ///< Whether the copies with a raised zero are strays.
-  double shrinkage = 0.0;   ///< Of the covariance; the penalty of a kernel regression.
+  double shrinkage = 0.0;   ///< Shrinkage of the covariance; the penalty of a kernel regression.
   double narrowness = 0.0;  ///< Width of the kernels times the number of columns; 0 of a discriminant.
 };
 
