@@ -43,7 +43,7 @@ using live::sources::SourceName;
 constexpr std::size_t kMostReadings = 67'000'000;  // of a recording
 constexpr Nanos kUsualStep = std::chrono::milliseconds(10);
 
-/// What was pressed, of which frames.
+/// The presses, and the frames that show them.
 struct Pressed {
   Answers answers;
   FrameShape sent;

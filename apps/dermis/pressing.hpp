@@ -17,7 +17,7 @@ struct PressingOptions {
   bool json = false;
 };
 
-/// Of a device, leads a person from place to place; of a file, finds the presses in it.
+/// Leads a person from place to place of a device, or finds the presses in a file.
 [[nodiscard]] Status describe_pressing(const PressingOptions& options);
 
 }  // namespace dermis::app

@@ -6,6 +6,7 @@ import contextlib
 import json
 import os
 import pty
+import re
 import subprocess
 import threading
 import time
@@ -74,6 +75,21 @@ class Press(support.SmallArray):
         again = support.dermis("describe", source.split("?")[0] + f"?rate={RATE}", "--press", self.places, "--out", out)
         self.assertEqual(again.returncode, 2)
         self.assertIn("exists", again.stderr)
+
+    def test_taxels_in_no_grid_are_drawn_as_discs_at_their_places(self):
+        source = self.recording(frames_of(ORDER, 6), 1, 6)
+        result, _ = self.described(source, self.places)
+        turned = result.stdout.splitlines()[-1].removeprefix("frames in this order: ")
+        picture = self.work / "palm.svg"
+        for model, discs in (([], 0), (["--model", self.work / "hand.suit.toml"], 5)):
+            drawn = support.dermis("image", "--in", turned, *model, "--frame", "60", "--out", picture, "--force")
+            self.assertEqual(drawn.returncode, 0, drawn.stderr)
+            dots = re.findall(r'd="M([\d.]+)[ ,]([\d.]+) ?L\1[ ,]\2"', picture.read_text())
+            self.assertEqual(len(set(dots)), discs, picture.read_text()[:3000])
+        several = (self.work / "hand.suit.toml").read_text()
+        (self.work / "two.suit.toml").write_text(several + several.replace('name = "hand"', 'name = "other"'))
+        drawn = support.dermis("image", "--in", turned, "--model", self.work / "two.suit.toml", "--out", picture)
+        self.assertIn("has several arrays; name the model of one", drawn.stderr)
 
     def test_the_bytes_of_a_device_are_read_by_the_description_that_comes_out(self):
         frames = frames_of(numpy.random.default_rng(4).permutation(12), 12)

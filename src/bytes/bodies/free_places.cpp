@@ -64,7 +64,7 @@ std::vector<FreePlace> free_places(FrameShape array, const ArrayShape& shape) {
   std::array<double, 3> extents{};
   std::transform(axes.begin(), axes.end(), extents.begin(),
                  [&](Axis axis) { return extent_of(free->positions, axis); });
-  // Of equal ones the last: pictures are flat.
+  // The last of equal ones: pictures are flat.
   const auto shortest = 2 - (std::min_element(extents.rbegin(), extents.rend()) - extents.rbegin());
   const Axis right = axes[shortest == 0 ? 1 : 0];
   const Axis down = axes[shortest == 2 ? 1 : 2];

@@ -8,8 +8,10 @@
 #include <cstdlib>
 #include <map>
 #include <set>
+#include <tuple>
 #include <utility>
 
+#include "bytes/devices/number_table.hpp"
 #include "bytes/devices/protocols.hpp"
 #include "dermis/bytes/files/text.hpp"
 #include "dermis/touch/frames/array_description.hpp"
@@ -240,30 +242,22 @@ class Parser {
 
   bool read_switch(const char* name) { return read<int>(name, 0, 1, "0 or 1").value_or(0) == 1; }
 
-  /// "0,2,1"
-  void read_list(const char* name, std::vector<std::size_t>& list, std::size_t most = kMaxLines - 1) {
+  void read_list(const char* name, std::vector<std::size_t>& list) {
     const auto found = parameters_.find(name);
     if (found == parameters_.end()) return;
-    for (std::size_t begin = 0; begin <= found->second.size();) {
-      const std::size_t end = std::min(found->second.find(',', begin), found->second.size());
-      const auto line = number_within<std::size_t>(found->second.substr(begin, end - begin), 0, most);
-      if (!line) return fail(std::string(name) + ": must be lines from 0 on, such as 0,2,1");
-      list.push_back(*line);
-      begin = end + 1;
-    }
+    const std::optional<NumberTable> table = number_table(found->second, kMaxLines - 1);
+    if (!table || table->rows > 1) return fail(std::string(name) + ": must be lines from 0 on, such as 0,2,1");
+    list = table->numbers;
   }
 
-  /// "0,2;1,3": taxels of the array, with a semicolon between its rows.
   void read_taxel_order(LineOrder& order) {
     const auto found = parameters_.find("taxel_order");
     if (found == parameters_.end()) return;
     const auto shape = read_shape();
     if (!shape) return fail("taxel_order: needs rows and cols of what is sent");
-    std::string& list = found->second;
-    order.taxel_rows = 1 + static_cast<std::size_t>(std::count(list.begin(), list.end(), ';'));
-    std::replace(list.begin(), list.end(), ';', ',');
-    read_list("taxel_order", order.taxel_order, kMaxLines * kMaxLines - 1);
-    order.taxels_sent = *shape;
+    const std::optional<NumberTable> table = number_table(found->second, kMaxLines * kMaxLines - 1);
+    if (!table) return fail("taxel_order: must be readings from 0 on, row by row, such as 0,2;1,3");
+    std::tie(order.taxel_order, order.taxel_rows, order.taxels_sent) = std::tie(table->numbers, table->rows, *shape);
   }
 
   void read_order() {

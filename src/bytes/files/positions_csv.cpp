@@ -31,7 +31,7 @@ constexpr Columns kPositions{"the first line must be x_mm,y_mm,z_mm", "must be t
 constexpr Columns kPlaces{"the first line must be x_mm,y_mm, with z_mm, name or both behind them",
                           "must be what the first line says: numbers in mm, and a name where it has one"};
 
-/// Of places, the columns that are there.
+/// The columns that are there.
 std::optional<Columns> columns_of(std::string_view header, Columns columns) {
   const std::vector<std::string_view> names = split_cells(header);
   std::vector<std::string_view> known = {"x_mm", "y_mm"};

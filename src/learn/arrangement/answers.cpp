@@ -42,7 +42,7 @@ double usual_change(const std::vector<Press>& presses) {
   return changes.empty() ? 0.0 : median_of(changes);
 }
 
-/// What was found in place of what was expected.
+/// Says what was found.
 Error miscounted(const std::vector<Press>& presses, std::size_t places) {
   std::string list;
   for (std::size_t k = 0; k < std::min(presses.size(), kMostListed); ++k)

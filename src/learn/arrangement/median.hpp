@@ -8,7 +8,7 @@
 
 namespace dermis::learn::arrangement {
 
-/// Of at least one value, the upper of two in the middle; changes their order.
+/// The upper of two in the middle. Takes at least one value, and changes their order.
 template <typename Value>
 [[nodiscard]] Value median_of(std::vector<Value>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

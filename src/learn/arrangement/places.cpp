@@ -29,10 +29,10 @@ std::optional<FrameShape> grid_of(const std::string& text) {
 }
 
 Result<Places> grid_places(FrameShape grid, double pitch_m) {
-  if (!(pitch_m >= kLeastPitch_m && pitch_m <= kMostPitch_m)) return bad_input("--pitch: must be 0.05 to 1000 mm");
+  if (!(pitch_m >= kLeastPitch_m && pitch_m <= kMostPitch_m)) return bad_input("pitch: must be 0.05 to 1000 mm");
   const bool is_possible = grid.rows >= 1 && grid.cols >= 1 && grid.rows <= kMaxLines && grid.cols <= kMaxLines &&
                            grid.taxel_count() <= kMostPlaces;
-  if (!is_possible) return bad_input(fmt::format("--press: a grid has 1 to {} places, as 6x9", kMostPlaces));
+  if (!is_possible) return bad_input(fmt::format("a grid has 1 to {} places, as 6x9", kMostPlaces));
   Places places{.grid = grid, .pitch_m = pitch_m};
   for (std::size_t row = 0; row < grid.rows; ++row)
     for (std::size_t col = 0; col < grid.cols; ++col)

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cassert>
+#include <chrono>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "learn/arrangement/median.hpp"
@@ -12,22 +14,22 @@
 namespace dermis::learn::arrangement {
 namespace {
 
-constexpr double kNoises = 6.0;         // a press is so many deviations from rest,
-constexpr double kOfTypical = 0.1;      // and this share of the presses before it
-constexpr double kReleased = 0.45;      // of its own peak
-constexpr double kRises = 0.15;         // of the last peak, where the array still remembers it
-constexpr double kForgotten = 0.5;      // of what would be a press
-constexpr double kShortest_s = 0.03;    // and two frames
-constexpr double kBetween_s = 0.1;      // and two frames: less is a finger that wobbles
-constexpr double kLongest_s = 15.0;     // more is no press, but another rest,
-constexpr double kWeakLongest_s = 2.0;  // and sooner
-constexpr double kFaint = 0.4;          // below this share of the presses before it
-constexpr double kFollows_s = 1.0;      // time constant of the rest,
-constexpr double kForgets_s = 0.3;      // and after a press
-constexpr double kLongestStep_s = 1.0;  // between two frames, as far as times are believed
-constexpr std::size_t kTogether = 5;    // channels of which most may move together
-constexpr float kOfLevel = 1e-3F;       // least noise, by the level,
-constexpr float kCount = 0.7F;          // and where readings are whole numbers
+constexpr double kNoises = 6.0;          // a press is so many deviations from rest,
+constexpr double kOfTypical = 0.1;       // and this share of the presses before it
+constexpr double kReleased = 0.45;       // of its own peak
+constexpr double kRises = 0.15;          // of the last peak, where the array still remembers it
+constexpr double kForgotten = 0.5;       // of what would be a press
+constexpr double kShortest_s = 0.03;     // and two frames
+constexpr double kBetween_s = 0.1;       // and two frames: less is a finger that wobbles
+constexpr double kLongest_s = 15.0;      // more is no press, but another rest,
+constexpr double kFaintLongest_s = 2.0;  // and sooner
+constexpr double kFaint = 0.4;           // below this share of the presses before it
+constexpr double kFollows_s = 1.0;       // time constant of the rest,
+constexpr double kForgets_s = 0.3;       // and after a press
+constexpr double kLongestStep_s = 1.0;   // between two frames, as far as times are believed
+constexpr std::size_t kTogether = 5;     // channels of which most may move together
+constexpr float kOfLevel = 1e-3F;        // least noise, by the level,
+constexpr float kCount = 0.7F;           // and where readings are whole numbers
 constexpr float kLeast = 1e-9F;
 constexpr float kSigmasOfDeviation = 1.4826F;
 
@@ -35,6 +37,11 @@ bool is_whole(std::span<const std::vector<float>> frames) {
   return std::all_of(frames.begin(), frames.end(), [](const std::vector<float>& frame) {
     return std::all_of(frame.begin(), frame.end(), [](float x) { return !std::isfinite(x) || x == std::round(x); });
   });
+}
+
+/// Clocks may step back.
+double seconds_between(Nanos one, Nanos other) {
+  return std::abs(std::chrono::duration<double>(other - one).count());
 }
 
 float middle_of(float a, float b, float c) {
@@ -63,25 +70,23 @@ Rest rest_of(std::span<const std::vector<float>> frames) {
 
 PressFinder::PressFinder(Rest rest, double typical)
     : rest_(std::move(rest)),
-      last_(rest_.level),
-      earlier_(rest_.level),
-      filtered_(rest_.level),
+      recent_{rest_.level, rest_.level, rest_.level},
       change_(rest_.level.size()),
-      sums_(rest_.level.size()),
       typical_(typical) {}
 
 void PressFinder::filter(std::span<const float> counts) {
-  assert(counts.size() == last_.size());
+  assert(counts.size() == change_.size());
+  auto& [earlier, last, filtered] = recent_;
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    const float now = std::isfinite(counts[i]) ? counts[i] : last_[i];
-    filtered_[i] = middle_of(earlier_[i], last_[i], now);
-    earlier_[i] = std::exchange(last_[i], now);
+    const float now = std::isfinite(counts[i]) ? counts[i] : last[i];
+    filtered[i] = middle_of(earlier[i], last[i], now);
+    earlier[i] = std::exchange(last[i], now);
   }
 }
 
 /// By the rest, less what all channels do together.
 void PressFinder::find_changes() {
-  for (std::size_t i = 0; i < change_.size(); ++i) change_[i] = filtered_[i] - rest_.level[i];
+  for (std::size_t i = 0; i < change_.size(); ++i) change_[i] = recent_.filtered[i] - rest_.level[i];
   if (change_.size() < kTogether) return;
   scratch_ = change_;
   const float together = median_of(scratch_);
@@ -94,7 +99,7 @@ double PressFinder::threshold(std::size_t channel) const {
 
 std::size_t PressFinder::strongest() const {
   std::size_t strongest = 0;
-  double most = -1e300;
+  double most = -std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < change_.size(); ++i) {
     const double beyond = std::abs(static_cast<double>(change_[i])) - kNoises * static_cast<double>(rest_.noise[i]);
     if (beyond <= most) continue;
@@ -106,82 +111,78 @@ std::size_t PressFinder::strongest() const {
 
 /// The rest goes with what drifts.
 void PressFinder::follow(double seconds) {
-  const double share = 1.0 - std::exp(-seconds / (remembers_ ? kForgets_s : kFollows_s));
-  for (std::size_t i = 0; i < filtered_.size(); ++i)
-    rest_.level[i] += static_cast<float>(share) * (filtered_[i] - rest_.level[i]);
+  const auto share = static_cast<float>(1.0 - std::exp(-seconds / (remembers_ ? kForgets_s : kFollows_s)));
+  for (std::size_t i = 0; i < change_.size(); ++i) rest_.level[i] += share * (recent_.filtered[i] - rest_.level[i]);
 }
 
 void PressFinder::begin(double change) {
   is_pressed_ = true;
   remembers_ = false;
-  begin_ = time_;
-  peak_ = change;
-  weight_ = 0.0;
-  frames_ = 0;
-  low_frames_ = 0;
-  low_seconds_ = 0.0;
-  std::fill(sums_.begin(), sums_.end(), 0.0);
+  held_ = {.sums = std::vector<double>(change_.size()), .peak = change, .begin = *time_};
 }
 
-/// What the channels show while the press is strong counts most.
+/// Changes while the press is strong count most.
 void PressFinder::gather(double change, double seconds) {
-  peak_ = std::max(peak_, change);
-  if (change < kReleased * peak_) {
-    if (low_frames_ == 0) low_since_ = time_;
-    ++low_frames_;
-    low_seconds_ += low_frames_ > 1 ? seconds : 0.0;
+  held_.peak = std::max(held_.peak, change);
+  if (change < kReleased * held_.peak) {
+    if (held_.low_frames == 0) held_.low_since = *time_;
+    held_.low_seconds += held_.low_frames > 0 ? seconds : 0.0;
+    ++held_.low_frames;
     return;
   }
-  frames_ += 1 + low_frames_;
-  low_frames_ = 0;
-  low_seconds_ = 0.0;
+  held_.frames += 1 + held_.low_frames;
+  held_.low_frames = 0;
+  held_.low_seconds = 0.0;
   const double weight = change * change;
-  weight_ += weight;
-  for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += weight * static_cast<double>(change_[i]);
+  held_.weight += weight;
+  for (std::size_t i = 0; i < change_.size(); ++i) held_.sums[i] += weight * static_cast<double>(change_[i]);
+}
+
+/// The channels that changed most beyond what noise does to a mean.
+Press PressFinder::answer() const {
+  const double noises = kNoises / std::sqrt(static_cast<double>(held_.frames));
+  const auto score = [&](std::size_t i) {
+    return std::abs(held_.sums[i] / held_.weight) - noises * static_cast<double>(rest_.noise[i]);
+  };
+  Press press{.begin = held_.begin, .end = held_.low_frames > 0 ? held_.low_since : *time_};
+  for (std::size_t i = 1; i < change_.size(); ++i)
+    if (score(i) > score(press.channel)) press.channel = i;
+  press.change = held_.sums[press.channel] / held_.weight;
+  if (change_.size() < 2) return press;
+  press.second = press.channel == 0 ? 1 : 0;
+  for (std::size_t i = 0; i < change_.size(); ++i)
+    if (i != press.channel && score(i) > score(press.second)) press.second = i;
+  press.second_share = std::abs(held_.sums[press.second] / held_.sums[press.channel]);
+  return press;
 }
 
 /// Empty where it was too short.
 std::optional<Press> PressFinder::end() {
   is_pressed_ = false;
   remembers_ = true;
-  least_since_ = peak_;
-  const Nanos until = low_frames_ > 0 ? low_since_ : time_;
-  const double lasted = std::abs(std::chrono::duration<double>(until - begin_).count());
-  if (frames_ < 2 || lasted < kShortest_s) return std::nullopt;
-  const auto score = [&](std::size_t i) {
-    return std::abs(sums_[i] / weight_) -
-           kNoises / std::sqrt(static_cast<double>(frames_)) * static_cast<double>(rest_.noise[i]);
-  };
-  Press press{.begin = begin_, .end = until};
-  for (std::size_t i = 1; i < sums_.size(); ++i)
-    if (score(i) > score(press.channel)) press.channel = i;
-  press.change = sums_[press.channel] / weight_;
-  press.second = press.channel == 0 && sums_.size() > 1 ? 1 : 0;
-  for (std::size_t i = 0; i < sums_.size(); ++i)
-    if (i != press.channel && score(i) > score(press.second)) press.second = i;
-  if (sums_.size() > 1) press.second_share = std::abs(sums_[press.second] / sums_[press.channel]);
-  peaks_.push_back(std::abs(press.change));
-  typical_ = median_of(peaks_);
+  least_since_ = held_.peak;
+  const Press press = answer();
+  if (held_.frames < 2 || seconds_between(press.begin, press.end) < kShortest_s) return std::nullopt;
+  changes_.push_back(std::abs(press.change));
+  typical_ = median_of(changes_);
   return press;
 }
 
 std::optional<Press> PressFinder::hold(std::size_t channel, double seconds) {
   gather(std::abs(static_cast<double>(change_[channel])), seconds);
-  const double longest = peak_ < kFaint * typical_ ? kWeakLongest_s : kLongest_s;
-  if (std::abs(std::chrono::duration<double>(time_ - begin_).count()) > longest) {
-    rest_.level = filtered_;
+  const double longest = held_.peak < kFaint * typical_ ? kFaintLongest_s : kLongest_s;
+  if (seconds_between(held_.begin, *time_) > longest) {
+    rest_.level = recent_.filtered;
     is_pressed_ = false;
     return std::nullopt;
   }
-  const bool is_low_enough = low_frames_ >= 2 && low_seconds_ >= kBetween_s;
-  return is_low_enough ? end() : std::nullopt;
+  const bool is_over = held_.low_frames >= 2 && held_.low_seconds >= kBetween_s;
+  return is_over ? end() : std::nullopt;
 }
 
 std::optional<Press> PressFinder::add(std::span<const float> counts, Nanos time) {
-  const double step = has_time_ ? std::abs(std::chrono::duration<double>(time - time_).count()) : 0.0;
-  const double seconds = std::min(step, kLongestStep_s);
+  const double seconds = std::min(time_ ? seconds_between(*time_, time) : 0.0, kLongestStep_s);
   time_ = time;
-  has_time_ = true;
   filter(counts);
   find_changes();
   const std::size_t channel = strongest();
@@ -190,7 +191,7 @@ std::optional<Press> PressFinder::add(std::span<const float> counts, Nanos time)
   const double least = threshold(channel);
   if (change <= kForgotten * least) remembers_ = false;
   if (remembers_) least_since_ = std::min(least_since_, change);
-  const double onset = remembers_ ? least_since_ + std::max(least, kRises * peak_) : least;
+  const double onset = remembers_ ? least_since_ + std::max(least, kRises * held_.peak) : least;
   if (change > onset) {
     begin(change);
     return hold(channel, seconds);

@@ -54,7 +54,7 @@ double difference(const Rest& a, const Rest& b, std::size_t channel) {
   return std::abs(static_cast<double>(a.level[channel] - b.level[channel]));
 }
 
-/// Of a press: what nearly the strongest stretches show.
+/// By a press: nearly the strongest stretches show it.
 double typical_change(const std::vector<Rest>& rests, const Rest& usual) {
   std::vector<double> most(rests.size());
   for (std::size_t k = 0; k < rests.size(); ++k)

@@ -146,7 +146,9 @@ TEST(SourceUri, takes_an_order_of_single_taxels) {
   EXPECT_EQ(order.taxels_sent, (FrameShape{4, 8}));
   expect_words(message("file:a.mcap?taxel_order=1,0"), {"taxel_order", "needs rows and cols"});
   expect_words(message("file:a.mcap?rows=1&cols=2&taxel_order=1,1"), {"names reading 1 twice"});
-  expect_words(message("file:a.mcap?rows=1&cols=2&taxel_order=1,"), {"taxel_order", "such as 0,2,1"});
+  for (const char* list : {"", "1,", "1;", "a", "-1", "0,1,2;3", "0;1,2"}) {
+    expect_words(message("file:a.mcap?rows=2&cols=2&taxel_order=" + std::string(list)), {"taxel_order", "0,2;1,3"});
+  }
 }
 
 TEST(SourceUri, names_an_order_of_lines_that_cannot_be) {

@@ -177,8 +177,8 @@ TEST(PressPlaces, are_a_grid_or_a_file) {
   ASSERT_TRUE(grid);
   EXPECT_EQ(place_words(*grid, 4), "place 5 of 6 (row 2, column 2 from the top left)");
   EXPECT_NEAR(grid->places[5].position.x, 0.016, 1e-12);
-  EXPECT_EQ(read_press_places("0x3", 8.0).error().message, "--press: a grid has 1 to 1024 places, as 6x9");
-  EXPECT_EQ(read_press_places("2x3", 0.0).error().message, "--pitch: must be 0.05 to 1000 mm");
+  EXPECT_EQ(read_press_places("0x3", 8.0).error().message, "a grid has 1 to 1024 places, as 6x9");
+  EXPECT_EQ(read_press_places("2x3", 0.0).error().message, "pitch: must be 0.05 to 1000 mm");
   EXPECT_EQ(place_words(palm(3), 0), "place 1 of 3 (x 0 mm, y 1 mm; thumb)");
   EXPECT_FALSE(read_press_places("none.csv", 8.0));
 }

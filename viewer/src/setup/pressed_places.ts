@@ -49,7 +49,7 @@ export function millimetresOf(
   return points.flatMap(([x, y]) => [inHundredths(scale * (x - left)), inHundredths(scale * (y - top))]);
 }
 
-/** What a person is to do now. */
+/** The task of the person now. */
 export function taskOf({ ready, place, done, repeated, channels }: Pressed): string {
   if (!ready) return "Take your hands off for a second.";
   if (done) return "All places were pressed.";

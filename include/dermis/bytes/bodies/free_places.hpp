@@ -16,8 +16,8 @@ struct FreePlace {
   double radius = 0.0;  ///< Of its disc, which touches no other.
 };
 
-/// The taxels of an array in no grid: one row or column of them whose places are not evenly on a line. Of places in
-/// space, the shortest of the three axes is left out. Empty: the array is a grid.
+/// The taxels of an array in no grid: one row or column of them whose places are not evenly on a line. The
+/// shortest of the three axes is left out. Empty: the array is a grid.
 [[nodiscard]] std::vector<FreePlace> free_places(FrameShape array, const ArrayShape& shape);
 
 }  // namespace dermis

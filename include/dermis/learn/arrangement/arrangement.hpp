@@ -48,7 +48,7 @@ struct RecordedAnswers {
 /// pressed twice in a row are left out, if that fits. Fails where the count does not tell which press is where.
 [[nodiscard]] Result<RecordedAnswers> answers_of(std::vector<Press> presses, std::size_t places);
 
-/// What is known of a board once its places were pressed.
+/// A board once its places were pressed.
 struct Arrangement {
   ArrayDescription array;          ///< As its device is read: the order of its channels; circuit "auto" of a grid.
   std::vector<Vector3> positions;  ///< Of its taxels, row-major, in its frame [m].

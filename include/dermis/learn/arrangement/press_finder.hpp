@@ -31,8 +31,8 @@ struct Press {
   Nanos end{};
 };
 
-/// Finds presses in a stream. Its rest follows drift while nothing presses. What all channels do together is no press,
-/// and neither is what one frame alone shows. Not thread-safe.
+/// Finds presses in a stream. Its rest follows drift while nothing presses. A change of all
+/// channels together is no press, and neither is one of a single frame. Not thread-safe.
 class PressFinder {
  public:
   /// `typical`: the change by a press, where it is known; else the first presses tell it.
@@ -47,6 +47,24 @@ class PressFinder {
   [[nodiscard]] bool is_pressed() const noexcept { return is_pressed_; }
 
  private:
+  /// The last frames, for the median of three of each channel.
+  struct Recent {
+    std::vector<float> earlier;
+    std::vector<float> last;
+    std::vector<float> filtered;
+  };
+  /// A press that has not ended.
+  struct Held {
+    std::vector<double> sums;  ///< Of changes, by their weight.
+    double weight = 0.0;
+    double peak = 0.0;
+    std::size_t frames = 0;
+    std::size_t low_frames = 0;  ///< Since it seems to have ended.
+    double low_seconds = 0.0;
+    Nanos low_since{};
+    Nanos begin{};
+  };
+
   void filter(std::span<const float> counts);
   void find_changes();
   [[nodiscard]] std::size_t strongest() const;
@@ -54,30 +72,21 @@ class PressFinder {
   void follow(double seconds);
   void begin(double change);
   void gather(double change, double seconds);
+  [[nodiscard]] Press answer() const;
   std::optional<Press> end();
   std::optional<Press> hold(std::size_t channel, double seconds);
 
   Rest rest_;
-  std::vector<float> last_;      // the frame before this one,
-  std::vector<float> earlier_;   // and the one before that
-  std::vector<float> filtered_;  // median of three
+  Recent recent_;
   std::vector<float> change_;
   std::vector<float> scratch_;
-  std::vector<double> sums_;   // of changes while pressed, by their weight
-  std::vector<double> peaks_;  // of the presses so far
-  double weight_ = 0.0;
-  double peak_ = 0.0;
-  double typical_ = 0.0;
-  double least_since_ = 0.0;  // largest change at its smallest, after a press that the array still remembers
-  double low_seconds_ = 0.0;
-  std::size_t frames_ = 0;  // of the press
-  std::size_t low_frames_ = 0;
+  Held held_;
+  std::vector<double> changes_;  // by the presses so far
+  double typical_ = 0.0;         // their median
+  double least_since_ = 0.0;     // the largest change at its smallest, after a press that the array remembers
   bool is_pressed_ = false;
   bool remembers_ = false;
-  Nanos time_{};
-  Nanos begin_{};
-  Nanos low_since_{};
-  bool has_time_ = false;
+  std::optional<Nanos> time_;  // of the last frame
 };
 
 /// The presses of a whole recording, at times since its first frame. It may begin and end with one.

@@ -23,14 +23,14 @@ class PressWatch {
   PressWatch(const live::sources::SourceName& name, FrameShape sent, learn::arrangement::Places places,
              live::sources::SourceOptions options);
 
-  /// {"ready", "place", "done", "pressed", "repeated", "channels", "problem"}: the place to press now; the one whose
-  /// channel answered again, or null; the channel of each place, or null.
+  /// {"ready", "place", "done", "pressed", "repeated", "channels", "problem"}. `place` is to be pressed now. The
+  /// channel of `repeated`, or of none (null), answered again.
   [[nodiscard]] nlohmann::ordered_json progress() const;
   /// Nothing answers at this place; or the last place again.
   void skip();
   void back();
 
-  /// What is known so far; places that were not pressed did not answer.
+  /// As far as it is known; places that were not pressed did not answer.
   [[nodiscard]] Result<learn::arrangement::Arrangement> arrange(const std::string& name) const;
 
  private:
