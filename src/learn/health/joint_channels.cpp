@@ -33,6 +33,8 @@ constexpr double kFastest = 0.1;     // of the mean of all: rubber warms up more
 constexpr double kActive = 0.25;     // of the largest variance
 constexpr double kSmooth = 0.6;      // correlation from frame to frame: touches last several frames,
 constexpr double kTooSmooth = 0.98;  // and come and go
+constexpr double kReturns = 0.8;     // of twice its range: the path of a reading that came and went
+constexpr double kFlank = 0.25;      // of its range: the largest step of a touch that lasts many frames
 
 }  // namespace
 
@@ -52,6 +54,10 @@ void JointChannels::add(std::span<const float> counts, const RawFrame& raw) {
     channel.squares += change * change;
     channel.with_all += change * (all - first_all_);
     channel.steps += step * step;
+    channel.path += std::abs(step);
+    channel.longest = std::max(channel.longest, std::abs(step));
+    channel.least = std::min(channel.least, change);
+    channel.most = std::max(channel.most, change);
   }
   ++frames_;
 }
@@ -170,7 +176,20 @@ bool JointChannels::has_smooth_touches() const {
     sum += 1.0 - 0.5 * channel.steps / static_cast<double>(frames_) / variance(channel);
     count += 1.0;
   }
-  return sum > kSmooth * count && sum < kTooSmooth * count;
+  return sum > kSmooth * count && (sum < kTooSmooth * count || has_slow_touches());
+}
+
+/// Most of those that answer by themselves came and went, without the steps of what is put on for minutes.
+bool JointChannels::has_slow_touches() const {
+  std::size_t alone = 0;
+  std::size_t touched = 0;
+  for (const Channel& channel : channels_) {
+    if (!answers_alone(channel)) continue;
+    const double range = channel.most - channel.least;
+    ++alone;
+    touched += channel.path > 2.0 * kReturns * range && channel.longest < kFlank * range ? 1 : 0;
+  }
+  return 2 * touched > alone;
 }
 
 std::optional<std::string> JointChannels::finding() const {

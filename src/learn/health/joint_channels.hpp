@@ -36,11 +36,16 @@ class JointChannels {
     double squares = 0.0;
     double with_all = 0.0;  ///< Products with the mean of all channels.
     double steps = 0.0;     ///< Squares of differences from frame to frame.
+    double path = 0.0;      ///< Sum of the sizes of these differences,
+    double longest = 0.0;   ///< and the largest.
+    double least = 0.0;
+    double most = 0.0;
   };
 
   void follow_all(double all, const RawFrame& raw);
   [[nodiscard]] double mean(const Channel& channel) const;
   [[nodiscard]] double variance(const Channel& channel) const;
+  [[nodiscard]] bool has_slow_touches() const;
   [[nodiscard]] bool is_warmed() const;
   [[nodiscard]] double noise(const Channel& channel) const;
   [[nodiscard]] double gain(const Channel& channel) const;

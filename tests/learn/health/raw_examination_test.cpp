@@ -326,6 +326,29 @@ TEST(RawExamination, names_milliseconds_by_touches_that_last_many_frames) {
   EXPECT_NE(said.find("the times look like milliseconds"), std::string::npos) << said;
 }
 
+/// 1,200 frames at 0.05 Hz by their time, in which each of 16 taxels is loaded for 60 frames.
+Frames slow_frames(const std::function<double(double)>& course) {
+  Frames frames;
+  Random random(11);
+  for (std::size_t number = 0; number < 1200; ++number) {
+    RawFrame& frame = frames.emplace_back();
+    frame.time = number * std::chrono::seconds(20);
+    for (std::size_t taxel = 0; taxel < kShape.taxel_count(); ++taxel) {
+      const bool is_pressed = taxel == number / 75 * 7 % 64 && number % 75 < 60;
+      const double load = is_pressed ? 700.0 * course(static_cast<double>(number % 75) / 60.0) : 0.0;
+      frame.counts.push_back(std::round(static_cast<float>(20.0 + load + 0.7 * random.normal())));
+    }
+  }
+  return frames;
+}
+
+TEST(RawExamination, names_milliseconds_of_slow_touches_but_not_of_loads_that_stand) {
+  const std::string said = finding_of(examine(slow_frames([](double share) { return std::sin(3.14159265 * share); })));
+  EXPECT_NE(said.find("the times look like milliseconds"), std::string::npos) << said;
+  const RawDiagnosis loads = examine(slow_frames([](double share) { return 1.0 - 0.2 * share; }));
+  EXPECT_TRUE(loads.problems().empty()) << loads.problems().front();
+}
+
 TEST(RawExamination, names_a_clock_that_restarts_and_a_rate_that_jumps) {
   Frames frames = touches_of_12_frames();
   for (std::size_t number = 250; number < frames.size(); ++number) frames[number].time -= std::chrono::seconds(4);
