@@ -14,8 +14,8 @@ namespace dermis::app {
 /// The first bytes of a source, as they come.
 struct SourceBytes {
   std::vector<std::uint8_t> bytes;
-  std::string known{};  ///< What dermis reads them as already: the name of a protocol or of a format; empty: nothing.
-  bool is_stream = false;  ///< Of a device, or kept as a device sends them.
+  std::string known{};     ///< The protocol or format that dermis reads them as; empty: none.
+  bool is_stream = false;  ///< They come from a device, or are kept as a device sends them.
   std::string start{};     ///< Bytes that the device was sent before it began,
   std::string request{};   ///< or before each of its answers.
 };

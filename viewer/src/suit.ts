@@ -59,7 +59,7 @@ export interface ArrayDescription {
   full_scale_n: number;
   positions: [number, number, number][];
   normals: [number, number, number][];
-  /** Of the taxels on a flat picture; missing where they are in a grid. */
+  /** Those of the taxels on a flat picture; missing where they are in a grid. */
   places?: FreePlace[];
   /** Pose of the array's frame in the suit's, as the positions have it. */
   pose: PlacedPose;

@@ -59,7 +59,7 @@ Status ArrayView::use_suit(const std::string& path) {
   const bool has_counts_alone = described && described->readout.quantity == Quantity::counts;
   if (has_counts_alone) {
     uncalibrated_ = *described;
-  } else if (const Status used = use_model(one.model); !used) {
+  } else if (Status used = use_model(one.model); !used) {
     return used;
   }
   const ArrayDescription& array = has_counts_alone ? *uncalibrated_ : work_->model.array;

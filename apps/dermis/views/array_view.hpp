@@ -48,7 +48,7 @@ class ArrayView {
   /// End of a colour scale that covers the largest of the values. For forces it is out::report::force_scale(). For
   /// counts it is that of the ADC, as described or as large as needed.
   [[nodiscard]] double scale(double largest) const;
-  /// Of the taxels, where they are in no grid; else empty.
+  /// Those of the taxels, where they are in no grid; else empty.
   [[nodiscard]] const std::vector<FreePlace>& places() const noexcept { return places_; }
   [[nodiscard]] bool is_live() const { return source_->is_live(); }
   [[nodiscard]] bool has_model() const noexcept { return work_.has_value(); }
@@ -71,7 +71,7 @@ class ArrayView {
   double row_pitch_m_ = ArrayDescription{}.row_pitch_m;
   double col_pitch_m_ = ArrayDescription{}.col_pitch_m;
   std::optional<double> full_scale_counts_;
-  std::optional<ArrayDescription> uncalibrated_;  ///< Of a suit: there are counts alone.
+  std::optional<ArrayDescription> uncalibrated_;  ///< A suit without newtons: there are counts alone.
   std::vector<FreePlace> places_;
   RawFrame raw_;
   ForceFrame force_;

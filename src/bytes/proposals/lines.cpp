@@ -56,7 +56,7 @@ std::string_view without_blanks(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(kBlanks) + 1 - begin);
 }
 
-/// What stands between most numbers, where layouts must be told.
+/// The text between most numbers, where layouts must be told.
 std::string unusual_separator(const std::vector<Line>& lines, const Numerals& numerals) {
   std::map<std::string_view, std::size_t> counts;
   std::size_t all = 0;

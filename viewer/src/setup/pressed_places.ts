@@ -11,7 +11,7 @@ export interface Pressed {
   pressed: boolean;
   /** The place whose channel answered again. */
   repeated: number | null;
-  /** Of each place; null: none, or not yet. */
+  /** One a place; null: none, or not yet. */
   channels: (number | null)[];
   problem: string;
 }

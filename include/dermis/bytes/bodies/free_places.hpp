@@ -13,7 +13,7 @@ namespace dermis {
 struct FreePlace {
   double x = 0.0;
   double y = 0.0;
-  double radius = 0.0;  ///< Of its disc, which touches no other.
+  double radius = 0.0;  ///< A disc that touches no other.
 };
 
 /// The taxels of an array in no grid: one row or column of them whose places are not evenly on a line. The

@@ -21,7 +21,7 @@ inline constexpr std::size_t kMostChannels = 65536;  ///< Of the board.
 struct Places {
   std::vector<bytes::files::NamedPlace> places{};  ///< 1 ... kMostPlaces
   std::optional<FrameShape> grid{};                ///< They are its taxels, row by row; empty: they are in no grid.
-  double pitch_m = 0.0;                            ///< Of the grid, or the usual distance of two neighbours.
+  double pitch_m = 0.0;                            ///< That of the grid, or the usual distance of two neighbours.
 };
 
 /// "6x9", or the path of a places.csv. `pitch_mm`: of a grid.
@@ -51,8 +51,8 @@ struct RecordedAnswers {
 /// A board once its places were pressed.
 struct Arrangement {
   ArrayDescription array;          ///< As its device is read: the order of its channels; circuit "auto" of a grid.
-  std::vector<Vector3> positions;  ///< Of its taxels, row-major, in its frame [m].
-  std::vector<std::optional<std::size_t>> channels;  ///< Of each place; empty: no channel answered there alone.
+  std::vector<Vector3> positions;  ///< Those of its taxels, row-major, in its frame [m].
+  std::vector<std::optional<std::size_t>> channels;  ///< One a place; empty: no channel answered there alone.
   std::vector<std::string> remarks;                  ///< Sentences on places and channels that are in doubt.
 };
 

@@ -14,8 +14,9 @@
 
 namespace dermis::out::report {
 
-/// One frame of an array as a picture. Each measured taxel has the colour of a fixed scale with its unit, r0c0 at the
-/// top left, or taxels in no grid at their places. Contacts are ellipses with their forces. Nothing is interpolated.
+/// One frame of an array as a picture. Each measured taxel has the colour of a fixed scale with its unit. r0c0 is at
+/// the top left; taxels in no grid are at their places. Contacts are ellipses with their forces. Nothing is
+/// interpolated.
 struct FramePicture {
   std::string title;     ///< "chest"
   std::string subtitle;  ///< "12.340 s, total 23.4 N"
@@ -26,7 +27,7 @@ struct FramePicture {
   std::vector<double> values;       ///< [rows, cols]; NaN and infinity are crossed out.
   double high = 1.0;                ///< End of the scale, which begins at 0; finite and > 0.
   std::string unit;                 ///< "N"
-  std::vector<FreePlace> places{};  ///< Of the taxels; empty: they are in their grid.
+  std::vector<FreePlace> places{};  ///< Those of the taxels; empty: they are in their grid.
   std::vector<Contact> contacts;    ///< Those that have ended are not drawn.
 };
 
