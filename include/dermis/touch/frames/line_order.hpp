@@ -33,8 +33,8 @@ struct LineOrder {
   /// Fails where a list does not name each of its lines once, as "row_order: ...", or a reading twice.
   [[nodiscard]] Status validate() const;
 
-  /// Shape of the array whose device sends frames of `sent`. Fails where nothing is left of them, where a list
-  /// has not its number of lines, and where taxel_order is for other frames.
+  /// Shape of the array whose device sends frames of `sent`. Fails where nothing is left of them, and where a list
+  /// is not as long as its lines are many or taxel_order not for such frames.
   [[nodiscard]] Result<FrameShape> turned(FrameShape sent) const;
 
   /// Shape of the frames that the device of such an array sends.

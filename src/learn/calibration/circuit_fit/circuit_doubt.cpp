@@ -100,7 +100,7 @@ bool are_alike(double ratio, double other) {
 }
 
 /// A circuit of the same kind with quite different resistances explains more, and the idle taxels on pressed lines show
-/// it: contacts in series with taxels bend laws as drivers do.
+/// it. Pressed taxels do not: contacts in series with taxels bend laws as drivers do.
 bool has_other_resistances(const CircuitTrial& described, const CircuitTrial& free) {
   if (!described.fit || !free.fit) return false;
   if (are_alike(drive_over_load(described.fit->array), drive_over_load(free.fit->array))) return false;
