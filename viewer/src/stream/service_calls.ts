@@ -11,6 +11,10 @@ export class ServiceCalls {
   readonly #waiting = new Map<number, Waiting>();
   #lastId = 0;
 
+  get areWaiting(): boolean {
+    return this.#waiting.size > 0;
+  }
+
   begin(): { callId: number; answer: Promise<unknown> } {
     const callId = ++this.#lastId;
     const answer = new Promise<unknown>((resolve, reject) => this.#waiting.set(callId, { resolve, reject }));

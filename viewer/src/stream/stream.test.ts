@@ -156,6 +156,19 @@ describe("the stream", () => {
     expect(stream.connection.value.kind).not.toBe("live");
   });
 
+  it("waits for the answer of a server that says nothing while it answers", async () => {
+    const stream = await connected();
+    last().begin({});
+    last().say({ op: "advertiseServices", services: [{ id: 3, name: "/layout/propose" }] });
+    const proposed = stream.callService("/layout/propose", {});
+    const failed = expect(proposed).rejects.toThrow("the connection was lost");
+    await vi.advanceTimersByTimeAsync(50000);
+    expect(stream.connection.value.kind).toBe("live");
+    await vi.advanceTimersByTimeAsync(12000);
+    expect(stream.connection.value.kind).not.toBe("live");
+    await failed;
+  });
+
   it("knows the parameters, follows and sets them", async () => {
     const stream = await connected();
     last().begin({});

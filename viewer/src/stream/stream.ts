@@ -32,6 +32,7 @@ interface Topic {
 
 const LIVE_BEFORE_BACKOFF_RESETS_MS = 2000;
 const SILENCE_MS = 10000;
+const SILENCE_OF_A_CALL_MS = 60000; // it may look for a layout for a while, and says nothing else meanwhile
 /** The server hears so often what has come, and sends no more than that. */
 const TAKEN_MS = 50;
 
@@ -200,7 +201,8 @@ export class Stream {
   /** A server whose machine is gone closes nothing: silence is an end, too. */
   #watch(): void {
     this.#timer = window.setTimeout(() => {
-      if (performance.now() - this.#lastMessageMs > SILENCE_MS) this.#retry();
+      const most = this.#calls.areWaiting ? SILENCE_OF_A_CALL_MS : SILENCE_MS;
+      if (performance.now() - this.#lastMessageMs > most) this.#retry();
       else this.#watch();
     }, 1000);
   }
