@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "dermis/bytes/files/text.hpp"
+#include "dermis/touch/frames/quantile.hpp"
 
 namespace dermis::bytes::files {
 namespace {
@@ -26,12 +27,6 @@ constexpr double kScatter = 0.02;            // of a step
 constexpr double kJump = 1.3;                // times as long steps
 constexpr double kSteady = 1.12;             // between neighbouring blocks at most
 constexpr std::size_t kSide = 2;             // blocks on each side of a jump
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Whether the larger is no more than so many times the smaller.
 bool are_within(double a, double b, double times) {
@@ -105,7 +100,7 @@ std::vector<double> FrameTimes::block_means() const {
 std::optional<double> FrameTimes::step_s() const {
   const std::vector<double> means = block_means();
   if (means.empty()) return std::nullopt;
-  return median(means);
+  return upper_median(means);
 }
 
 double FrameTimes::seconds() const {
@@ -118,7 +113,7 @@ bool FrameTimes::has_odd_steps() const {
   for (const Block& block : blocks_) scatter.push_back(block.second_s - block.shortest_s);
   if (scatter.empty()) return false;
   const double off = std::abs(step - std::round(step / kRound) * kRound);
-  return median(scatter) > std::max(kScatter * step, kLate) || off > kLate;
+  return upper_median(scatter) > std::max(kScatter * step, kLate) || off > kLate;
 }
 
 std::optional<std::string> FrameTimes::wrong_unit(bool is_smooth) const {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "dermis/touch/frames/quantile.hpp"
+
 namespace dermis::bytes::proposals {
 namespace {
 
@@ -47,12 +49,6 @@ bool stays_evenly(const Series& series) {
     from = i;
   }
   return !stays.empty() && are_most(stays, [&](double stay) { return stay == stays[stays.size() / 2]; });
-}
-
-double median(Series values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Steps of one size, or of several that were lost.
@@ -108,7 +104,7 @@ bool is_time(const Series& series, double modulus) {
   const bool never_falls =
       modulus == 0.0 && steps.size() >= kManySteps && *std::min_element(steps.begin(), steps.end()) > 0.0;
   if (never_falls) return true;
-  const double usual = median(steps);
+  const double usual = upper_median(steps);
   if (modulus > 0.0 && usual > modulus / 16.0) return false;  // as of any bytes
   return usual > 0.0 && are_most(steps, [&](double step) { return step > 0.0 && step < 4.0 * usual; });
 }
@@ -116,7 +112,7 @@ bool is_time(const Series& series, double modulus) {
 bool is_even_clock(const Series& series, double modulus) {
   const Series steps = steps_of(series, modulus);
   if (steps.size() + 1 != series.size() || !is_time(series, modulus)) return false;
-  const double usual = median(steps);
+  const double usual = upper_median(steps);
   return usual > 1.0 &&
          std::all_of(steps.begin(), steps.end(), [&](double step) { return step > 0.5 * usual && step < 2.0 * usual; });
 }
@@ -126,7 +122,7 @@ std::string time_field_of(const Series& series, double modulus) {
   if (value > 1e17) return "time_ns";  // since 1970
   if (value > 1e14) return "time_us";
   if (value > 1e11) return "time_ms";
-  const double step = median(steps_of(series, modulus));
+  const double step = upper_median(steps_of(series, modulus));
   const bool has_fractions =
       std::any_of(series.begin(), series.end(), [](double one) { return one != std::floor(one); });
   if (has_fractions && step < 1.0) return "time_s";

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "dermis/learn/arrangement/arrangement.hpp"
-#include "learn/arrangement/median.hpp"
+#include "dermis/touch/frames/quantile.hpp"
 
 namespace dermis::learn::arrangement {
 namespace {
@@ -39,7 +39,7 @@ void leave_out(std::vector<Press>& presses, const IsOut& is_out, const std::stri
 double usual_change(const std::vector<Press>& presses) {
   std::vector<double> changes;
   for (const Press& press : presses) changes.push_back(std::abs(press.change));
-  return changes.empty() ? 0.0 : median_of(changes);
+  return changes.empty() ? 0.0 : upper_median(changes);
 }
 
 /// Says what was found.

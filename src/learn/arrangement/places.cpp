@@ -3,14 +3,14 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "dermis/bytes/files/numbers.hpp"
 #include "dermis/learn/arrangement/arrangement.hpp"
 #include "dermis/touch/frames/millimetres.hpp"
-#include "learn/arrangement/median.hpp"
+#include "dermis/touch/frames/quantile.hpp"
 
 namespace dermis::learn::arrangement {
 namespace {
@@ -19,13 +19,13 @@ constexpr double kLeastPitch_m = 0.00005;
 constexpr double kMostPitch_m = 1.0;
 
 /// "6x9"; empty where it is no such text.
-std::optional<FrameShape> grid_of(const std::string& text) {
+std::optional<FrameShape> grid_of(std::string_view text) {
   FrameShape grid;
-  const char* const end = text.data() + text.size();
-  const auto [by, bad_rows] = std::from_chars(text.data(), end, grid.rows);
-  if (bad_rows != std::errc{} || by == end || *by != 'x') return std::nullopt;
-  const auto [rest, bad_cols] = std::from_chars(by + 1, end, grid.cols);
-  return bad_cols == std::errc{} && rest == end ? std::optional(grid) : std::nullopt;
+  const std::size_t by = text.find('x');
+  if (by == std::string_view::npos) return std::nullopt;
+  const bool is_grid = bytes::files::parse_number(text.substr(0, by), grid.rows) &&
+                       bytes::files::parse_number(text.substr(by + 1), grid.cols);
+  return is_grid ? std::optional(grid) : std::nullopt;
 }
 
 Result<Places> grid_places(FrameShape grid, double pitch_m) {
@@ -53,7 +53,7 @@ double usual_distance(const std::vector<bytes::files::NamedPlace>& places) {
       if (a != b) least = std::min(least, distance(places[a].position, places[b].position));
     if (std::isfinite(least)) nearest.push_back(least);
   }
-  const double usual = nearest.empty() ? ArrayDescription{}.col_pitch_m : median_of(nearest);
+  const double usual = nearest.empty() ? ArrayDescription{}.col_pitch_m : upper_median(nearest);
   return std::clamp(usual, kLeastPitch_m, kMostPitch_m);
 }
 

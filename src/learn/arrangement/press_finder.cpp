@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-#include "learn/arrangement/median.hpp"
+#include "dermis/touch/frames/quantile.hpp"
 
 namespace dermis::learn::arrangement {
 namespace {
@@ -60,9 +60,9 @@ Rest rest_of(std::span<const std::vector<float>> frames) {
     readings.clear();
     for (const std::vector<float>& frame : frames)
       if (std::isfinite(frame[i])) readings.push_back(frame[i]);
-    if (!readings.empty()) rest.level[i] = median_of(readings);
+    if (!readings.empty()) rest.level[i] = upper_median(readings);
     for (float& reading : readings) reading = std::abs(reading - rest.level[i]);
-    const float deviation = readings.empty() ? 0.0F : kSigmasOfDeviation * median_of(readings);
+    const float deviation = readings.empty() ? 0.0F : kSigmasOfDeviation * upper_median(readings);
     rest.noise[i] = std::max({deviation, least, kOfLevel * std::abs(rest.level[i])});
   }
   return rest;
@@ -89,7 +89,7 @@ void PressFinder::find_changes() {
   for (std::size_t i = 0; i < change_.size(); ++i) change_[i] = recent_.filtered[i] - rest_.level[i];
   if (change_.size() < kTogether) return;
   scratch_ = change_;
-  const float together = median_of(scratch_);
+  const float together = upper_median(scratch_);
   for (float& change : change_) change -= together;
 }
 
@@ -164,7 +164,7 @@ std::optional<Press> PressFinder::end() {
   const Press press = answer();
   if (held_.frames < 2 || seconds_between(press.begin, press.end) < kShortest_s) return std::nullopt;
   changes_.push_back(std::abs(press.change));
-  typical_ = median_of(changes_);
+  typical_ = upper_median(changes_);
   return press;
 }
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "dermis/learn/arrangement/press_finder.hpp"
-#include "learn/arrangement/median.hpp"
+#include "dermis/touch/frames/quantile.hpp"
 
 namespace dermis::learn::arrangement {
 namespace {
@@ -43,9 +43,9 @@ Rest usual_of(const std::vector<Rest>& rests) {
   std::vector<float> values(rests.size());
   for (std::size_t i = 0; i < usual.level.size(); ++i) {
     std::transform(rests.begin(), rests.end(), values.begin(), [i](const Rest& rest) { return rest.level[i]; });
-    usual.level[i] = median_of(values);
+    usual.level[i] = upper_median(values);
     std::transform(rests.begin(), rests.end(), values.begin(), [i](const Rest& rest) { return rest.noise[i]; });
-    usual.noise[i] = median_of(values);
+    usual.noise[i] = upper_median(values);
   }
   return usual;
 }

@@ -10,6 +10,9 @@
 #include <complex>
 #include <numbers>
 #include <numeric>
+#include <utility>
+
+#include "dermis/touch/frames/quantile.hpp"
 
 namespace dermis::learn::health {
 namespace {
@@ -31,10 +34,7 @@ constexpr double kSlowestHz = 5.0;     // frames a second
 constexpr double kMainsHz[] = {50.0, 60.0, 100.0, 120.0, 150.0, 180.0};
 
 double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return values.empty() ? 0.0 : upper_median(std::move(values));
 }
 
 /// Where a frequency shows at this rate, 0 to half of it.

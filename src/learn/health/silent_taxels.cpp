@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "dermis/touch/frames/quantile.hpp"
 #include "dermis/touch/frames/touch.hpp"
 
 namespace dermis::learn::health {
@@ -16,12 +17,6 @@ constexpr std::size_t kFewestAsWeak = 3;
 constexpr double kRead = 0.4;  // of the frames, the middle of those
 constexpr double kWeak = 2.0;  // times, where there are too few of them
 constexpr double kAlwaysRead = 0.95;
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -62,7 +57,7 @@ bool SilentTaxels::others_read(std::size_t taxel) const {
       if (!is_weak || silence_[other] >= kFewestFrames) continue;
       read.push_back(1.0 - static_cast<double>(zeros_[other]) / static_cast<double>(frames_));
     }
-    if (read.size() >= kFewestAsWeak) return median(read) >= (times == kAsWeak ? kRead : kAlwaysRead);
+    if (read.size() >= kFewestAsWeak) return upper_median(read) >= (times == kAsWeak ? kRead : kAlwaysRead);
   }
   return false;
 }
