@@ -15,8 +15,8 @@
 namespace dermis::learn::arrangement {
 namespace {
 
-constexpr double kLeastPitch_m = 0.00005;
-constexpr double kMostPitch_m = 1.0;
+constexpr double kLeastPitchMetres = 0.00005;
+constexpr double kMostPitchMetres = 1.0;
 
 /// "6x9"; empty where it is no such text.
 std::optional<FrameShape> grid_of(std::string_view text) {
@@ -29,7 +29,8 @@ std::optional<FrameShape> grid_of(std::string_view text) {
 }
 
 Result<Places> grid_places(FrameShape grid, double pitch_m) {
-  if (!(pitch_m >= kLeastPitch_m && pitch_m <= kMostPitch_m)) return bad_input("pitch: must be 0.05 to 1000 mm");
+  if (!(pitch_m >= kLeastPitchMetres && pitch_m <= kMostPitchMetres))
+    return bad_input("pitch: must be 0.05 to 1000 mm");
   const bool is_possible = grid.rows >= 1 && grid.cols >= 1 && grid.rows <= kMaxLines && grid.cols <= kMaxLines &&
                            grid.taxel_count() <= kMostPlaces;
   if (!is_possible) return bad_input(fmt::format("a grid has 1 to {} places, as 6x9", kMostPlaces));
@@ -54,7 +55,7 @@ double usual_distance(const std::vector<bytes::files::NamedPlace>& places) {
     if (std::isfinite(least)) nearest.push_back(least);
   }
   const double usual = nearest.empty() ? ArrayDescription{}.col_pitch_m : upper_median(nearest);
-  return std::clamp(usual, kLeastPitch_m, kMostPitch_m);
+  return std::clamp(usual, kLeastPitchMetres, kMostPitchMetres);
 }
 
 }  // namespace

@@ -14,22 +14,22 @@
 namespace dermis::learn::arrangement {
 namespace {
 
-constexpr double kNoises = 6.0;          // a press is so many deviations from rest,
-constexpr double kOfTypical = 0.1;       // and this share of the presses before it
-constexpr double kReleased = 0.45;       // of its own peak
-constexpr double kRises = 0.15;          // of the last peak, where the array still remembers it
-constexpr double kForgotten = 0.5;       // of what would be a press
-constexpr double kShortest_s = 0.03;     // and two frames
-constexpr double kBetween_s = 0.1;       // and two frames: less is a finger that wobbles
-constexpr double kLongest_s = 15.0;      // more is no press, but another rest,
-constexpr double kFaintLongest_s = 2.0;  // and sooner
-constexpr double kFaint = 0.4;           // below this share of the presses before it
-constexpr double kFollows_s = 1.0;       // time constant of the rest,
-constexpr double kForgets_s = 0.3;       // and after a press
-constexpr double kLongestStep_s = 1.0;   // between two frames, as far as times are believed
-constexpr std::size_t kTogether = 5;     // channels of which most may move together
-constexpr float kOfLevel = 1e-3F;        // least noise, by the level,
-constexpr float kCount = 0.7F;           // and where readings are whole numbers
+constexpr double kNoises = 6.0;               // a press is so many deviations from rest,
+constexpr double kOfTypical = 0.1;            // and this share of the presses before it
+constexpr double kReleased = 0.45;            // of its own peak
+constexpr double kRises = 0.15;               // of the last peak, where the array still remembers it
+constexpr double kForgotten = 0.5;            // of what would be a press
+constexpr double kShortestSeconds = 0.03;     // and two frames
+constexpr double kBetweenSeconds = 0.1;       // and two frames: less is a finger that wobbles
+constexpr double kLongestSeconds = 15.0;      // more is no press, but another rest,
+constexpr double kFaintLongestSeconds = 2.0;  // and sooner
+constexpr double kFaint = 0.4;                // below this share of the presses before it
+constexpr double kFollowsSeconds = 1.0;       // time constant of the rest,
+constexpr double kForgetsSeconds = 0.3;       // and after a press
+constexpr double kLongestStepSeconds = 1.0;   // between two frames, as far as times are believed
+constexpr std::size_t kTogether = 5;          // channels of which most may move together
+constexpr float kOfLevel = 1e-3F;             // least noise, by the level,
+constexpr float kCount = 0.7F;                // and where readings are whole numbers
 constexpr float kLeast = 1e-9F;
 constexpr float kSigmasOfDeviation = 1.4826F;
 
@@ -111,7 +111,7 @@ std::size_t PressFinder::strongest() const {
 
 /// The rest goes with what drifts.
 void PressFinder::follow(double seconds) {
-  const auto share = static_cast<float>(1.0 - std::exp(-seconds / (remembers_ ? kForgets_s : kFollows_s)));
+  const auto share = static_cast<float>(1.0 - std::exp(-seconds / (remembers_ ? kForgetsSeconds : kFollowsSeconds)));
   for (std::size_t i = 0; i < change_.size(); ++i) rest_.level[i] += share * (recent_.filtered[i] - rest_.level[i]);
 }
 
@@ -162,7 +162,7 @@ std::optional<Press> PressFinder::end() {
   remembers_ = true;
   least_since_ = held_.peak;
   const Press press = answer();
-  if (held_.frames < 2 || seconds_between(press.begin, press.end) < kShortest_s) return std::nullopt;
+  if (held_.frames < 2 || seconds_between(press.begin, press.end) < kShortestSeconds) return std::nullopt;
   changes_.push_back(std::abs(press.change));
   typical_ = upper_median(changes_);
   return press;
@@ -170,18 +170,18 @@ std::optional<Press> PressFinder::end() {
 
 std::optional<Press> PressFinder::hold(std::size_t channel, double seconds) {
   gather(std::abs(static_cast<double>(change_[channel])), seconds);
-  const double longest = held_.peak < kFaint * typical_ ? kFaintLongest_s : kLongest_s;
+  const double longest = held_.peak < kFaint * typical_ ? kFaintLongestSeconds : kLongestSeconds;
   if (seconds_between(held_.begin, *time_) > longest) {
     rest_.level = recent_.filtered;
     is_pressed_ = false;
     return std::nullopt;
   }
-  const bool is_over = held_.low_frames >= 2 && held_.low_seconds >= kBetween_s;
+  const bool is_over = held_.low_frames >= 2 && held_.low_seconds >= kBetweenSeconds;
   return is_over ? end() : std::nullopt;
 }
 
 std::optional<Press> PressFinder::add(std::span<const float> counts, Nanos time) {
-  const double seconds = std::min(time_ ? seconds_between(*time_, time) : 0.0, kLongestStep_s);
+  const double seconds = std::min(time_ ? seconds_between(*time_, time) : 0.0, kLongestStepSeconds);
   time_ = time;
   filter(counts);
   find_changes();

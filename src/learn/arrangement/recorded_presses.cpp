@@ -13,7 +13,7 @@ namespace {
 
 using Frames = std::span<const RawFrame>;
 
-constexpr double kStretch_s = 0.25;
+constexpr double kStretchSeconds = 0.25;
 constexpr std::size_t kFewest = 8;           // frames of a stretch
 constexpr double kStrong = 0.8;              // of the stretches are weaker
 constexpr double kPressed = 0.5;             // of the typical change: more than crosstalk
@@ -22,7 +22,7 @@ constexpr std::size_t kFirstStretches = 32;  // 8 s
 std::size_t frames_of_stretch(Frames frames) {
   const double seconds = std::chrono::duration<double>(frames.back().time - frames.front().time).count();
   const double rate = seconds > 0.0 ? static_cast<double>(frames.size() - 1) / seconds : 0.0;
-  const auto wanted = static_cast<std::size_t>(std::clamp(rate * kStretch_s, 0.0, 1e6));
+  const auto wanted = static_cast<std::size_t>(std::clamp(rate * kStretchSeconds, 0.0, 1e6));
   return std::min(std::max(wanted, kFewest), frames.size());
 }
 
