@@ -67,8 +67,8 @@ struct CanMap {
 /// The same from memory; `name` stands for the path in messages.
 [[nodiscard]] Result<CanMap> can_map_from_toml(std::string_view text, const std::string& name);
 
-/// Puts the parts of one array together. A part that comes again before all have come begins the next frame, and so does
-/// the first part directly behind the last one. Not thread-safe.
+/// Puts the parts of one array together. A part that comes again before all have come begins the next frame, and so
+/// does the first part directly behind the last one. Not thread-safe.
 class CanAssembly {
  public:
   explicit CanAssembly(const CanArray& array);

@@ -39,7 +39,7 @@ struct ServedArray {
   std::optional<learn::recognition::Classes> classes{};  ///< Names for its touches; learned from newtons.
   std::string simulation{};                              ///< As bytes::recordings::FrameNotes::simulation.
   std::string from{};                                    ///< Name of a live source; empty: not known, or a recording.
-  std::vector<FreePlace> places{};                       ///< Those of the taxels, where they are in no grid; else empty.
+  std::vector<FreePlace> places{};  ///< Those of the taxels, where they are in no grid; else empty.
 };
 
 /// The suit to be served.
