@@ -225,6 +225,20 @@ Status validate_supply_ohm(const Readout& readout) {
   return validate_resistors("supply_ohm", {*readout.supply_ohm}, 1, true);
 }
 
+/// Not known yet, or films as they are made.
+Status validate_film(const Readout& readout) {
+  if (!readout.film) return Done{};
+  const Film& film = *readout.film;
+  if (readout.circuit == Circuit::none) return bad_input("readout.film_ohm: needs a circuit; leave it out");
+  if (!is_positive(film.loaded_newtons)) return bad_input("readout.film_force_n: must be more than 0 N");
+  if (film.is_unknown()) return Done{};
+  if (!is_positive(film.unloaded_ohm) || !is_positive(film.loaded_ohm)) {
+    return bad_input("readout.film_ohm: must be more than 0 ohm");
+  }
+  if (film.loaded_ohm <= film.unloaded_ohm) return Done{};
+  return bad_input("readout.film_ohm: must be [unloaded, loaded], and a load lowers the resistance of a film");
+}
+
 Status validate_converter(const Readout& readout) {
   if (readout.adc_bits < 1 || readout.adc_bits > kMaxAdcBits) {
     return bad_input("readout.adc_bits: must be 1 to " + std::to_string(kMaxAdcBits));
@@ -254,6 +268,7 @@ Status validate_readout(const ArrayDescription& array) {
   if (Status valid = validate_calibrated(array); !valid) return valid;
   if (Status valid = validate_adc_errors(readout); !valid) return valid;
   if (Status valid = validate_supply_ohm(readout); !valid) return valid;
+  if (Status valid = validate_film(readout); !valid) return valid;
   if (readout.circuit == Circuit::none) return Done{};
   if (readout.idle_columns == IdleColumns::floating && readout.circuit != Circuit::divider) {
     return bad_input("readout.idle_columns: belongs to circuit = \"divider\"");
@@ -294,6 +309,7 @@ bool ArrayDescription::is_absent(std::size_t taxel) const noexcept {
 bool ArrayDescription::has_unknown_circuit() const noexcept {
   if (readout.adc_errors.is_unknown()) return true;
   if (readout.circuit == Circuit::none) return false;
+  if (readout.film && readout.film->is_unknown()) return true;
   return readout.circuit == Circuit::automatic || is_to_be_fitted(readout.drive_ohm) ||
          is_to_be_fitted(readout.load_ohm) || std::isnan(readout.supply_ohm.value_or(0.0));
 }

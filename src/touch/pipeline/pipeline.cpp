@@ -28,7 +28,7 @@ Result<Pipeline> Pipeline::create(const Model& model) {
   }
   const std::vector<double> typical = fusion::typical_siemens(model.networks);
   Result<compensation::Compensator> compensator =
-      compensation::Compensator::create(model.array, {typical, model.networks.unloaded.offset_siemens});
+      compensation::Compensator::create(model.array, {typical, model.networks.unloaded.offset_siemens, {}});
   if (!compensator) return compensator.error();
   return Pipeline(model, std::move(*compensator));
 }

@@ -13,6 +13,19 @@
 
 namespace dermis::touch::compensation {
 
+/// A point of the law of the sheet's taxels.
+struct LoadPoint {
+  double share = 0.0;    ///< Of ReferenceConductances::typical, both above the unloaded conductance.
+  double newtons = 0.0;  ///< Under which a taxel conducts this.
+};
+
+/// The conductances of the taxels by the calibration.
+struct ReferenceConductances {
+  std::span<const double> typical = {};   ///< Under one same force, in any unit; > 0 [rows, cols], or empty.
+  std::span<const double> unloaded = {};  ///< [S], 0 or less where it is not known [rows, cols], or empty.
+  std::span<const LoadPoint> loads = {};  ///< Rising, or empty; `typical` is in S then. A film follows these loads.
+};
+
 struct InversionOptions {
   /// A frame is solved once its certificate is this good (InversionResult::residual_ratio), >= 0; 0: to rounding.
   /// Empty: a hundredth of a count of the ADC, far below its noise.
@@ -28,6 +41,8 @@ struct InversionOptions {
   /// The steps of one frame are few: start_frame() allows some times what the last frames took. Otherwise each call of
   /// invert() goes on as long as it converges.
   bool is_bounded = false;
+  /// By which a film under load (Readout::film) is found from the taxels' conductances. To outlive the making only.
+  ReferenceConductances references = {};
 };
 
 /// How the inversion of a frame ended.
@@ -62,6 +77,10 @@ class CrosstalkInversion {
   /// at the conductance of a short, or none of their readings used. Allocates nothing.
   [[nodiscard]] virtual bool set_shorted(std::span<const std::size_t> taxels) noexcept { return taxels.empty(); }
 
+  /// The array has this film until further notice: its loads are known. Without a call it has the film that its taxels'
+  /// conductances tell by InversionOptions::references, or an unloaded one. Arrays without a film do not listen.
+  virtual void hold_film(const FilmConductances& /*film*/) noexcept {}
+
   /// Forgets the last frame: the next one does not depend on it, not in the last bit.
   virtual void forget() noexcept {}
 
@@ -83,12 +102,6 @@ class PossibleReadings;
 class SharedErrors;
 class Spikes;
 class SupplyError;
-
-/// The conductances of the taxels by the calibration, from which a taxel without a reading is estimated.
-struct ReferenceConductances {
-  std::span<const double> typical = {};   ///< Under one same force, in any unit; > 0 [rows, cols], or empty.
-  std::span<const double> unloaded = {};  ///< [S], 0 or less where it is not known [rows, cols], or empty.
-};
 
 /// Unit 3 of the paper, the Compensation Unit: it corrects data "that deviate from the actual values by a known
 /// relationship" by that relationship. Not thread-safe: one per stream.

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "dermis/touch/frames/film.hpp"
 #include "dermis/touch/frames/line_order.hpp"
 #include "dermis/touch/frames/result.hpp"
 
@@ -91,6 +92,7 @@ struct Readout {
   std::optional<double> amplifier_gain;  ///< transimpedance: open-loop gain, >= 1; empty: ideal.
   std::vector<double> row_segment_ohm;   ///< For each row line, from one taxel to the next [ohm], >= 0.
   std::vector<double> column_segment_ohm;  ///< For each column line, from one taxel to the next [ohm], >= 0.
+  std::optional<Film> film;                ///< Over all lines; empty: the sheet conducts at its crossings only.
   int adc_bits = 12;                       ///< Resolution [bit], 1 ... 24.
   double adc_noise_counts = 1.0;           ///< Standard deviation of a reading, rounding included [counts], > 0.
   std::vector<double> drive_error_ohm;     ///< Standard deviation of each of drive_ohm [ohm], >= 0; empty: exact.

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace dermis {
+
+/// One piece of film or rubber over all lines also conducts from each electrode to its neighbours. Between two
+/// neighbouring taxels, of one row or of one column, it conducts
+///
+///   1/unloaded_ohm + (1/loaded_ohm - 1/unloaded_ohm) min(F / loaded_newtons, 1)^0.9,   F the mean of their forces.
+///
+/// Two neighbouring rows are connected by the sum of this over the columns, two columns by the sum over the rows. The
+/// exponent is that of a taxel of such films: shared/research/literature.md. Both resistances may be kFitOhm.
+struct Film {
+  double unloaded_ohm = 0.0;     ///< > 0
+  double loaded_ohm = 0.0;       ///< > 0, at most unloaded_ohm.
+  double loaded_newtons = 20.0;  ///< On each of the two taxels, > 0.
+
+  [[nodiscard]] bool is_unknown() const noexcept;  ///< A resistance is kFitOhm.
+  [[nodiscard]] bool is_constant() const noexcept { return loaded_ohm == unloaded_ohm; }
+  /// Between two neighbouring taxels under these forces, 0 or more [S].
+  [[nodiscard]] double siemens(double newtons, double other_newtons) const noexcept;
+};
+
+/// What a film conducts from each row to the next [rows - 1] and from each column to the next [cols - 1] [S].
+struct FilmConductances {
+  FilmConductances(std::size_t rows, std::size_t cols)
+      : between_rows(rows > 0 ? rows - 1 : 0), between_cols(cols > 0 ? cols - 1 : 0) {}
+
+  /// Of taxels under these forces [rows, cols]; less than 0 and NaN are 0. Allocates nothing.
+  void set(const Film& film, std::span<const double> newtons) noexcept;
+
+  std::vector<double> between_rows;
+  std::vector<double> between_cols;
+};
+
+}  // namespace dermis

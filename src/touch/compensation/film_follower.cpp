@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "touch/compensation/film_follower.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "dermis/touch/frames/processor_clones.hpp"
+
+namespace dermis::touch::compensation {
+namespace {
+
+/// Shares of the loaded force, at which the polygon of the film meets its law.
+constexpr std::array kFilmCorners{0.0, 0.02, 0.08, 0.22, 0.5, 1.0};
+
+DERMIS_PROCESSOR_CLONES void add_corner(double x, double change, const double* from, double* to, std::size_t count) {
+  for (std::size_t k = 0; k < count; ++k) to[k] += change * (from[k] > x ? from[k] - x : 0.0);
+}
+
+}  // namespace
+
+FilmFollower::FilmFollower(const ArrayDescription& array, const ReferenceConductances& references)
+    : film_(array.readout.film), rows_(array.rows), cols_(array.cols), conductances_(array.rows, array.cols) {
+  if (!film_) return;
+  for (auto* values : {&newtons_, &pairs_, &rises_}) values->resize(array.taxel_count());
+  conductances_.set(*film_, newtons_);
+  if (film_->is_constant() || references.loads.empty()) return;
+  std::vector<double> shares{0.0};
+  std::vector<double> loads{0.0};
+  for (const LoadPoint& point : references.loads) {
+    shares.push_back(point.share);
+    loads.push_back(point.newtons);
+  }
+  loads_ = polygon_of(shares, loads);
+  std::vector<double> pairs;
+  std::vector<double> rises;
+  for (const double share : kFilmCorners) {
+    const double newtons = share * film_->loaded_newtons;
+    pairs.push_back(2.0 * newtons);
+    rises.push_back(film_->siemens(newtons, newtons) - 1.0 / film_->unloaded_ohm);
+  }
+  rise_ = polygon_of(pairs, rises);
+  rise_.corners.push_back(
+      {pairs.back(), -(rises.back() - rises[rises.size() - 2]) / (pairs.back() - pairs[pairs.size() - 2])});
+  for (std::size_t taxel = 0; taxel < array.taxel_count(); ++taxel) {
+    unloaded_.push_back(std::max(references.unloaded[taxel], 0.0));
+    const double typical = references.typical[taxel] - unloaded_.back();
+    scale_.push_back(typical > 0.0 ? 1.0 / typical : 0.0);
+  }
+}
+
+FilmFollower::Polygon FilmFollower::polygon_of(const std::vector<double>& x, const std::vector<double>& y) {
+  Polygon polygon;
+  double last = 0.0;
+  for (std::size_t k = 0; k + 1 < x.size(); ++k) {
+    const double slope = (y[k + 1] - y[k]) / (x[k + 1] - x[k]);
+    polygon.corners.push_back({x[k], slope - last});
+    last = slope;
+  }
+  return polygon;
+}
+
+void FilmFollower::hold(const FilmConductances& film) noexcept {
+  if (!film_) return;
+  conductances_.between_rows = film.between_rows;
+  conductances_.between_cols = film.between_cols;
+  loads_.corners.clear();
+}
+
+bool FilmFollower::follow(std::span<const double> siemens, std::size_t stride) noexcept {
+  if (!follows()) return false;
+  for (std::size_t row = 0; row < rows_; ++row) {
+    for (std::size_t col = 0; col < cols_; ++col) {
+      const std::size_t taxel = row * cols_ + col;
+      pairs_[taxel] = (siemens[row * stride + col] - unloaded_[taxel]) * scale_[taxel];
+    }
+  }
+  loads_.apply(pairs_.data(), newtons_.data(), pairs_.size());
+  const double unloaded = 1.0 / film_->unloaded_ohm;
+  std::fill(conductances_.between_cols.begin(), conductances_.between_cols.end(),
+            unloaded * static_cast<double>(rows_));
+  find_rises(newtons_.data(), newtons_.data() + 1, newtons_.size() - 1);
+  for (std::size_t row = 0; row < rows_; ++row) {
+    for (std::size_t col = 0; col + 1 < cols_; ++col) conductances_.between_cols[col] += rises_[row * cols_ + col];
+  }
+  find_rises(newtons_.data(), newtons_.data() + cols_, newtons_.size() - cols_);
+  for (std::size_t row = 0; row + 1 < rows_; ++row) {
+    double sum = unloaded * static_cast<double>(cols_);
+    for (std::size_t col = 0; col < cols_; ++col) sum += rises_[row * cols_ + col];
+    conductances_.between_rows[row] = sum;
+  }
+  return true;
+}
+
+/// `rises_` of pairs of taxels.
+void FilmFollower::find_rises(const double* own, const double* other, std::size_t count) noexcept {
+  for (std::size_t k = 0; k < count; ++k) pairs_[k] = own[k] + other[k];
+  rise_.apply(pairs_.data(), rises_.data(), count);
+}
+
+void FilmFollower::Polygon::apply(const double* from, double* to, std::size_t count) const noexcept {
+  std::fill_n(to, count, 0.0);
+  for (const auto& [x, change] : corners) add_corner(x, change, from, to, count);
+}
+
+}  // namespace dermis::touch::compensation

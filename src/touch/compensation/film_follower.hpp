@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "dermis/touch/compensation/crosstalk.hpp"
+#include "dermis/touch/frames/array_description.hpp"
+
+namespace dermis::touch::compensation {
+
+/// A film over the lines (Readout::film), as the loads on its taxels make it. Loads follow from the conductances of
+/// the taxels and the law of the sheet: all taxels have one curve, from what each conducts above its unloaded
+/// conductance, over what it conducts under one same force. Both laws are polygons. Allocates nothing but when it is
+/// made.
+class FilmFollower {
+ public:
+  FilmFollower(const ArrayDescription& array, const ReferenceConductances& references);
+
+  /// There is a film.
+  [[nodiscard]] bool any() const noexcept { return film_.has_value(); }
+
+  /// The film of these loads from now on.
+  void hold(const FilmConductances& film) noexcept;
+
+  /// The film of these conductances [rows, stride]; true where they tell it anew.
+  bool follow(std::span<const double> siemens, std::size_t stride) noexcept;
+
+  [[nodiscard]] const FilmConductances& film() const noexcept { return conductances_; }
+
+ private:
+  /// y = slope_0 x + sum over the corners of change max(0, x - corner), from y = 0 at x = 0.
+  struct Polygon {
+    struct Corner {
+      double x;
+      double change;  // of the slope
+    };
+    std::vector<Corner> corners;  // the first at 0
+    void apply(const double* from, double* to, std::size_t count) const noexcept;
+  };
+
+  [[nodiscard]] static Polygon polygon_of(const std::vector<double>& x, const std::vector<double>& y);
+  void find_rises(const double* own, const double* other, std::size_t count) noexcept;
+  [[nodiscard]] bool follows() const noexcept { return !loads_.corners.empty(); }
+
+  std::optional<Film> film_;
+  std::size_t rows_;
+  std::size_t cols_;
+  Polygon loads_;                 // share -> newtons
+  Polygon rise_;                  // newtons, of two taxels together -> film above the unloaded one
+  std::vector<double> unloaded_;  // [taxels] [S]
+  std::vector<double> scale_;     // [taxels] 1/S
+  std::vector<double> newtons_;   // [taxels]
+  std::vector<double> pairs_;     // shares of the taxels, then newtons of two [taxels]
+  std::vector<double> rises_;     // of the film between two [taxels]
+  FilmConductances conductances_;
+};
+
+}  // namespace dermis::touch::compensation
