@@ -80,6 +80,13 @@ bool is_invalid(TaxelStatus taxel) {
   return taxel == TaxelStatus::invalid;
 }
 
+/// With a film over its lines.
+bool fits_grounded_rows(const Readout& readout) {
+  if (has_resistive_lines(readout) || readout.idle_rows == IdleRows::floating) return false;
+  if (readout.circuit == Circuit::transimpedance) return is_absent(readout.amplifier_offset_v);
+  return readout.circuit == Circuit::divider && readout.idle_columns == IdleColumns::loaded;
+}
+
 Inversion sagging_supply(const ArrayDescription& array, double tolerance, const InversionOptions& options) {
   auto model = CircuitModel::create(array);
   if (!model) return model.error();
@@ -102,6 +109,8 @@ Inversion make_crosstalk_inversion(const ArrayDescription& described, const Inve
   const double tolerance = options.tolerance_ratio.value_or(kToleranceCounts / readout.full_scale_counts());
   if (readout.circuit == Circuit::none) return inversion<Proportional>();
   if (readout.supply_ohm.value_or(0.0) > 0.0) return sagging_supply(array, tolerance, options);
+  if (readout.film && !fits_grounded_rows(readout)) return newton(array, tolerance, options);
+  if (readout.film) return inversion<GroundedRows>(array, tolerance, options);
   if (has_resistive_lines(readout)) return newton(array, tolerance, options);
   if (readout.circuit == Circuit::flexitac) return flexitac(array, tolerance, options);
   if (readout.circuit == Circuit::transimpedance && has_ideal_amplifiers(readout)) {
@@ -116,6 +125,7 @@ Result<Compensator> Compensator::create(const ArrayDescription& described, const
   InversionOptions options;
   options.counts_driver_errors = true;
   options.is_bounded = true;
+  options.references = references;
   Inversion inversion = make_crosstalk_inversion(array, options);
   if (!inversion) return inversion.error();
   return Compensator(array, std::move(*inversion), references);

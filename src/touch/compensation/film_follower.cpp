@@ -14,7 +14,8 @@ namespace {
 /// Shares of the loaded force, at which the polygon of the film meets its law.
 constexpr std::array kFilmCorners{0.0, 0.02, 0.08, 0.22, 0.5, 1.0};
 
-DERMIS_PROCESSOR_CLONES void add_corner(double x, double change, const double* from, double* to, std::size_t count) {
+DERMIS_PROCESSOR_CLONES void add_corner(double x, double change, const double* __restrict from, double* __restrict to,
+                                        std::size_t count) {
   for (std::size_t k = 0; k < count; ++k) to[k] += change * (from[k] > x ? from[k] - x : 0.0);
 }
 

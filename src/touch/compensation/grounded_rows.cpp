@@ -78,6 +78,10 @@ GroundedRows::GroundedRows(const ArrayDescription& array, double tolerance_ratio
   if (options.counts_driver_errors && !is_absent(readout.drive_error_ohm)) {
     driver_error_.emplace(array, std::vector<double>(state_.column_ohm.begin(), state_.column_ohm.begin() + cols));
   }
+  if (readout.film) {
+    film_ = std::make_unique<GroundedRowsFilm>(FilmFollower(array, options.references), state_.rows, state_.stride);
+    state_.film = film_.get();
+  }
   if (is_absent(readout.amplifier_offset_v)) return;
   sources_.ratio.resize(state_.stride);
   for (std::size_t col = 0; col < array.cols; ++col) sources_.ratio[col] = sensed_line(readout, col).emf;
@@ -120,9 +124,10 @@ bool GroundedRows::set_shorted(std::span<const std::size_t> taxels) noexcept {
   state_.shorted.clear();
   joined_.pairs.clear();
   state_.drive_ohm = joined_.drive_ohm;
-  const bool can = sources_.ratio.empty() && std::all_of(taxels.begin(), taxels.end(), [&](std::size_t taxel) {
-                     return add_shorted(taxel / state_.cols, taxel % state_.cols);
-                   });
+  const bool can =
+      sources_.ratio.empty() && !film_ && std::all_of(taxels.begin(), taxels.end(), [&](std::size_t taxel) {
+        return add_shorted(taxel / state_.cols, taxel % state_.cols);
+      });
   if (can) return true;
   state_.shorted.clear();
   joined_.pairs.clear();
@@ -148,6 +153,10 @@ bool GroundedRows::add_shorted(std::size_t row, std::size_t col) noexcept {
   joined_.pairs.push_back({column->row, row});
   first_ohm = 1.0 / (1.0 / first_ohm + 1.0 / joined_.drive_ohm[row]);
   return true;
+}
+
+void GroundedRows::hold_film(const FilmConductances& film) noexcept {
+  if (film_) film_->follower.hold(film);
 }
 
 void GroundedRows::forget() noexcept {

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "dermis/touch/compensation/crosstalk.hpp"
 #include "touch/compensation/anderson_mixing.hpp"
 #include "touch/compensation/driver_error.hpp"
+#include "touch/compensation/film_terms.hpp"
 #include "touch/compensation/grounded_rows_kernels.hpp"
 #include "touch/compensation/step_budget.hpp"
 
@@ -55,10 +57,12 @@ namespace dermis::touch::compensation {
 /// arrays can give the same readings. The result is the one that is reached from G = 0 as all readings grow.
 class GroundedRows final : public CrosstalkInversion {
  public:
-  /// `array` is a divider or transimpedance with grounded idle rows.
+  /// `array` is a divider or transimpedance with grounded idle rows. With a film, all its columns are loaded and its
+  /// amplifiers have no offset.
   GroundedRows(const ArrayDescription& array, double tolerance_ratio, const InversionOptions& options);
   [[nodiscard]] InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept override;
   [[nodiscard]] bool set_shorted(std::span<const std::size_t> taxels) noexcept override;
+  void hold_film(const FilmConductances& film) noexcept override;
   void start_frame(double share) noexcept override { budget_.start_frame(share); }
   void forget() noexcept override;
   void propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept override;
@@ -115,6 +119,7 @@ class GroundedRows final : public CrosstalkInversion {
   double tolerance_;
   StepBudget budget_;  // in steps without mixing
   GroundedRowsState state_;
+  std::unique_ptr<GroundedRowsFilm> film_;
   JoinedRows joined_;
   std::vector<double> reading_siemens_;  // y of a ratio of 1 [stride]
   std::vector<double> offset_siemens_;   // y of a ratio of 0 [stride]

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include "dermis/touch/frames/processor_clones.hpp"
+#include "touch/compensation/film_terms.hpp"
 #include "touch/compensation/matrix_product.hpp"
 #include "touch/compensation/shorted_crossings.hpp"
 
@@ -372,7 +374,9 @@ void estimate_from_readings(GroundedRowsState& state) noexcept {
     state.kept_siemens[col] += siemens;
     state.measured[row * state.stride + col] = 0.0;
   }
+  if (state.film != nullptr) exchange_film_currents(state);
   HWY_DYNAMIC_DISPATCH(estimate_kernel)(GroundedRowsView(state));
+  if (state.film != nullptr) std::swap(state.measured, state.film->currents);
   if (!state.shorted.empty()) estimate_with_shorted(state);
   for (const auto& [row, col, siemens] : state.kept) {
     const std::size_t k = row * state.stride + col;
@@ -397,10 +401,12 @@ void refresh(GroundedRowsState& state) noexcept {
   if (!state.shorted.empty()) add_up_nodes(state);
   HWY_DYNAMIC_DISPATCH(refresh_kernel)(GroundedRowsView(state));
   if (!state.shorted.empty()) take_columns_away(state);
+  if (state.film != nullptr) put_film_into_lines(state);
 }
 
 double assess(GroundedRowsState& state, Precision precision) noexcept {
   find_returned(state, precision);
+  if (state.film != nullptr) return assess_with_film(state);
   if (!state.shorted.empty()) return_through_nodes(state);
   std::fill(state.kept_drawn.begin(), state.kept_drawn.end(), 0.0);
   for (const auto& [row, col, siemens] : state.kept) {

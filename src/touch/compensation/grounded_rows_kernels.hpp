@@ -13,6 +13,8 @@ namespace dermis::touch::compensation {
 /// Of the sums of currents that flow from row to row.
 enum class Precision { single, full };
 
+struct GroundedRowsFilm;
+
 /// The state of the iteration of GroundedRows; grounded_rows.hpp explains the symbols. Matrices are [rows, stride],
 /// row-major: zeros fill up the columns to whole SIMD vectors. Many members: the symbols of formula (4), of the
 /// circuit, the frame and the iterate.
@@ -75,6 +77,8 @@ struct GroundedRowsState {
   std::vector<double> noise_gain;    // square of the diagonal of S D^-1 [rows]
   std::vector<double> column_part;   // w [stride]
   std::vector<double> column_scale;  // From Z to the next G [stride]
+
+  GroundedRowsFilm* film = nullptr;  // the terms of a film over the lines (film_terms.hpp); null: there is none
 };
 
 /// `estimate` of the readings: exact for ideal drivers, and for columns at 0 V.

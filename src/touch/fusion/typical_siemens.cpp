@@ -28,6 +28,15 @@ class PressedArray {
     conductance_.taxels.assign(taxels, TaxelStatus::ok);
   }
 
+  /// So many times what a taxel conducts above its unloaded conductance where it conducts `siemens`.
+  void press(double times, std::span<const double> siemens) {
+    std::vector<double> share(siemens.size());
+    for (std::size_t taxel = 0; taxel < share.size(); ++taxel) {
+      const double excess = siemens[taxel] - networks_.unloaded.offset_siemens[taxel];
+      share[taxel] = times * excess / static_cast<double>(networks_.reference_siemens[taxel]);
+    }
+    press(share);
+  }
   void press(std::span<const double> share) {
     for (std::size_t taxel = 0; taxel < share.size(); ++taxel) {
       conductance_.siemens[taxel] = networks_.unloaded.offset_siemens[taxel] +
@@ -89,6 +98,20 @@ std::vector<double> typical_siemens(const ForceNetworks& networks) {
     if (!is_found(taxel)) siemens[taxel] = median;
   }
   return siemens;
+}
+
+std::vector<LoadPoint> load_points(const ForceNetworks& networks, std::span<const double> typical) {
+  constexpr double kFirst = 1.0 / 32.0;
+  constexpr double kLast = 32.0;
+  constexpr double kStep = 2.0;
+  std::vector<LoadPoint> points;
+  PressedArray array(networks);
+  for (double share = kFirst; share < kLast; share *= kStep) {
+    array.press(share, typical);
+    const auto newtons = static_cast<double>(median_of_finite(array.newtons()).value_or(0.0F));
+    if (newtons > (points.empty() ? 0.0 : points.back().newtons)) points.push_back({share, newtons});
+  }
+  return points;
 }
 
 }  // namespace dermis::touch::fusion

@@ -27,8 +27,10 @@ Result<Pipeline> Pipeline::create(const Model& model) {
     return bad_input("the model's networks do not fit its array, or hold values out of range");
   }
   const std::vector<double> typical = fusion::typical_siemens(model.networks);
+  std::vector<LoadPoint> loads;
+  if (model.array.readout.film) loads = fusion::load_points(model.networks, typical);
   Result<compensation::Compensator> compensator =
-      compensation::Compensator::create(model.array, {typical, model.networks.unloaded.offset_siemens, {}});
+      compensation::Compensator::create(model.array, {typical, model.networks.unloaded.offset_siemens, loads});
   if (!compensator) return compensator.error();
   return Pipeline(model, std::move(*compensator));
 }

@@ -13,12 +13,6 @@
 
 namespace dermis::touch::compensation {
 
-/// A point of the law of the sheet's taxels.
-struct LoadPoint {
-  double share = 0.0;    ///< Of ReferenceConductances::typical, both above the unloaded conductance.
-  double newtons = 0.0;  ///< Under which a taxel conducts this.
-};
-
 /// The conductances of the taxels by the calibration.
 struct ReferenceConductances {
   std::span<const double> typical = {};   ///< Under one same force, in any unit; > 0 [rows, cols], or empty.
@@ -125,6 +119,7 @@ class Compensator {
   void process(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept;
 
   /// See CrosstalkInversion.
+  void hold_film(const FilmConductances& film) noexcept { inversion_->hold_film(film); }
   void forget() noexcept;
   [[nodiscard]] double siemens_per_ratio() const noexcept { return inversion_->siemens_per_ratio(); }
 

@@ -38,4 +38,10 @@ struct FilmConductances {
   std::vector<double> between_cols;
 };
 
+/// A point of the law of a sheet's taxels: all have one curve, each on its own scale.
+struct LoadPoint {
+  double share = 0.0;    ///< Of what a taxel conducts under one same force, both above its unloaded conductance.
+  double newtons = 0.0;  ///< Under which it conducts this.
+};
+
 }  // namespace dermis
