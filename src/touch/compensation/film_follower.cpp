@@ -14,9 +14,19 @@ namespace {
 /// Shares of the loaded force, at which the polygon of the film meets its law.
 constexpr std::array kFilmCorners{0.0, 0.02, 0.08, 0.22, 0.5, 1.0};
 
-DERMIS_PROCESSOR_CLONES void add_corner(double x, double change, const double* __restrict from, double* __restrict to,
-                                        std::size_t count) {
-  for (std::size_t k = 0; k < count; ++k) to[k] += change * (from[k] > x ? from[k] - x : 0.0);
+template <std::size_t Corners>
+DERMIS_PROCESSOR_CLONES void add_corners(const std::array<double, Corners>& x,
+                                         const std::array<double, Corners>& change, const double* __restrict from,
+                                         double* __restrict to, std::size_t count) {
+#pragma omp simd
+  for (std::size_t k = 0; k < count; ++k) {
+    double sum = 0.0;
+    for (std::size_t corner = 0; corner < Corners; ++corner) {
+      const double beyond = from[k] - x[corner];
+      sum += change[corner] * (beyond > 0.0 ? beyond : 0.0);
+    }
+    to[k] = sum;
+  }
 }
 
 }  // namespace
@@ -41,9 +51,10 @@ FilmFollower::FilmFollower(const ArrayDescription& array, const ReferenceConduct
     pairs.push_back(2.0 * newtons);
     rises.push_back(film_->siemens(newtons, newtons) - 1.0 / film_->unloaded_ohm);
   }
+  pairs.push_back(2.0 * pairs.back());
+  rises.push_back(rises.back());
   rise_ = polygon_of(pairs, rises);
-  rise_.corners.push_back(
-      {pairs.back(), -(rises.back() - rises[rises.size() - 2]) / (pairs.back() - pairs[pairs.size() - 2])});
+  follows_ = true;
   for (std::size_t taxel = 0; taxel < array.taxel_count(); ++taxel) {
     unloaded_.push_back(std::max(references.unloaded[taxel], 0.0));
     const double typical = references.typical[taxel] - unloaded_.back();
@@ -51,12 +62,14 @@ FilmFollower::FilmFollower(const ArrayDescription& array, const ReferenceConduct
   }
 }
 
+/// From the origin on. It goes on as between the last two points.
 FilmFollower::Polygon FilmFollower::polygon_of(const std::vector<double>& x, const std::vector<double>& y) {
   Polygon polygon;
   double last = 0.0;
-  for (std::size_t k = 0; k + 1 < x.size(); ++k) {
+  for (std::size_t k = 0; k + 1 < std::min(x.size(), Polygon::kCorners + 1); ++k) {
     const double slope = (y[k + 1] - y[k]) / (x[k + 1] - x[k]);
-    polygon.corners.push_back({x[k], slope - last});
+    polygon.x[k] = x[k];
+    polygon.change[k] = slope - last;
     last = slope;
   }
   return polygon;
@@ -66,11 +79,11 @@ void FilmFollower::hold(const FilmConductances& film) noexcept {
   if (!film_) return;
   conductances_.between_rows = film.between_rows;
   conductances_.between_cols = film.between_cols;
-  loads_.corners.clear();
+  follows_ = false;
 }
 
 bool FilmFollower::follow(std::span<const double> siemens, std::size_t stride) noexcept {
-  if (!follows()) return false;
+  if (!follows_) return false;
   for (std::size_t row = 0; row < rows_; ++row) {
     for (std::size_t col = 0; col < cols_; ++col) {
       const std::size_t taxel = row * cols_ + col;
@@ -101,8 +114,7 @@ void FilmFollower::find_rises(const double* own, const double* other, std::size_
 }
 
 void FilmFollower::Polygon::apply(const double* from, double* to, std::size_t count) const noexcept {
-  std::fill_n(to, count, 0.0);
-  for (const auto& [x, change] : corners) add_corner(x, change, from, to, count);
+  add_corners(x, change, from, to, count);
 }
 
 }  // namespace dermis::touch::compensation

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -32,23 +33,21 @@ class FilmFollower {
   [[nodiscard]] const FilmConductances& film() const noexcept { return conductances_; }
 
  private:
-  /// y = slope_0 x + sum over the corners of change max(0, x - corner), from y = 0 at x = 0.
+  /// y = sum over the corners of change max(0, x - corner).
   struct Polygon {
-    struct Corner {
-      double x;
-      double change;  // of the slope
-    };
-    std::vector<Corner> corners;  // the first at 0
+    static constexpr std::size_t kCorners = 12;
+
+    std::array<double, kCorners> x{};
+    std::array<double, kCorners> change{};  // of the slope; 0 behind the last corner
     void apply(const double* from, double* to, std::size_t count) const noexcept;
   };
 
   [[nodiscard]] static Polygon polygon_of(const std::vector<double>& x, const std::vector<double>& y);
   void find_rises(const double* own, const double* other, std::size_t count) noexcept;
-  [[nodiscard]] bool follows() const noexcept { return !loads_.corners.empty(); }
-
   std::optional<Film> film_;
   std::size_t rows_;
   std::size_t cols_;
+  bool follows_ = false;
   Polygon loads_;                 // share -> newtons
   Polygon rise_;                  // newtons, of two taxels together -> film above the unloaded one
   std::vector<double> unloaded_;  // [taxels] [S]

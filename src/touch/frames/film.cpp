@@ -14,6 +14,22 @@ double at_least_zero(double newtons) {
   return newtons > 0.0 ? newtons : 0.0;
 }
 
+template <typename Newtons>
+void find(const Film& film, Newtons newtons, FilmConductances& conductances) {
+  auto& [between_rows, between_cols] = conductances;
+  const std::size_t rows = between_rows.size() + 1;
+  const std::size_t cols = between_cols.size() + 1;
+  std::fill(between_rows.begin(), between_rows.end(), 0.0);
+  std::fill(between_cols.begin(), between_cols.end(), 0.0);
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t col = 0; col < cols; ++col) {
+      const auto at = [&](std::size_t i, std::size_t j) { return static_cast<double>(newtons[i * cols + j]); };
+      if (row + 1 < rows) between_rows[row] += film.siemens(at(row, col), at(row + 1, col));
+      if (col + 1 < cols) between_cols[col] += film.siemens(at(row, col), at(row, col + 1));
+    }
+  }
+}
+
 }  // namespace
 
 bool Film::is_unknown() const noexcept {
@@ -27,17 +43,11 @@ double Film::siemens(double newtons, double other_newtons) const noexcept {
 }
 
 void FilmConductances::set(const Film& film, std::span<const double> newtons) noexcept {
-  const std::size_t rows = between_rows.size() + 1;
-  const std::size_t cols = between_cols.size() + 1;
-  std::fill(between_rows.begin(), between_rows.end(), 0.0);
-  std::fill(between_cols.begin(), between_cols.end(), 0.0);
-  for (std::size_t row = 0; row < rows; ++row) {
-    for (std::size_t col = 0; col < cols; ++col) {
-      const double own = newtons[row * cols + col];
-      if (row + 1 < rows) between_rows[row] += film.siemens(own, newtons[(row + 1) * cols + col]);
-      if (col + 1 < cols) between_cols[col] += film.siemens(own, newtons[row * cols + col + 1]);
-    }
-  }
+  find(film, newtons, *this);
+}
+
+void FilmConductances::set(const Film& film, std::span<const float> newtons) noexcept {
+  find(film, newtons, *this);
 }
 
 }  // namespace dermis

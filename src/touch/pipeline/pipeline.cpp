@@ -19,6 +19,14 @@ compensation::UnloadedConductance unloaded(const fusion::ForceNetworks& networks
 
 }  // namespace
 
+Result<compensation::Compensator> make_compensator(const ArrayDescription& array,
+                                                   const fusion::ForceNetworks& networks) {
+  const std::vector<double> typical = fusion::typical_siemens(networks);
+  std::vector<LoadPoint> loads;
+  if (array.readout.film) loads = fusion::load_points(networks, typical);
+  return compensation::Compensator::create(array, {typical, networks.unloaded.offset_siemens, loads});
+}
+
 Result<Pipeline> Pipeline::create(const Model& model) {
   if (Status valid = model.array.validate(); !valid) return valid.error();
   const bool is_consistent = model.networks.is_consistent() && (!model.memory || model.memory->is_consistent()) &&
@@ -26,11 +34,7 @@ Result<Pipeline> Pipeline::create(const Model& model) {
   if (model.networks.taxel_count() != model.array.taxel_count() || !is_consistent) {
     return bad_input("the model's networks do not fit its array, or hold values out of range");
   }
-  const std::vector<double> typical = fusion::typical_siemens(model.networks);
-  std::vector<LoadPoint> loads;
-  if (model.array.readout.film) loads = fusion::load_points(model.networks, typical);
-  Result<compensation::Compensator> compensator =
-      compensation::Compensator::create(model.array, {typical, model.networks.unloaded.offset_siemens, loads});
+  Result<compensation::Compensator> compensator = make_compensator(model.array, model.networks);
   if (!compensator) return compensator.error();
   return Pipeline(model, std::move(*compensator));
 }

@@ -33,6 +33,7 @@ struct FilmConductances {
 
   /// Of taxels under these forces [rows, cols]; less than 0 and NaN are 0. Allocates nothing.
   void set(const Film& film, std::span<const double> newtons) noexcept;
+  void set(const Film& film, std::span<const float> newtons) noexcept;
 
   std::vector<double> between_rows;
   std::vector<double> between_cols;

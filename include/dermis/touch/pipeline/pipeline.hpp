@@ -19,6 +19,10 @@
 
 namespace dermis::touch::pipeline {
 
+/// Unit 3 as the pipeline has it: what it estimates, and the film that it follows, are by the networks.
+[[nodiscard]] Result<compensation::Compensator> make_compensator(const ArrayDescription& array,
+                                                                 const fusion::ForceNetworks& networks);
+
 class LiveNoise;
 class TareJudge;
 

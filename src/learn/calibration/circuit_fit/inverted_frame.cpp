@@ -10,6 +10,7 @@
 #include "dermis/learn/calibration/parallel.hpp"
 #include "learn/calibration/circuit_fit/cut_readings.hpp"
 #include "learn/calibration/circuit_fit/line_parameters.hpp"
+#include "learn/calibration/labels/labels.hpp"
 
 namespace dermis::learn::calibration {
 namespace {
@@ -69,6 +70,7 @@ bool add_slopes(SlopedInversion& inversion, const CircuitFrame& frame, const Rub
 }
 
 bool invert_into(SlopedInversion& inversion, const CircuitFrame& frame, const Rubber& rubber, InvertedFrame& inverted) {
+  inversion.hold_film(film_newtons(frame.newtons, frame.totals));
   if (!inversion.invert(frame.ratio, inverted.siemens)) return false;
   inversion.propagate_noise(frame.sigma_ratio, inverted.sigma_siemens);
   return inversion.slope_count() == 0 || add_slopes(inversion, frame, rubber, inverted);

@@ -27,6 +27,8 @@ Result<SlopedInversion> SlopedInversion::create(const LineParameters& lines, con
   SlopedInversion result;
   const Index count = slopes == Slopes::all ? parameters.size() : 0;
   result.slope_count_ = count;
+  result.film_ = lines.array().readout.film;
+  result.film_conductances_ = FilmConductances(lines.array().rows, lines.array().cols);
   const bool is_slow = is_inverted_slowly(lines.array());
   if (is_slow && count > 0) {
     Result<SolvedSlopes> solved = SolvedSlopes::create(lines, parameters);
@@ -45,6 +47,12 @@ Result<SlopedInversion> SlopedInversion::create(const LineParameters& lines, con
     result.inversions_.push_back(std::move(*inversion));
   }
   return result;
+}
+
+void SlopedInversion::hold_film(const std::vector<float>& newtons) {
+  if (!film_) return;
+  film_conductances_.set(*film_, newtons);
+  for (const auto& inversion : inversions_) inversion->hold_film(film_conductances_);
 }
 
 void SlopedInversion::forget() {

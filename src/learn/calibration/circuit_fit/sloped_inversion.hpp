@@ -26,6 +26,9 @@ class SlopedInversion {
  public:
   static Result<SlopedInversion> create(const LineParameters& lines, const Eigen::VectorXd& parameters, Slopes slopes);
 
+  /// The film over the lines, where the array has one, is that of these loads [taxels]; not a number: 0.
+  void hold_film(const std::vector<float>& newtons);
+
   /// Does not start from the last frame.
   void forget();
 
@@ -44,6 +47,8 @@ class SlopedInversion {
  private:
   Eigen::Index slope_count_ = 0;
   std::vector<std::unique_ptr<touch::compensation::CrosstalkInversion>> inversions_;
+  std::optional<Film> film_;
+  FilmConductances film_conductances_{0, 0};
   std::optional<SolvedSlopes> solved_slopes_;  // where they are faster than an inversion beside each parameter
   std::vector<double> shifted_;
 };

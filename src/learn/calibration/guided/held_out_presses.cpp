@@ -11,6 +11,7 @@
 #include "dermis/touch/compensation/crosstalk.hpp"
 #include "dermis/touch/frames/quantile.hpp"
 #include "dermis/touch/fusion/force_fusion.hpp"
+#include "dermis/touch/pipeline/pipeline.hpp"
 #include "dermis/touch/preprocessing/conditioner.hpp"
 
 namespace dermis::learn::calibration {
@@ -73,7 +74,8 @@ std::optional<double> median(std::vector<double> values) {
 
 /// Relative errors of a model on presses; 1 where it gives no force.
 std::vector<double> errors_of(const touch::pipeline::Model& model, const GuidedPresses& presses) {
-  Result<touch::compensation::Compensator> compensator = touch::compensation::Compensator::create(model.array);
+  Result<touch::compensation::Compensator> compensator =
+      touch::pipeline::make_compensator(model.array, model.networks);
   if (!compensator) return {};
   touch::fusion::ForceFusion fusion(model.networks);
   ConditionedFrame conditioned;

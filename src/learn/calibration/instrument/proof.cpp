@@ -12,6 +12,7 @@
 #include "dermis/touch/frames/quantile.hpp"
 #include "dermis/touch/fusion/force_fusion.hpp"
 #include "dermis/touch/fusion/material_memory.hpp"
+#include "dermis/touch/pipeline/pipeline.hpp"
 #include "dermis/touch/preprocessing/conditioner.hpp"
 #include "learn/calibration/instrument/press_choice.hpp"
 #include "learn/calibration/labels/press_numbers.hpp"
@@ -163,7 +164,8 @@ std::vector<Load> Proof::loads_without(std::size_t half, bool all_several) const
 
 /// false: the circuit cannot be inverted.
 bool Proof::judge(const touch::pipeline::Model& model, std::size_t half, UnseenPresses& unseen) const {
-  Result<touch::compensation::Compensator> compensator = touch::compensation::Compensator::create(model.array);
+  Result<touch::compensation::Compensator> compensator =
+      touch::pipeline::make_compensator(model.array, model.networks);
   if (!compensator) return false;
   std::map<std::size_t, std::pair<const LeftOut*, UnseenPress*>> by_frame;
   const auto add = [&](const std::vector<LeftOut>& presses, std::vector<UnseenPress>& results) {

@@ -66,4 +66,12 @@ void expand_loads(const ArrayDescription& array, std::span<const Load> loads, Sa
   for (const std::size_t taxel : array.absent) sample.known_newtons[taxel] = std::numeric_limits<float>::quiet_NaN();
 }
 
+std::vector<float> film_newtons(std::vector<float> newtons, const std::vector<TotalForce>& totals) {
+  for (const auto& [taxels, total] : totals) {
+    for (const std::size_t taxel : taxels)
+      newtons[taxel] = static_cast<float>(total / static_cast<double>(taxels.size()));
+  }
+  return newtons;
+}
+
 }  // namespace dermis::learn::calibration

@@ -286,7 +286,7 @@ bool is_continuous(std::span<const RawFrame> frames) {
 
 std::optional<LearnedMemory> learn_memory(const SampleDatabase& database, std::span<const RawFrame> frames,
                                           const ForceTraining& plain) {
-  Result<SiemensHistory> history = read_history(database, frames);
+  Result<SiemensHistory> history = read_history(database, frames, plain.networks);
   if (!history) return std::nullopt;
   const std::vector<KnownLoad> loads = known_loads(database, *history);
   if (loads.size() < kLeastLoads) return std::nullopt;

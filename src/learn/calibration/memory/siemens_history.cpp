@@ -7,6 +7,7 @@
 
 #include "dermis/learn/calibration/parallel.hpp"
 #include "dermis/touch/compensation/crosstalk.hpp"
+#include "dermis/touch/pipeline/pipeline.hpp"
 #include "dermis/touch/preprocessing/conditioner.hpp"
 
 namespace dermis::learn::calibration {
@@ -30,8 +31,10 @@ std::vector<std::size_t> chosen_frames(const SampleDatabase& database, std::size
 
 }  // namespace
 
-Result<SiemensHistory> read_history(const SampleDatabase& database, std::span<const RawFrame> frames) {
-  const Result<touch::compensation::Compensator> checked = touch::compensation::Compensator::create(database.array);
+Result<SiemensHistory> read_history(const SampleDatabase& database, std::span<const RawFrame> frames,
+                                    const touch::fusion::ForceNetworks& networks) {
+  const auto make_solver = [&] { return touch::pipeline::make_compensator(database.array, networks); };
+  const Result<touch::compensation::Compensator> checked = make_solver();
   if (!checked) return checked.error();
   SiemensHistory history;
   history.taxels = database.array.taxel_count();
@@ -45,7 +48,7 @@ Result<SiemensHistory> read_history(const SampleDatabase& database, std::span<co
   }
   history.siemens.assign(history.frame.size() * history.taxels, std::numeric_limits<float>::quiet_NaN());
   parallel_for((history.frame.size() + kFramesPerTask - 1) / kFramesPerTask, [&](std::size_t task) {
-    Result<touch::compensation::Compensator> solver = touch::compensation::Compensator::create(database.array);
+    Result<touch::compensation::Compensator> solver = make_solver();
     touch::preprocessing::Conditioner conditioner(database.array);
     ConditionedFrame conditioned;
     ConductanceFrame conductance;

@@ -11,6 +11,7 @@
 #include "dermis/learn/calibration/sample_database.hpp"
 #include "dermis/touch/frames/frames.hpp"
 #include "dermis/touch/frames/result.hpp"
+#include "dermis/touch/fusion/force_fusion.hpp"
 
 namespace dermis::learn::calibration {
 
@@ -34,7 +35,8 @@ struct SiemensHistory {
 };
 
 /// All frames of the recording that `database` comes from; of very many those of its samples and, evenly, some of the
-/// others. Errors: those of Compensator::create().
-[[nodiscard]] Result<SiemensHistory> read_history(const SampleDatabase& database, std::span<const RawFrame> frames);
+/// others. A film over the lines is as `networks` tell the loads. Errors: those of Compensator::create().
+[[nodiscard]] Result<SiemensHistory> read_history(const SampleDatabase& database, std::span<const RawFrame> frames,
+                                                  const touch::fusion::ForceNetworks& networks);
 
 }  // namespace dermis::learn::calibration

@@ -158,10 +158,17 @@ void invert_batch(std::span<const SelectedFrame> batch, const LoadsOfFrames& loa
   database.samples.resize(before + batch.size());
   parallel_for((batch.size() + kFramesPerTask - 1) / kFramesPerTask, [&](std::size_t task) {
     Result<touch::compensation::Compensator> solver = touch::compensation::Compensator::create(array);
+    FilmConductances film(array.rows, array.cols);
     ConductanceFrame conductance;
     const std::size_t end = std::min(batch.size(), (task + 1) * kFramesPerTask);
     for (std::size_t k = task * kFramesPerTask; k < end; ++k) {
       const auto& [index, conditioned] = batch[k];
+      if (array.readout.film) {
+        Sample loaded;
+        expand_loads(array, loads_of[index], loaded);
+        film.set(*array.readout.film, film_newtons(std::move(loaded.known_newtons), loaded.totals));
+        solver->hold_film(film);
+      }
       solver->forget();  // whatever task a frame is in, its bits are the same
       solver->process(conditioned, conductance);
       Sample& sample = database.samples[before + k];

@@ -11,6 +11,7 @@
 
 #include "dermis/learn/calibration/parallel.hpp"
 #include "dermis/touch/compensation/crosstalk.hpp"
+#include "dermis/touch/pipeline/pipeline.hpp"
 #include "learn/calibration/even_choice.hpp"
 
 namespace dermis::learn::calibration {
@@ -25,7 +26,8 @@ class ErrorBudget {
  public:
   static Result<ErrorBudget> create(touch::pipeline::Model model, double supply_noise) {
     model.array.readout.supply_noise = supply_noise;
-    Result<touch::compensation::Compensator> compensator = touch::compensation::Compensator::create(model.array);
+    Result<touch::compensation::Compensator> compensator =
+      touch::pipeline::make_compensator(model.array, model.networks);
     if (!compensator) return compensator.error();
     std::fill(model.networks.relative_sigma.begin(), model.networks.relative_sigma.end(), 1e-6F);
     std::fill(model.networks.heaviest_newtons.begin(), model.networks.heaviest_newtons.end(),
