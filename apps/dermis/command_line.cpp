@@ -239,6 +239,11 @@ Option Option::takes(int values) const {
   return *this;
 }
 
+Option Option::takes_list(int most) const {
+  option_->delimiter(',')->expected(1, most);
+  return *this;
+}
+
 Option Option::one_of(const std::vector<std::string>& names) const {
   option_->type_name(fmt::format("{}", fmt::join(names, "|")));
   return *this;

@@ -28,8 +28,9 @@ class Option {
   explicit Option(CLI::Option* option) : option_(option) {}
 
   Option required() const;
-  Option shows_default() const;    ///< The help names the value that it has without the option.
-  Option takes(int values) const;  ///< So many values, not one.
+  Option shows_default() const;       ///< The help names the value that it has without the option.
+  Option takes(int values) const;     ///< So many values, not one.
+  Option takes_list(int most) const;  ///< One to so many values, with commas between them.
   /// The names that it knows, for the help and for completion; the action says what is wrong with another.
   Option one_of(const std::vector<std::string>& names) const;
   Option excludes(Option other) const;

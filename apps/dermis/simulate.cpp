@@ -37,7 +37,18 @@ struct SimulateOptions {
   std::string memory;
   std::optional<double> creep_per_decade;
   std::optional<double> touch_gain;
+  std::vector<double> film;  ///< As --film; empty: the array's.
 };
+
+Status set_film(const std::vector<double>& values, ArrayDescription& array) {
+  if (values.empty()) return Done{};
+  Film film{values.front(), values.front()};
+  if (values.size() == 2) return bad_input("--film: needs one resistance, or UNLOADED,LOADED,NEWTONS");
+  if (values.size() == 3) film = {values[0], values[1], values[2]};
+  array.readout.film = film;
+  if (Status valid = array.validate(); !valid) return bad_input("--film: " + valid.error().message);
+  return Done{};
+}
 
 Status set_memory(const SimulateOptions& options, learn::simulation::RubberOptions& rubber) {
   if (!options.memory.empty()) {
@@ -116,8 +127,9 @@ struct Truth {
 };
 
 Status simulate(const SimulateOptions& options) {
-  const Result<ArrayDescription> array = bytes::files::read_array(options.array);
+  Result<ArrayDescription> array = bytes::files::read_array(options.array);
   if (!array) return array.error();
+  if (Status set = set_film(options.film, *array); !set) return set;
   if (array->has_unknown_circuit()) {
     return bad_input(options.array +
                      ": a circuit that is to be fitted cannot be simulated; name it and give its resistances in ohm");
@@ -174,6 +186,10 @@ void add_simulate(Command& command) {
   command.option("--creep-per-decade", options->creep_per_decade,
                  "rubber: growth of a held reading in ten times the time, 0.02 to 0.30");
   command.option("--touch-gain", options->touch_gain, "rubber: standard deviation from touch to touch, 0 to 0.3");
+  command
+      .option("--film", options->film,
+              "Sheet that conducts sideways: OHM between neighbours, or UNLOADED,LOADED,NEWTONS; in place of film_ohm")
+      .takes_list(3);
   command.input("--physics", options->physics, "physics.toml: material and surroundings (docs/simulation.md)");
   command.action([options]() -> Status {
     end_when_interrupted();

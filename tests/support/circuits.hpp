@@ -20,6 +20,7 @@ struct NamedCircuit {
   IdleColumns idle_columns = IdleColumns::loaded;
   bool real_amplifiers = false;
   bool resistive_lines = false;
+  bool film = false;
 };
 
 inline std::ostream& operator<<(std::ostream& out, const NamedCircuit& circuit) {
@@ -50,8 +51,22 @@ inline std::vector<NamedCircuit> all_circuits() {
   return circuits;
 }
 
+/// Every circuit without resistance of its lines, and two with it, under a film.
+inline std::vector<NamedCircuit> circuits_with_film() {
+  std::vector<NamedCircuit> circuits;
+  for (const NamedCircuit& circuit : all_circuits()) {
+    const bool is_plain = circuit.circuit == Circuit::divider && circuit.idle_columns == IdleColumns::loaded;
+    if (circuit.resistive_lines && !is_plain) continue;
+    circuits.push_back(circuit);
+    circuits.back().name += "_film";
+    circuits.back().film = true;
+  }
+  return circuits;
+}
+
 /// An array of this circuit whose resistances differ from line to line: drivers of 1 to 200 ohm, loads of 100 ohm to
-/// 10 kohm, lines of up to 20 ohm from taxel to taxel, amplifiers with an offset of a few millivolt and a gain of 1e4.
+/// 10 kohm, lines of up to 20 ohm from taxel to taxel, amplifiers with an offset of a few millivolt and a gain of 1e4,
+/// a film of 2 to 50 kohm between neighbouring taxels under any load.
 inline ArrayDescription random_array(const NamedCircuit& circuit, std::size_t rows, std::size_t cols, Random& random) {
   ArrayDescription array;
   array.rows = rows;
@@ -74,6 +89,10 @@ inline ArrayDescription random_array(const NamedCircuit& circuit, std::size_t ro
   if (circuit.resistive_lines) {
     for (std::size_t i = 0; i < rows; ++i) readout.row_segment_ohm.push_back(random.uniform(0.0, 20.0));
     for (std::size_t j = 0; j < cols; ++j) readout.column_segment_ohm.push_back(random.uniform(0.0, 20.0));
+  }
+  if (circuit.film) {
+    const double ohm = random.log_uniform(2e3, 5e4);
+    readout.film = Film{ohm, ohm};
   }
   return array;
 }

@@ -13,10 +13,12 @@ namespace dermis::support {
 
 /// Readings over the supply [rows, cols] of every circuit, one scan after another by modified nodal analysis: unknown
 /// are the voltages of all nodes and the currents of all drivers, loads and line segments, so that 0 ohm is nothing
-/// special. Slow and plain, so that it shares nothing with what it judges. Floating lines need a taxel.
+/// special. Slow and plain, so that it shares nothing with what it judges. Floating lines need a taxel. A film is
+/// spread evenly over the taxels.
 class NodalReadout {
  public:
-  explicit NodalReadout(const ArrayDescription& array) : array_(array) {}
+  explicit NodalReadout(const ArrayDescription& array) : NodalReadout(array, film_of(array)) {}
+  NodalReadout(const ArrayDescription& array, const FilmConductances& film) : array_(array), film_(film) {}
 
   [[nodiscard]] std::vector<double> ratios(const std::vector<double>& siemens) const {
     std::vector<double> ratio(array_.taxel_count());
@@ -27,6 +29,12 @@ class NodalReadout {
   }
 
  private:
+  [[nodiscard]] static FilmConductances film_of(const ArrayDescription& array) {
+    FilmConductances film(array.rows, array.cols);
+    if (array.readout.film) film.set(*array.readout.film, std::vector<double>(array.taxel_count()));
+    return film;
+  }
+
   struct Equations {
     explicit Equations(std::size_t unknowns) : size(unknowns), matrix(size * size, 0.0), right(size, 0.0) {}
     double& operator()(std::size_t row, std::size_t col) { return matrix[row * size + col]; }
@@ -48,15 +56,19 @@ class NodalReadout {
     const std::size_t nodes = 2 * array_.taxel_count();
     const std::size_t segments = rows * (cols - 1) + cols * (rows - 1);
     Equations equations(nodes + segments + rows + cols);
+    const auto conduct = [&](std::size_t a, std::size_t b, double g) {
+      equations(a, a) += g;
+      equations(b, b) += g;
+      equations(a, b) -= g;
+      equations(b, a) -= g;
+    };
     for (std::size_t i = 0; i < rows; ++i) {
       for (std::size_t j = 0; j < cols; ++j) {
-        const double g = siemens[array_.index(i, j)];
-        const std::size_t a = row_node(i, j);
-        const std::size_t b = column_node(i, j);
-        equations(a, a) += g;
-        equations(b, b) += g;
-        equations(a, b) -= g;
-        equations(b, a) -= g;
+        conduct(row_node(i, j), column_node(i, j), siemens[array_.index(i, j)]);
+        const double of_rows = i > 0 ? film_.between_rows[i - 1] / static_cast<double>(cols) : 0.0;
+        const double of_cols = j > 0 ? film_.between_cols[j - 1] / static_cast<double>(rows) : 0.0;
+        if (i > 0) conduct(row_node(i - 1, j), row_node(i, j), of_rows);
+        if (j > 0) conduct(column_node(i, j - 1), column_node(i, j), of_cols);
       }
     }
     std::size_t branch = nodes;
@@ -127,6 +139,7 @@ class NodalReadout {
   }
 
   ArrayDescription array_;
+  FilmConductances film_;
 };
 
 }  // namespace dermis::support

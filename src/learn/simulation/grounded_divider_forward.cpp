@@ -173,7 +173,7 @@ bool fits_grounded_divider(const ArrayDescription& array) noexcept {
   const Readout& readout = array.readout;
   return readout.circuit == Circuit::divider && readout.idle_rows == IdleRows::grounded &&
          readout.idle_columns == IdleColumns::loaded && readout.row_segment_ohm.empty() &&
-         readout.column_segment_ohm.empty() && readout.supply_ohm.value_or(0.0) == 0.0 &&
+         readout.column_segment_ohm.empty() && readout.supply_ohm.value_or(0.0) == 0.0 && !readout.film &&
          std::max(array.rows, array.cols) <= kMostFastLines;
 }
 

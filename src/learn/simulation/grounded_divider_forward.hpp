@@ -12,7 +12,8 @@ namespace dermis::learn::simulation {
 /// Most rows, and most columns, that grounded_divider_ratios() takes: what it works on lies on the stack.
 inline constexpr std::size_t kMostFastLines = 64;
 
-/// A divider with grounded idle rows, all columns loaded, lines and supply without resistance, of a size that fits.
+/// A divider with grounded idle rows, all columns loaded, lines and supply without resistance and no film, of a size
+/// that fits.
 [[nodiscard]] bool fits_grounded_divider(const ArrayDescription& array) noexcept;
 
 /// The readings of such an array over the supply, in SIMD lanes. The row lines are eliminated by hand: their block of

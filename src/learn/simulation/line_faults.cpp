@@ -80,7 +80,8 @@ struct Tie {
 /// The lines as nodes: rows first, then columns. Lines shorted together are one node.
 class Nodes {
  public:
-  Nodes(const ArrayDescription& array, const LineFaults& faults, std::span<const double> siemens)
+  Nodes(const ArrayDescription& array, const LineFaults& faults, std::span<const double> siemens,
+        const FilmConductances& film)
       : rows_(array.rows), lines_(array.rows + array.cols), node_(lines_) {
     std::iota(node_.begin(), node_.end(), std::size_t{0});
     for (const std::size_t taxel : taxel_indices(array, faults.shorted_taxels)) {
@@ -91,6 +92,10 @@ class Nodes {
     laplacian_ = Eigen::MatrixXd::Zero(size(), size());
     for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
       connect(node_[taxel / array.cols], node_[rows_ + taxel % array.cols], siemens[taxel]);
+    }
+    for (std::size_t row = 0; row + 1 < array.rows; ++row) connect(node_[row], node_[row + 1], film.between_rows[row]);
+    for (std::size_t col = 0; col + 1 < array.cols; ++col) {
+      connect(node_[rows_ + col], node_[rows_ + col + 1], film.between_cols[col]);
     }
   }
 
@@ -153,8 +158,9 @@ class Nodes {
 /// One array with its faults in one frame, scanned taxel by taxel.
 class Scan {
  public:
-  Scan(const ArrayDescription& array, const LineFaults& faults, double drift_ohm, std::span<const double> siemens)
-      : array_(array), faults_(faults), drift_ohm_(drift_ohm), nodes_(array, faults, siemens) {}
+  Scan(const ArrayDescription& array, const LineFaults& faults, double drift_ohm, std::span<const double> siemens,
+       const FilmConductances& film)
+      : array_(array), faults_(faults), drift_ohm_(drift_ohm), nodes_(array, faults, siemens, film) {}
 
   void read(std::span<double> ratio) const {
     const bool columns_driven = array_.readout.circuit == Circuit::flexitac;
@@ -330,6 +336,11 @@ FaultyCircuit::FaultyCircuit(const ArrayDescription& array, const LineFaults& fa
       stuck_taxels_(taxel_indices(array, faults.stuck_taxels)) {}
 
 void FaultyCircuit::ratios(std::span<const double> siemens, std::size_t frame, std::span<double> ratio) const {
+  ratios(siemens, std::vector<double>(siemens.size()), frame, ratio);
+}
+
+void FaultyCircuit::ratios(std::span<const double> siemens, std::span<const double> newtons, std::size_t frame,
+                           std::span<double> ratio) const {
   assert(siemens.size() == array_.taxel_count() && ratio.size() == siemens.size());
   const LineFaults none;
   const LineFaults& faults = present(frame) ? faults_ : none;
@@ -344,7 +355,9 @@ void FaultyCircuit::ratios(std::span<const double> siemens, std::size_t frame, s
     if (present(frame) && frame - faults.from_frame < faults.drift_frames) {
       share = static_cast<double>(frame - faults.from_frame) / static_cast<double>(faults.drift_frames);
     }
-    Scan(array_, faults, share * faults.drift_ohm, left).read(ratio);
+    FilmConductances film(array_.rows, array_.cols);
+    if (array_.readout.film) film.set(*array_.readout.film, newtons);
+    Scan(array_, faults, share * faults.drift_ohm, left, film).read(ratio);
   }
   if (array_.readout.pressure_raises_reading) return;
   for (double& reading : ratio) reading = 1.0 - reading;

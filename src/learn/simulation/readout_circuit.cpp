@@ -147,12 +147,6 @@ Table one_load_floating(const TerminalNetwork& network, const ArrayXd& drive_ohm
   return readings;
 }
 
-TerminalNetwork network_of(const Table& taxels, const std::vector<double>& driven_segment_ohm,
-                           const std::vector<double>& sensed_segment_ohm) {
-  const bool is_lumped = driven_segment_ohm.empty() && sensed_segment_ohm.empty();
-  return is_lumped ? lumped_network(taxels) : resistive_network(taxels, driven_segment_ohm, sensed_segment_ohm);
-}
-
 /// Readings [driven, sensed] over the supply.
 Table readings(const Readout& readout, const TerminalNetwork& network) {
   const double supply_ohm = readout.supply_ohm.value_or(0.0);
@@ -171,6 +165,20 @@ Table readings(const Readout& readout, const TerminalNetwork& network) {
                     : idle_driven_grounded(network, drive, sinks, supply_ohm);
 }
 
+TerminalNetwork network_of(const Table& taxels, const std::vector<double>& driven_segment_ohm,
+                           const std::vector<double>& sensed_segment_ohm, const FilmTables& film) {
+  const bool is_lumped = driven_segment_ohm.empty() && sensed_segment_ohm.empty();
+  return is_lumped ? lumped_network(taxels, film)
+                   : resistive_network(taxels, driven_segment_ohm, sensed_segment_ohm, film);
+}
+
+/// Readings [driven, sensed] over the supply of taxels under these forces.
+Table readings(const Readout& readout, const Table& taxels, const Table& newtons,
+               const std::vector<double>& driven_segment_ohm, const std::vector<double>& sensed_segment_ohm) {
+  const FilmTables film = readout.film ? film_tables(*readout.film, newtons) : FilmTables{};
+  return readings(readout, network_of(taxels, driven_segment_ohm, sensed_segment_ohm, film));
+}
+
 }  // namespace
 
 Result<ReadoutCircuit> ReadoutCircuit::create(const ArrayDescription& array) {
@@ -185,22 +193,30 @@ ReadoutCircuit::ReadoutCircuit(const ArrayDescription& array)
     : readout_(array.readout),
       rows_(array.rows),
       cols_(array.cols),
+      unloaded_n_(array.readout.film ? array.taxel_count() : 0),
       is_grounded_divider_(fits_grounded_divider(array)) {}
 
 void ReadoutCircuit::ratios(std::span<const double> siemens, std::span<double> ratio) const {
+  ratios(siemens, unloaded_n_, ratio);
+}
+
+void ReadoutCircuit::ratios(std::span<const double> siemens, std::span<const double> newtons,
+                            std::span<double> ratio) const {
   assert(siemens.size() == rows_ * cols_ && ratio.size() == rows_ * cols_);
+  assert(!readout_.film || newtons.size() == rows_ * cols_);
   const auto taxels = as_table(siemens, rows_, cols_);
+  const auto forces = as_table(newtons, readout_.film ? rows_ : 0, readout_.film ? cols_ : 0);
   auto reading = as_table(ratio, rows_, cols_);
   if (is_grounded_divider_) {
     grounded_divider_ratios(readout_, siemens, ratio);
   } else if (readout_.circuit == Circuit::none) {
     reading = kUnknownCircuitOhm * taxels;
   } else if (readout_.circuit == Circuit::flexitac) {
-    const TerminalNetwork network =
-        network_of(taxels.transpose(), readout_.column_segment_ohm, readout_.row_segment_ohm);
-    reading = readings(readout_, network).transpose();
+    reading = readings(readout_, taxels.transpose(), forces.transpose(), readout_.column_segment_ohm,
+                       readout_.row_segment_ohm)
+                  .transpose();
   } else {
-    reading = readings(readout_, network_of(taxels, readout_.row_segment_ohm, readout_.column_segment_ohm));
+    reading = readings(readout_, taxels, forces, readout_.row_segment_ohm, readout_.column_segment_ohm);
   }
   if (!readout_.pressure_raises_reading) reading = 1.0 - reading.array();
 }

@@ -166,7 +166,8 @@ Result<bool> Simulator::next(RawFrame& frame) {
   time_s_ += truth_.rest_s + truth_.hold_s;
   rubber_.read(taxel_celsius(), siemens_);
   for (const std::size_t taxel : array_.absent) siemens_[taxel] = 0.0;
-  is_faulty ? faulty_->ratios(siemens_, index, ratio_) : circuit_.ratios(siemens_, ratio_);
+  is_faulty ? faulty_->ratios(siemens_, rubber_.load_n(), index, ratio_)
+            : circuit_.ratios(siemens_, rubber_.load_n(), ratio_);
   frame.time = Nanos(std::llround(time_s_ * 1e9));
   measure_temperature(frame);
   frame.supply_v = truth_.supply_v * (1.0 + environment_.supply_noise * instruments_.normal());

@@ -102,17 +102,35 @@ class NodalEquations {
 
 }  // namespace
 
-TerminalNetwork lumped_network(const Table& taxels) {
+FilmTables film_tables(const Film& film, const Table& newtons) {
+  const Index driven = newtons.rows();
+  const Index sensed = newtons.cols();
+  FilmTables tables{Table(driven - 1, sensed), Table(driven, sensed - 1)};
+  for (Index i = 0; i < driven; ++i) {
+    for (Index j = 0; j < sensed; ++j) {
+      if (i > 0) tables.along_sensed(i - 1, j) = film.siemens(newtons(i - 1, j), newtons(i, j));
+      if (j > 0) tables.along_driven(i, j - 1) = film.siemens(newtons(i, j - 1), newtons(i, j));
+    }
+  }
+  return tables;
+}
+
+TerminalNetwork lumped_network(const Table& taxels, const FilmTables& film) {
   const Index driven = taxels.rows();
   const Index sensed = taxels.cols();
   TerminalNetwork network = TerminalNetwork::Zero(driven + sensed, driven + sensed);
   network.topRightCorner(driven, sensed) = taxels;
   network.bottomLeftCorner(sensed, driven) = taxels.transpose();
+  const auto join = [&](Index first, double siemens) {
+    network(first, first + 1) = network(first + 1, first) = siemens;
+  };
+  for (Index i = 0; i < film.along_sensed.rows(); ++i) join(i, film.along_sensed.row(i).sum());
+  for (Index j = 0; j < film.along_driven.cols(); ++j) join(driven + j, film.along_driven.col(j).sum());
   return network;
 }
 
 TerminalNetwork resistive_network(const Table& taxels, std::span<const double> driven_segment_ohm,
-                                  std::span<const double> sensed_segment_ohm) {
+                                  std::span<const double> sensed_segment_ohm, const FilmTables& film) {
   const Index driven = taxels.rows();
   const Index sensed = taxels.cols();
   const LineNodes nodes(driven, sensed, driven_segment_ohm, sensed_segment_ohm);
@@ -127,6 +145,12 @@ TerminalNetwork resistive_network(const Table& taxels, std::span<const double> d
       }
       if (i > 0 && along_sensed > 0.0) {
         equations.connect(nodes.on_sensed(i - 1, j), nodes.on_sensed(i, j), 1.0 / along_sensed);
+      }
+      if (i > 0 && film.along_sensed.size() > 0) {
+        equations.connect(nodes.on_driven(i - 1, j), nodes.on_driven(i, j), film.along_sensed(i - 1, j));
+      }
+      if (j > 0 && film.along_driven.size() > 0) {
+        equations.connect(nodes.on_sensed(i, j - 1), nodes.on_sensed(i, j), film.along_driven(i, j - 1));
       }
     }
   }

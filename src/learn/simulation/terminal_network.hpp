@@ -5,6 +5,8 @@
 #include <Eigen/Core>
 #include <span>
 
+#include "dermis/touch/frames/film.hpp"
+
 namespace dermis::learn::simulation {
 
 using Table = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -13,13 +15,22 @@ using Table = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMa
 /// come first, then the sensed lines; symmetric, the diagonal has no meaning.
 using TerminalNetwork = Table;
 
+/// What a film conducts between neighbouring taxels [S]; empty tables: there is none.
+struct FilmTables {
+  Table along_sensed;  ///< Of driven lines i and i + 1 [driven - 1, sensed].
+  Table along_driven;  ///< Of sensed lines j and j + 1 [driven, sensed - 1].
+};
+
+/// `newtons`: on the taxels [driven, sensed].
+[[nodiscard]] FilmTables film_tables(const Film& film, const Table& newtons);
+
 /// Lines without resistance; `taxels`: conductances [driven, sensed] [S].
-[[nodiscard]] TerminalNetwork lumped_network(const Table& taxels);
+[[nodiscard]] TerminalNetwork lumped_network(const Table& taxels, const FilmTables& film);
 
 /// Lines with a resistance from one taxel to the next [ohm], one value a line, >= 0; an empty list: none at all. The
 /// terminal of a driven line is at the taxel of sensed line 0. That of a sensed line is at the taxel of driven line 0.
 [[nodiscard]] TerminalNetwork resistive_network(const Table& taxels, std::span<const double> driven_segment_ohm,
-                                                std::span<const double> sensed_segment_ohm);
+                                                std::span<const double> sensed_segment_ohm, const FilmTables& film);
 
 /// The electronics at the terminals. The cases share the resistors and differ in the sources.
 struct Electronics {

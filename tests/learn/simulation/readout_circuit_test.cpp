@@ -649,7 +649,7 @@ class TemporaryFolder {
 /// to driver and the load from line to line. A line that floats ends in 1e15 ohm.
 class SpiceNetlist {
  public:
-  SpiceNetlist(const ArrayDescription& array, const std::vector<double>& siemens)
+  SpiceNetlist(const ArrayDescription& array, const std::vector<double>& siemens, const std::vector<double>& newtons)
       : array_(array), readout_(array.readout) {
     text_ << std::setprecision(17) << "resistive array\n.options reltol=1e-12 vntol=1e-15 abstol=1e-18\n";
     if (readout_.circuit == Circuit::transimpedance) text_ << "vsupply supply 0 " << *readout_.supply_v << "\n";
@@ -662,6 +662,7 @@ class SpiceNetlist {
         if (i > 0 && column_segment_ohm(j) > 0.0) {
           resistor("rv", i, j, col_node(i - 1, j), col_node(i, j), column_segment_ohm(j));
         }
+        if (!newtons.empty()) add_film(i, j, newtons);
       }
     }
     for (std::size_t line = 0; line < array.driven_lines(); ++line) add_driver(line);
@@ -703,6 +704,19 @@ class SpiceNetlist {
   void resistor(const char* kind, std::size_t i, std::size_t j, const std::string& a, const std::string& b,
                 double ohm) {
     text_ << kind << i << "_" << j << " " << a << " " << b << " " << ohm << "\n";
+  }
+
+  /// Its own reading of the law: from the taxel to those before it.
+  void add_film(std::size_t i, std::size_t j, const std::vector<double>& newtons) {
+    const auto ohm = [&](std::size_t a, std::size_t b) {
+      const Film& film = *readout_.film;
+      const double load = std::min((newtons[a] + newtons[b]) / 2.0, film.loaded_newtons) / film.loaded_newtons;
+      const double change = 1.0 / film.loaded_ohm - 1.0 / film.unloaded_ohm;
+      return 1.0 / (1.0 / film.unloaded_ohm + change * std::pow(load, 0.9));
+    };
+    const std::size_t own = array_.index(i, j);
+    if (i > 0) resistor("rx", i, j, row_node(i - 1, j), row_node(i, j), ohm(own - array_.cols, own));
+    if (j > 0) resistor("ry", i, j, col_node(i, j - 1), col_node(i, j), ohm(own - 1, own));
   }
 
   void add_driver(std::size_t line) {
@@ -792,11 +806,12 @@ class SpiceNetlist {
 };
 
 /// The readings [rows, cols] as ngspice computes them.
-std::vector<double> simulate_with_ngspice(const ArrayDescription& array, const std::vector<double>& siemens) {
+std::vector<double> simulate_with_ngspice(const ArrayDescription& array, const std::vector<double>& siemens,
+                                          const std::vector<double>& newtons = {}) {
   const TemporaryFolder folder;
   const auto circuit = folder.path() / "array.cir";
   const auto output = folder.path() / "array.out";
-  std::ofstream(circuit) << SpiceNetlist(array, siemens).text();
+  std::ofstream(circuit) << SpiceNetlist(array, siemens, newtons).text();
   const std::string command = "ngspice -b '" + circuit.string() + "' > '" + output.string() + "' 2> /dev/null";
   EXPECT_EQ(std::system(command.c_str()), 0);
   std::vector<double> scans;
@@ -829,6 +844,64 @@ TEST_P(AgainstNgspice, agrees_within_one_part_in_a_billion) {
   const auto ratio = ratios(array, siemens);
   ASSERT_EQ(expected.size(), ratio.size());
   for (std::size_t i = 0; i < ratio.size(); ++i) EXPECT_NEAR(ratio[i] / expected[i], 1.0, 1e-9) << "reading " << i;
+}
+
+/// Forces of up to 60 N on a third of the taxels, below which no film conducts more.
+TEST(Film, agrees_with_ngspice_in_every_circuit) {
+  if (std::system("command -v ngspice > /dev/null") != 0) GTEST_SKIP() << "ngspice is not on the PATH";
+  constexpr std::uint64_t kSeed = 23;
+  SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+  Random random(kSeed);
+  for (const CircuitKind& kind : kCircuitKinds) {
+    for (const bool has_segments : {false, true}) {
+      SCOPED_TRACE(testing::Message() << kind.name << (has_segments ? ", resistive lines" : ""));
+      ArrayDescription array = random_array(kind, 7, 9, random);
+      if (has_segments) add_segments(array, random);
+      array.readout.film = Film{50e3, 2e3, 20.0};
+      const auto siemens = random_siemens(array.taxel_count(), random);
+      std::vector<double> newtons(siemens.size());
+      for (double& force : newtons) force = random.below(3) == 0 ? random.uniform(0.0, 60.0) : 0.0;
+      const auto expected = simulate_with_ngspice(array, siemens, newtons);
+      std::vector<double> ratio(siemens.size());
+      ReadoutCircuit::create(array)->ratios(siemens, newtons, ratio);
+      ASSERT_EQ(expected.size(), ratio.size());
+      for (std::size_t i = 0; i < ratio.size(); ++i) EXPECT_NEAR(ratio[i] / expected[i], 1.0, 1e-9) << "reading " << i;
+    }
+  }
+}
+
+TEST(Film, is_unloaded_without_forces) {
+  Random random(24);
+  for (const CircuitKind& kind : kCircuitKinds) {
+    SCOPED_TRACE(testing::Message() << kind.name << ", seed 24");
+    ArrayDescription array = random_array(kind, 4, 5, random);
+    const auto siemens = random_siemens(array.taxel_count(), random);
+    const auto without = ratios(array, siemens);
+    array.readout.film = Film{5e3, 1e3, 20.0};
+    const auto unloaded = ratios(array, siemens);
+    array.readout.film = Film{5e3, 5e3, 20.0};
+    std::vector<double> constant(siemens.size());
+    ReadoutCircuit::create(array)->ratios(siemens, std::vector<double>(siemens.size(), 10.0), constant);
+    EXPECT_EQ(unloaded, constant);
+    EXPECT_NE(unloaded, without);
+  }
+}
+
+TEST(Film, stays_beside_faults_of_lines) {
+  Random random(25);
+  for (const CircuitKind& kind : kCircuitKinds) {
+    if (kind.has_real_amplifiers) continue;
+    SCOPED_TRACE(testing::Message() << kind.name << ", seed 25");
+    ArrayDescription array = random_array(kind, 4, 5, random);
+    array.readout.film = Film{5e3, 1e3, 20.0};
+    const auto siemens = random_siemens(array.taxel_count(), random);
+    const auto newtons = random_list(siemens.size(), 0.0, 30.0, random);
+    std::vector<double> healthy(siemens.size());
+    std::vector<double> faulty(siemens.size());
+    ReadoutCircuit::create(array)->ratios(siemens, newtons, healthy);
+    FaultyCircuit::create(array, {}).value().ratios(siemens, newtons, 0, faulty);
+    for (std::size_t i = 0; i < healthy.size(); ++i) EXPECT_NEAR(faulty[i] / healthy[i], 1.0, 1e-9) << "reading " << i;
+  }
 }
 
 /// While a line is driven, its source stands behind the supply's own resistance; sensed lines have switches of their

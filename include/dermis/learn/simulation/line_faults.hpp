@@ -61,6 +61,11 @@ class FaultyCircuit {
   /// Stuck taxels still have the reading of the circuit here: see stick().
   void ratios(std::span<const double> siemens, std::size_t frame, std::span<double> ratio) const;
 
+  /// The same where the taxels are under these forces [rows, cols], which Readout::film follows. Without them the film
+  /// is unloaded.
+  void ratios(std::span<const double> siemens, std::span<const double> newtons, std::size_t frame,
+              std::span<double> ratio) const;
+
   /// Overwrites the counts of the stuck taxels, after the ADC.
   void stick(std::span<float> counts) const;
 

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "dermis/touch/frames/array_description.hpp"
 #include "dermis/touch/frames/result.hpp"
@@ -32,6 +33,10 @@ class ReadoutCircuit {
   /// supply while both lines of the taxel in row i and column j are selected.
   void ratios(std::span<const double> siemens, std::span<double> ratio) const;
 
+  /// The same where the taxels are under these forces [rows, cols], which Readout::film follows. Without them the film
+  /// is unloaded.
+  void ratios(std::span<const double> siemens, std::span<const double> newtons, std::span<double> ratio) const;
+
   /// The same in single precision: a relative error of about 1e-6. Faster for a divider with grounded idle rows of up
   /// to 64x64 taxels (docs/circuits.md has the times).
   void ratios(std::span<const float> siemens, std::span<float> ratio) const;
@@ -42,7 +47,8 @@ class ReadoutCircuit {
   Readout readout_;
   std::size_t rows_;
   std::size_t cols_;
-  bool is_grounded_divider_;  // that grounded_divider_ratios() takes
+  std::vector<double> unloaded_n_;  // of arrays with a film [taxels]
+  bool is_grounded_divider_;        // that grounded_divider_ratios() takes
 };
 
 }  // namespace dermis::learn::simulation

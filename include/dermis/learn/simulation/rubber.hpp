@@ -99,6 +99,9 @@ class ConductiveRubber {
   /// above the conductance of contact_ohm, which no force reaches.
   [[nodiscard]] double force_from_conductance(std::size_t taxel, double siemens, double temperature_celsius) const;
 
+  /// The forces on the taxels now, after mechanical_spread [rows, cols].
+  [[nodiscard]] const std::vector<double>& load_n() const noexcept { return load_n_; }
+
   [[nodiscard]] std::size_t taxel_count() const noexcept { return taxels_.size(); }
 
  private:

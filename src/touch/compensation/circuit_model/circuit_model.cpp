@@ -96,6 +96,10 @@ void CircuitModel::set_resistors(std::span<const double> drive_ohm, std::span<co
   if (lines.held() != held) implementation_->network = LineNetwork(lines);
 }
 
+void CircuitModel::set_film(const FilmConductances& film) noexcept {
+  implementation_->lines.set_film(film);
+}
+
 std::span<const double> CircuitModel::ratio() const noexcept {
   return implementation_->ratio;
 }

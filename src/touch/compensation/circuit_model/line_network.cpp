@@ -73,11 +73,31 @@ Edges connect(const ScannedLines& lines, const LineNodes& nodes) {
   return edges;
 }
 
-std::vector<double> segment_conductances(const ScannedLines& lines, const LineNodes& nodes) {
+/// Between two lines of single nodes one edge, else one a taxel.
+std::vector<std::size_t> connect_film(const ScannedLines& lines, const LineNodes& nodes, Edges& edges) {
+  std::vector<std::size_t> counts;
+  const auto connect_lines = [&](std::size_t line, std::size_t next) {
+    counts.push_back(std::max(nodes[line].size(), nodes[next].size()));
+    for (std::size_t position = 0; position < counts.back(); ++position) {
+      edges.emplace_back(node_at(nodes, line, position), node_at(nodes, next, position));
+    }
+  };
+  if (!lines.has_film()) return counts;
+  for (std::size_t row = 0; row + 1 < lines.array().rows; ++row) {
+    connect_lines(lines.row_line(row), lines.row_line(row + 1));
+  }
+  for (std::size_t col = 0; col + 1 < lines.array().cols; ++col) {
+    connect_lines(lines.column_line(col), lines.column_line(col + 1));
+  }
+  return counts;
+}
+
+std::vector<double> segment_conductances(const ScannedLines& lines, const LineNodes& nodes, std::size_t edges) {
   std::vector<double> siemens(lines.taxels(), 0.0);
   for (std::size_t line = 0; line < lines.count(); ++line) {
     siemens.insert(siemens.end(), nodes[line].size() - 1, 1.0 / lines.segment_ohm(line));
   }
+  siemens.resize(edges);
   return siemens;
 }
 
@@ -112,7 +132,8 @@ LineNetwork::LineNetwork(const ScannedLines& lines) : LineNetwork(lines, number_
 LineNetwork::LineNetwork(const ScannedLines& lines, const LineNodes& nodes)
     : head_(heads(nodes)),
       edges_(connect(lines, nodes)),
-      edge_siemens_(segment_conductances(lines, nodes)),
+      film_counts_(connect_film(lines, nodes, edges_)),
+      edge_siemens_(segment_conductances(lines, nodes, edges_.size())),
       head_edges_(edges_at_held_heads(lines, nodes, edges_)),
       nodes_(count_nodes(nodes)),
       ground_siemens_(nodes_ - count_held(lines), 0.0),
@@ -120,11 +141,22 @@ LineNetwork::LineNetwork(const ScannedLines& lines, const LineNodes& nodes)
 
 void LineNetwork::eliminate(const ScannedLines& lines, std::span<const double> siemens) noexcept {
   std::copy(siemens.begin(), siemens.end(), edge_siemens_.begin());
+  if (!film_counts_.empty()) copy_film(lines.film());
   std::fill(ground_siemens_.begin(), ground_siemens_.end(), 0.0);
   for (std::size_t line = 0; line < lines.count(); ++line) {
     if (lines.is_tied(line) && !lines.is_held(line)) ground_siemens_[head_[line]] = 1.0 / lines.rho(line);
   }
   network_.eliminate(edge_siemens_, ground_siemens_);
+}
+
+void LineNetwork::copy_film(const FilmConductances& film) noexcept {
+  double* siemens = edge_siemens_.data() + edge_siemens_.size();
+  for (std::size_t pair = film_counts_.size(); pair-- > 0;) {
+    const std::size_t rows = film.between_rows.size();
+    const double together = pair < rows ? film.between_rows[pair] : film.between_cols[pair - rows];
+    siemens -= film_counts_[pair];
+    std::fill_n(siemens, film_counts_[pair], together / static_cast<double>(film_counts_[pair]));
+  }
 }
 
 }  // namespace dermis::touch::compensation

@@ -68,7 +68,7 @@ void LineResponses::find_drops() noexcept {
   }
 }
 
-// Nothing flows into a line without a taxel: it stands at 1 V.
+// Nothing flows into a line without a taxel: it stands at 1 V, with those that a film connects to it.
 double LineResponses::drive_floating_line(std::size_t line) noexcept {
   auto drops = drop_.row(at(line));
   if (!network_.is_isolated(line)) {
@@ -77,7 +77,7 @@ double LineResponses::drive_floating_line(std::size_t line) noexcept {
     return admittance;
   }
   for (std::size_t taxel = 0; taxel < lines_.taxels(); ++taxel) {
-    const bool own = floating_line(lines_, taxel) == line;
+    const bool own = network_.is_joined(network_.head(floating_line(lines_, taxel)), network_.head(line));
     drops(at(taxel)) = own ? (lines_.is_row(line) ? 1.0 : -1.0) : 0.0;
   }
   return 0.0;
@@ -86,7 +86,8 @@ double LineResponses::drive_floating_line(std::size_t line) noexcept {
 void LineResponses::clear_isolated_lines(std::size_t line, Matrix::RowXpr drops) const noexcept {
   for (std::size_t taxel = 0; taxel < lines_.taxels(); ++taxel) {
     const std::size_t other = floating_line(lines_, taxel);
-    if (other != line && network_.is_isolated(other)) drops(at(taxel)) = 0.0;
+    if (!network_.is_isolated(other)) continue;
+    if (!network_.is_joined(network_.head(other), network_.head(line))) drops(at(taxel)) = 0.0;
   }
 }
 

@@ -11,6 +11,7 @@ namespace dermis::touch::compensation {
 
 ScannedLines::ScannedLines(const ArrayDescription& array)
     : array_(array),
+      film_(array.rows, array.cols),
       columns_are_driven_(array.readout.circuit == Circuit::flexitac),
       driven_are_tied_(columns_are_driven_ || array.readout.idle_rows == IdleRows::grounded),
       sensed_are_tied_(!columns_are_driven_ && array.readout.idle_columns == IdleColumns::loaded),
@@ -20,6 +21,7 @@ ScannedLines::ScannedLines(const ArrayDescription& array)
       rho_(array.driven_lines() + array.sensed_lines()),
       sensed_head_(array.sensed_lines()) {
   read_resistors();
+  if (has_film()) film_.set(*array.readout.film, std::vector<double>(array.taxel_count()));
 }
 
 void ScannedLines::set_resistors(std::span<const double> drive_ohm, std::span<const double> load_ohm) {

@@ -21,6 +21,11 @@ class ScannedLines {
   /// Replaces the resistances of the drivers and loads [ohm].
   void set_resistors(std::span<const double> drive_ohm, std::span<const double> load_ohm);
 
+  /// Of an array with a film: what it conducts, at first where it is unloaded. Allocates nothing.
+  void set_film(const FilmConductances& film) noexcept { film_ = film; }
+  [[nodiscard]] const FilmConductances& film() const noexcept { return film_; }
+  [[nodiscard]] bool has_film() const noexcept { return array_.readout.film.has_value(); }
+
   [[nodiscard]] const ArrayDescription& array() const noexcept { return array_; }
   [[nodiscard]] std::size_t taxels() const noexcept { return array_.taxel_count(); }
   [[nodiscard]] std::size_t driven() const noexcept { return driven_; }
@@ -71,6 +76,7 @@ class ScannedLines {
   void read_resistors();
 
   ArrayDescription array_;
+  FilmConductances film_;
   bool columns_are_driven_;
   bool driven_are_tied_;
   bool sensed_are_tied_;
