@@ -67,7 +67,7 @@ void expand_loads(const ArrayDescription& array, std::span<const Load> loads, Sa
 }
 
 std::vector<float> film_newtons(std::vector<float> newtons, const std::vector<TotalForce>& totals) {
-  for (const auto& [taxels, total] : totals) {
+  for (const auto& [taxels, total, material_share] : totals) {
     for (const std::size_t taxel : taxels)
       newtons[taxel] = static_cast<float>(total / static_cast<double>(taxels.size()));
   }
