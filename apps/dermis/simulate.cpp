@@ -16,6 +16,7 @@
 #include "dermis/bytes/files/npy.hpp"
 #include "dermis/bytes/files/origin_toml.hpp"
 #include "dermis/learn/simulation/simulator.hpp"
+#include "dermis/touch/frames/millimetres.hpp"
 #include "interruption.hpp"
 #include "status_line.hpp"
 
@@ -37,6 +38,7 @@ struct SimulateOptions {
   std::string memory;
   std::optional<double> creep_per_decade;
   std::optional<double> touch_gain;
+  std::optional<double> cover_mm;
 };
 
 Status set_memory(const SimulateOptions& options, learn::simulation::RubberOptions& rubber) {
@@ -115,8 +117,19 @@ struct Truth {
   }
 };
 
+Result<ArrayDescription> read_covered(const SimulateOptions& options) {
+  Result<ArrayDescription> array = bytes::files::read_array(options.array);
+  if (!array) return array.error();
+  if (options.cover_mm) array->cover = Cover{*options.cover_mm / kMillimetresPerMetre, {}};
+  if (array->cover && array->cover->is_unknown()) {
+    return bad_input(options.array + ": a cover that is to be fitted cannot be simulated; give --cover MM");
+  }
+  if (Status valid = array->validate(); !valid) return valid.error();
+  return array;
+}
+
 Status simulate(const SimulateOptions& options) {
-  const Result<ArrayDescription> array = bytes::files::read_array(options.array);
+  const Result<ArrayDescription> array = read_covered(options);
   if (!array) return array.error();
   if (array->has_unknown_circuit()) {
     return bad_input(options.array +
@@ -174,6 +187,8 @@ void add_simulate(Command& command) {
   command.option("--creep-per-decade", options->creep_per_decade,
                  "rubber: growth of a held reading in ten times the time, 0.02 to 0.30");
   command.option("--touch-gain", options->touch_gain, "rubber: standard deviation from touch to touch, 0 to 0.3");
+  command.option("--cover", options->cover_mm,
+                 "A cover spreads forces by a Gaussian of so many mm; loads.csv has what stands on it");
   command.input("--physics", options->physics, "physics.toml: material and surroundings (docs/simulation.md)");
   command.action([options]() -> Status {
     end_when_interrupted();
