@@ -116,6 +116,9 @@ Status run(const RunOptions& options) {
   Result<std::unique_ptr<Operation>> operation =
       live::forces::open_operation(options.model, options.in, source_options());
   if (!operation) return operation.error();
+  if (options.tables.surface && !(*operation)->model.array.cover) {
+    return bad_input("--surface: the model knows of no cover: its taxels feel what stands on them");
+  }
   Result<ForceTables> tables = ForceTables::create(options.tables, (*operation)->model);
   if (!tables) return tables.error();
 
@@ -164,6 +167,9 @@ void add_run(Command& command) {
                  "totals.csv to write: the force on the whole array and its standard deviation [N]");
   command.output("--contacts", options->tables.contacts,
                  "contacts.csv to write: what touches the array, where and how hard");
+  command.flag("--surface", options->tables.surface,
+               "Forces and sigmas are those on the cover that spreads them (array.cover_spread_mm), not those of the "
+               "taxels; totals and contacts stay");
   command.option("--settle", options->settle_s, "Skip the first seconds, while the array warms up [s]").shows_default();
   command.flag(
       "--tare", options->tare,

@@ -16,6 +16,7 @@
 #include "dermis/bytes/files/npy.hpp"
 #include "dermis/bytes/files/origin_toml.hpp"
 #include "dermis/learn/simulation/simulator.hpp"
+#include "dermis/touch/frames/millimetres.hpp"
 #include "interruption.hpp"
 #include "status_line.hpp"
 
@@ -38,6 +39,7 @@ struct SimulateOptions {
   std::optional<double> creep_per_decade;
   std::optional<double> touch_gain;
   std::vector<double> film;  ///< As --film; empty: the array's.
+  std::optional<double> cover_mm;
 };
 
 Status set_film(const std::vector<double>& values, ArrayDescription& array) {
@@ -126,8 +128,19 @@ struct Truth {
   }
 };
 
-Status simulate(const SimulateOptions& options) {
+Result<ArrayDescription> read_covered(const SimulateOptions& options) {
   Result<ArrayDescription> array = bytes::files::read_array(options.array);
+  if (!array) return array.error();
+  if (options.cover_mm) array->cover = Cover{*options.cover_mm / kMillimetresPerMetre, {}};
+  if (array->cover && array->cover->is_unknown()) {
+    return bad_input(options.array + ": a cover that is to be fitted cannot be simulated; give --cover MM");
+  }
+  if (Status valid = array->validate(); !valid) return valid.error();
+  return array;
+}
+
+Status simulate(const SimulateOptions& options) {
+  Result<ArrayDescription> array = read_covered(options);
   if (!array) return array.error();
   if (Status set = set_film(options.film, *array); !set) return set;
   if (array->has_unknown_circuit()) {
@@ -190,6 +203,8 @@ void add_simulate(Command& command) {
       .option("--film", options->film,
               "Sheet that conducts sideways: OHM between neighbours, or UNLOADED,LOADED,NEWTONS; in place of film_ohm")
       .takes_list(3);
+  command.option("--cover", options->cover_mm,
+                 "A cover spreads forces by a Gaussian of so many mm; loads.csv has what stands on it");
   command.input("--physics", options->physics, "physics.toml: material and surroundings (docs/simulation.md)");
   command.action([options]() -> Status {
     end_when_interrupted();

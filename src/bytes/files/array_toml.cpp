@@ -10,6 +10,7 @@
 #include <cmath>
 #include <vector>
 
+#include "bytes/files/cover_toml.hpp"
 #include "dermis/bytes/files/atomic_file.hpp"
 #include "dermis/bytes/files/config_table.hpp"
 #include "dermis/bytes/files/taxel_text.hpp"
@@ -272,6 +273,7 @@ Result<ArrayDescription> read_array(ConfigFile& file) {
   ArrayDescription array;
   read_geometry(file, array);
   read_absent(file, array);
+  read_cover(file, array.cover);
   read_temperatures(file, array);
   read_order(file, array.order);
   read_taxel_order(file, array, array.order);
@@ -384,6 +386,7 @@ std::string array_to_toml(const ArrayDescription& array) {
     text += fmt::format("taxel_area_mm2 = {:.15g}\n", *array.taxel_area_m2 * kSquareMillimetresPerSquareMetre);
   }
   if (!array.absent.empty()) text += fmt::format("absent = [{}]\n", fmt::join(absent_names(array), ", "));
+  text += cover_toml(array.cover);
   text += temperatures_toml(array);
   text += order_toml(array.order);
   text += "\n[readout]\n" + circuit_toml(readout);

@@ -86,6 +86,7 @@ Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std:
   if (Status checked = preparation.check_labels(); !checked) return checked.error();
   preparation.find_rail();
   preparation.find_settling();
+  preparation.find_cover();
   if (Status found = preparation.find_circuit(); !found) return found.error();
   preparation.judge_instrument();
   preparation.doubt_circuit();

@@ -18,6 +18,7 @@
 #include "learn/calibration/labels/reading_check.hpp"
 #include "learn/calibration/samples/inverted_frames.hpp"
 #include "learn/calibration/samples/sample_choice.hpp"
+#include "learn/calibration/sheet/felt_loads.hpp"
 
 namespace dermis::learn::calibration {
 namespace {
@@ -100,12 +101,30 @@ void Preparation::find_settling() {
   known_ = without_unknown_instrument(std::move(settling.array));
 }
 
+void Preparation::take_cover(const std::optional<Cover>& cover) {
+  known_.cover = cover;
+  felt_ = cover ? well_felt_loads(known_, surface_) : std::vector<Load>{};
+  loads_ = cover ? std::span<const Load>(felt_) : surface_;
+  chosen_ = loads_of_samples(described_.taxel_count(), loads_, frames_.size());
+}
+
+void Preparation::find_cover() {
+  surface_ = loads_;
+  if (known_.cover && !known_.cover->is_unknown()) return take_cover(known_.cover);
+  cover_ = fit_cover(known_, frames_, surface_, settle_time_);
+  take_cover(cover_.cover);
+}
+
 Status Preparation::find_circuit() {
   if (!known_.has_unknown_circuit() && !has_floating_lines(described_.readout)) return Done{};
   Result<CircuitFit> fit = fit_circuit(known_, frames_, loads_, settle_time_);
   if (!fit) return fit.error();
   known_ = fit->array;
   if (!fit->statements.empty()) circuit_ = *std::move(fit);
+  if (cover_.is_guessed) {
+    cover_ = fit_cover(known_, frames_, surface_, settle_time_);
+    take_cover(cover_.cover);
+  }
   return Done{};
 }
 
@@ -141,6 +160,7 @@ Result<SampleDatabase> Preparation::invert(const std::function<void(double)>& pr
   database->lacks_proof = instrument_.lacks_proof;
   database->unexplained_share = instrument_.unexplained;
   database->circuit_fit = std::move(circuit_);
+  if (!cover_.sentence.empty()) remarks_.push_back(cover_.sentence);
   std::move(remarks_.begin(), remarks_.end(), std::back_inserter(database->remarks));
   return database;
 }

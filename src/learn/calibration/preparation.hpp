@@ -11,6 +11,7 @@
 #include "dermis/learn/calibration/sample_database.hpp"
 #include "learn/calibration/instrument/instrument_judgement.hpp"
 #include "learn/calibration/instrument/proof.hpp"
+#include "learn/calibration/sheet/cover_fit.hpp"
 
 namespace dermis::learn::calibration {
 
@@ -27,6 +28,8 @@ class Preparation {
   void find_rail();
   /// The readings that still hold some of the one before.
   void find_settling();
+  /// A cover that spreads presses, as described or as presses tell. Loads on it become what the taxels feel.
+  void find_cover();
   /// Unknown resistances, or an unknown circuit.
   [[nodiscard]] Status find_circuit();
   /// ADC and supply, and what remains unexplained of them.
@@ -38,16 +41,20 @@ class Preparation {
 
  private:
   [[nodiscard]] Trainable trainable() const;
+  void take_cover(const std::optional<Cover>& cover);
 
   const ArrayDescription& described_;
   const std::span<const RawFrame> frames_;
   std::span<const Load> loads_;
+  std::span<const Load> surface_;  // where they are felt through a cover: what stands on it
   const Nanos settle_time_;
   ArrayDescription known_;
   std::vector<Load> kept_;    // whose labels are right
+  std::vector<Load> felt_;    // through the cover
   std::vector<Load> chosen_;  // of the frames that become samples
   std::vector<std::string> remarks_;
   bool asks_for_instrument_ = false;
+  CoverFit cover_;
   std::optional<CircuitFit> circuit_;
   InstrumentFit instrument_;
 };

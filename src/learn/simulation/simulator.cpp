@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "dermis/bytes/files/config_table.hpp"
+#include "learn/simulation/cover_spread.hpp"
 
 namespace dermis::learn::simulation {
 namespace {
@@ -97,6 +98,7 @@ Simulator::Simulator(ArrayDescription array, Scene scene, ConductiveRubber rubbe
       faulty_(std::move(faulty)),
       capacitor_(array_),
       adc_(array_.readout, environment.adc_noise_lsb),
+      cover_(std::make_unique<const CoverSpread>(array_)),
       environment_(environment),
       instruments_(Random::stream(seed, kInstrumentStream)),
       unloaded_n_(rubber_.taxel_count()),
@@ -122,6 +124,8 @@ Result<std::unique_ptr<Simulator>> Simulator::create(const ArrayDescription& arr
   return std::unique_ptr<Simulator>(new Simulator(array, *std::move(script), *std::move(rubber), *std::move(circuit),
                                                   std::move(faulty), options.environment, seed));
 }
+
+Simulator::~Simulator() = default;
 
 /// True temperature at a place of the sheet.
 double Simulator::celsius_at(const TemperatureSensor& place) const {
@@ -162,7 +166,7 @@ Result<bool> Simulator::next(RawFrame& frame) {
   scene_.frame(index, truth_);
   for (const std::size_t taxel : array_.absent) truth_.force_n[taxel] = 0.0;
   if (truth_.rest_s > 0.0) rubber_.press(unloaded_n_, truth_.rest_s);
-  rubber_.press(truth_.force_n, truth_.hold_s);
+  rubber_.press(cover_->felt(truth_.force_n), truth_.hold_s);
   time_s_ += truth_.rest_s + truth_.hold_s;
   rubber_.read(taxel_celsius(), siemens_);
   for (const std::size_t taxel : array_.absent) siemens_[taxel] = 0.0;

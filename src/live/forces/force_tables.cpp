@@ -22,6 +22,7 @@ Status create_table(std::optional<bytes::files::ForcesCsvWriter>& table, const s
 Result<ForceTables> ForceTables::create(const ForceTablePaths& paths, const touch::pipeline::Model& model) {
   const ArrayDescription& array = model.array;
   ForceTables tables;
+  if (paths.surface && array.cover) tables.surface_.emplace(array);
   const Status forces = create_table(tables.forces_, paths.forces, array, bytes::files::ForceColumn::newtons);
   if (!forces) return forces.error();
   const Status sigmas = create_table(tables.sigmas_, paths.sigmas, array, bytes::files::ForceColumn::sigma_newtons);
@@ -39,21 +40,21 @@ Result<ForceTables> ForceTables::create(const ForceTablePaths& paths, const touc
 }
 
 Status ForceTables::write(const ForceFrame& force) {
-  return for_each([&](auto& table) { return table.write(force); });
+  Status status = Done{};
+  const ForceFrame& shown = surface_ ? surface_->process(force) : force;
+  if (forces_) status = forces_->write(shown);
+  if (status && sigmas_) status = sigmas_->write(shown);
+  if (status && totals_) status = totals_->write(force);
+  if (status && contacts_) status = contacts_->write(force);
+  return status;
 }
 
 Status ForceTables::commit() {
-  return for_each([](auto& table) { return table.commit(); });
-}
-
-/// Until one fails.
-template <typename Work>
-Status ForceTables::for_each(Work work) {
   Status status = Done{};
-  if (forces_) status = work(*forces_);
-  if (status && sigmas_) status = work(*sigmas_);
-  if (status && totals_) status = work(*totals_);
-  if (status && contacts_) status = work(*contacts_);
+  if (forces_) status = forces_->commit();
+  if (status && sigmas_) status = sigmas_->commit();
+  if (status && totals_) status = totals_->commit();
+  if (status && contacts_) status = contacts_->commit();
   return status;
 }
 

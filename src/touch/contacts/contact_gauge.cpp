@@ -18,7 +18,9 @@ constexpr double kFading = 10.0;  // taxels, below the most that are fitted: fro
 /// Null where all taxels are at an edge.
 std::shared_ptr<const SmallContactTable> small_contacts(const TaxelPlane& plane) {
   if (plane.rows == 1 || plane.cols == 1) return nullptr;
-  return SmallContactTable::of({plane.col_pitch_m / plane.taxel_radius_m, plane.row_pitch_m / plane.taxel_radius_m});
+  return SmallContactTable::of(
+      {plane.col_pitch_m / plane.taxel_radius_m, plane.row_pitch_m / plane.taxel_radius_m, plane.cover_spread},
+      *plane.responses);
 }
 
 }  // namespace

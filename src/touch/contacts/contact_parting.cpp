@@ -68,7 +68,8 @@ bool ContactParting::stands_out(const ForceFrame& force, std::uint32_t taxel, co
   if (plane_.taxel_radius_m * distance <
       evidence.share * kLeastPitchesApart * std::min(plane_.row_pitch_m, plane_.col_pitch_m))
     return false;
-  const PatchResponse::Row response = PatchResponse::of(measured.patch->profile).row(measured.patch->patch.log_radius);
+  const PatchResponse::Row response =
+      plane_.responses->of(measured.patch->profile).row(measured.patch->patch.log_radius);
   const float expected = measured.patch->patch.newtons * response.share(static_cast<float>(distance));
   return newtons - expected >=
          evidence.share * std::max<double>(kLeastShareOfOther * newtons, evidence.onset_sigma * sigma);

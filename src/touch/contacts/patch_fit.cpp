@@ -35,9 +35,9 @@ bool is_small(const std::array<double, 3>& step) {
 
 }  // namespace
 
-PatchFit fit_patch(std::span<const FitTaxel> taxels, PatchProfile profile, const Patch& start,
-                   const PatchPrior& prior) noexcept {
-  const PatchResponse& response = PatchResponse::of(profile);
+PatchFit fit_patch(std::span<const FitTaxel> taxels, const PatchResponses& responses, PatchProfile profile,
+                   const Patch& start, const PatchPrior& prior) noexcept {
+  const PatchResponse& response = responses.of(profile);
   Patch patch = start;
   NormalEquations normal = normal_equations(taxels, response, patch, prior);
   double damping = kDamping;

@@ -101,11 +101,11 @@ class RadiusSum {
 
 }  // namespace
 
-PatchFit mean_over_radii(std::span<const FitTaxel> taxels, const PatchFit& most_likely,
+PatchFit mean_over_radii(std::span<const FitTaxel> taxels, const PatchResponses& responses, const PatchFit& most_likely,
                          const PatchPrior& prior) noexcept {
   static const float kLow = std::log(PatchResponse::kLeastRadius);
   static const float kHigh = std::log(PatchResponse::kMostRadius);
-  const PatchResponse& response = PatchResponse::of(most_likely.profile);
+  const PatchResponse& response = responses.of(most_likely.profile);
   const NormalEquations middle = normal_equations(taxels, response, most_likely.patch, prior);
   const double variance = most_likely.misfit * Factor(middle.matrix, 0.0).solve({0.0, 0.0, 1.0})[2];
   const double step = std::clamp(kRadiusStep * std::sqrt(std::max(variance, 0.0)), kLeastRadiusStep, kMostRadiusStep);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace dermis::touch::contacts {
@@ -17,13 +18,14 @@ enum class PatchProfile { hertz, flat };
 
 /// Share of a round patch's force that lies on a round taxel, with its slopes. It is a function of the distance between
 /// their centres and of the logarithm of the patch's radius. Lengths are in radii of the taxel. A table, bilinear
-/// between its knots; one for each profile, computed once in a process.
+/// between its knots.
 class PatchResponse {
  public:
   static constexpr float kLeastRadius = 0.3F;
   static constexpr float kMostRadius = 9.0F;
 
-  static const PatchResponse& of(PatchProfile profile);
+  /// Under a cover that spreads the patch by a Gaussian of this standard deviation.
+  PatchResponse(PatchProfile profile, double spread);
 
   /// Where a distance lies in the table: two pairs of neighbouring knots, each knot per_distance twice, per_log_radius
   /// and share.
@@ -83,11 +85,25 @@ class PatchResponse {
   static constexpr std::size_t kDistances = 127;
   static constexpr std::size_t kRadii = 70;
 
-  explicit PatchResponse(PatchProfile profile);
+  void spread_by(double spread);
   void differentiate();
 
   std::vector<std::array<float, 4>> knots_;  // [kRadii, kDistances]
   std::vector<float> reaches_;               // [kRadii]: of a patch's radius and a taxel's, rounded up to a knot
+};
+
+/// The responses of all profiles under one cover.
+struct PatchResponses {
+  /// `spread`: as PatchResponse has it; 0: no cover. Those without a cover are computed once in a process. Thread-safe.
+  [[nodiscard]] static std::shared_ptr<const PatchResponses> of(double spread);
+
+  explicit PatchResponses(double spread) : hertz(PatchProfile::hertz, spread), flat(PatchProfile::flat, spread) {}
+  [[nodiscard]] const PatchResponse& of(PatchProfile profile) const noexcept {
+    return profile == PatchProfile::hertz ? hertz : flat;
+  }
+
+  PatchResponse hertz;
+  PatchResponse flat;
 };
 
 }  // namespace dermis::touch::contacts

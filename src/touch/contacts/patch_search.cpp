@@ -23,8 +23,8 @@ double strength_on_cell(double pitch_m, double taxel_radius_m) {
 }
 
 /// [N^2]
-float square_of_residual(const PatchFit& fit, const FitTaxel& taxel) {
-  const PatchResponse::Row response = PatchResponse::of(fit.profile).row(fit.patch.log_radius);
+float square_of_residual(const PatchResponses& responses, const PatchFit& fit, const FitTaxel& taxel) {
+  const PatchResponse::Row response = responses.of(fit.profile).row(fit.patch.log_radius);
   const float dx = taxel.x - fit.patch.x;
   const float dy = taxel.y - fit.patch.y;
   const float distance = std::sqrt(dx * dx + dy * dy);
@@ -50,7 +50,6 @@ PatchSearch::PatchSearch(const TaxelPlane& plane) : plane_(plane), visited_(plan
     prior_.strength_y = static_cast<float>(strength_on_cell(plane.row_pitch_m, plane.taxel_radius_m));
   }
   taxels_.reserve(9 * kMostTaxels);
-  PatchResponse::of(PatchProfile::hertz);
 }
 
 void PatchSearch::gather(const ForceFrame& force, std::span<const std::uint32_t> taxels, double pressed_sigma) {
@@ -88,17 +87,18 @@ void PatchSearch::add(const ForceFrame& force, std::uint32_t taxel) {
 
 std::optional<FoundPatch> PatchSearch::find(const ExpectedContact& start, double newtons) {
   const PatchProfile second = start.profile == PatchProfile::hertz ? PatchProfile::flat : PatchProfile::hertz;
-  PatchFit one = fit_patch(taxels_, start.profile, start_at(start, newtons), prior_);
-  PatchFit other = fit_patch(taxels_, second, one.patch, prior_);
+  PatchFit one = fit_patch(taxels_, *plane_.responses, start.profile, start_at(start, newtons), prior_);
+  PatchFit other = fit_patch(taxels_, *plane_.responses, second, one.patch, prior_);
   const PatchFit& first = one.chi_squared <= other.chi_squared ? one : other;
   const double misfit = std::max(1.0F, first.misfit / kPlainMisfit);
   if (misfit > 1.0) {
     add_mismatch(first);
-    one = fit_patch(taxels_, start.profile, one.patch, prior_);
-    other = fit_patch(taxels_, second, other.patch, prior_);
+    one = fit_patch(taxels_, *plane_.responses, start.profile, one.patch, prior_);
+    other = fit_patch(taxels_, *plane_.responses, second, other.patch, prior_);
   }
   const PatchFit& better = one.chi_squared <= other.chi_squared ? one : other;
-  const PatchFit mean = is_small_ ? mean_over_radii(taxels_, better, prior_) : mean_of_profiles(one, other);
+  const PatchFit mean =
+      is_small_ ? mean_over_radii(taxels_, *plane_.responses, better, prior_) : mean_of_profiles(one, other);
   const double radius_m = plane_.taxel_radius_m;
   const PlaneVector sigma{radius_m * std::sqrt(mean.variance_x), radius_m * std::sqrt(mean.variance_y)};
   if (!(sigma.x > 0.0 && sigma.x < plane_.col_pitch_m && sigma.y > 0.0 && sigma.y < plane_.row_pitch_m)) return {};
@@ -121,7 +121,7 @@ Patch PatchSearch::start_at(const ExpectedContact& start, double newtons) const 
 /// has a deviation beside its noise. Otherwise the taxels of the least noise, at the rim, would place it alone.
 void PatchSearch::add_mismatch(const PatchFit& fit) {
   float squares = 0.0F;
-  for (const FitTaxel& taxel : taxels_) squares += square_of_residual(fit, taxel);
+  for (const FitTaxel& taxel : taxels_) squares += square_of_residual(*plane_.responses, fit, taxel);
   const float variance = (1.0F - kPlainMisfit / fit.misfit) * squares / static_cast<float>(taxels_.size());
   for (FitTaxel& taxel : taxels_) taxel.weight /= std::sqrt(1.0F + variance * taxel.weight * taxel.weight);
 }
@@ -131,7 +131,7 @@ float PatchSearch::scatter_of_weak_taxels(const PatchFit& patch) const {
   float count = 0.0F;
   for (const FitTaxel& taxel : taxels_) {
     if (!is_weak(taxel.newtons, peak_newtons_)) continue;
-    squares += square_of_residual(patch, taxel);
+    squares += square_of_residual(*plane_.responses, patch, taxel);
     count += 1.0F;
   }
   return std::sqrt(squares / std::max(count, 1.0F));

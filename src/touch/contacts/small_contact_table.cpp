@@ -67,23 +67,25 @@ float root_place(float share, std::size_t knots) {
 
 }  // namespace
 
-std::shared_ptr<const SmallContactTable> SmallContactTable::of(const TaxelSpacing& spacing) {
+std::shared_ptr<const SmallContactTable> SmallContactTable::of(const TaxelSpacing& spacing,
+                                                               const PatchResponses& responses) {
   thread_local std::vector<std::pair<TaxelSpacing, std::weak_ptr<const SmallContactTable>>> known;
   std::erase_if(known, [](const auto& entry) { return entry.second.expired(); });
   for (const auto& [other, table] : known) {
     if (other == spacing) return table.lock();
   }
-  auto table = std::make_shared<const SmallContactTable>(spacing);
+  auto table = std::make_shared<const SmallContactTable>(spacing, responses);
   known.emplace_back(spacing, table);
   return table;
 }
 
-SmallContactTable::SmallContactTable(const TaxelSpacing& spacing) : knots_(kNoises * kKnots) {
-  add_samples(spacing);
+SmallContactTable::SmallContactTable(const TaxelSpacing& spacing, const PatchResponses& responses)
+    : knots_(kNoises * kKnots) {
+  add_samples(spacing, responses);
   normalise();
 }
 
-void SmallContactTable::add_samples(const TaxelSpacing& spacing) {
+void SmallContactTable::add_samples(const TaxelSpacing& spacing, const PatchResponses& responses) {
   const double pitch = std::sqrt(spacing.col_pitch * spacing.row_pitch);
   for (std::size_t r = 0; r < kRadii; ++r) {
     const double radius = 0.25 * pitch * std::pow(8.0, static_cast<double>(r) / (kRadii - 1));
@@ -92,7 +94,7 @@ void SmallContactTable::add_samples(const TaxelSpacing& spacing) {
     sample.log_radius = static_cast<float>(std::log(radius));
     sample.weight = (is_hertz ? kHertzWeight : 1.0F - kHertzWeight) * static_cast<float>(radius);
     const PatchResponse::Row response =
-        PatchResponse::of(is_hertz ? PatchProfile::hertz : PatchProfile::flat).row(sample.log_radius);
+        responses.of(is_hertz ? PatchProfile::hertz : PatchProfile::flat).row(sample.log_radius);
     for (std::size_t i = 0; i < kPlaces; ++i) {
       for (std::size_t k = 0; k < kPlaces; ++k) {
         sample.x = static_cast<float>(kMostAway * spacing.col_pitch * place_between_ends(i));

@@ -12,10 +12,11 @@
 
 namespace dermis::touch::contacts {
 
-/// Distances between taxels, in radii of a taxel.
+/// Distances between taxels, and the spread of a cover, in radii of a taxel.
 struct TaxelSpacing {
   double col_pitch = 2.857;
   double row_pitch = 2.857;
+  double cover_spread = 0.0;
 
   bool operator==(const TaxelSpacing&) const = default;
 };
@@ -46,9 +47,10 @@ struct SmallContactPlace {
 class SmallContactTable {
  public:
   /// Tables are shared by arrays of the same spacing that a thread asks for. Thread-safe.
-  [[nodiscard]] static std::shared_ptr<const SmallContactTable> of(const TaxelSpacing& spacing);
+  [[nodiscard]] static std::shared_ptr<const SmallContactTable> of(const TaxelSpacing& spacing,
+                                                                   const PatchResponses& responses);
 
-  explicit SmallContactTable(const TaxelSpacing& spacing);
+  SmallContactTable(const TaxelSpacing& spacing, const PatchResponses& responses);
 
   /// Empty where no round patch shows anything like it.
   [[nodiscard]] std::optional<SmallContactPlace> find(const SmallContact& contact) const noexcept;
@@ -75,7 +77,7 @@ class SmallContactTable {
   };
   using Knot = std::array<float, kValues>;
 
-  void add_samples(const TaxelSpacing& spacing);
+  void add_samples(const TaxelSpacing& spacing, const PatchResponses& responses);
   /// Fills the shares; false where the first taxel would not be the strongest.
   static bool respond(const TaxelSpacing& spacing, const PatchResponse::Row& response, Sample& sample);
   void add(const Sample& sample);

@@ -17,8 +17,16 @@ double taxel_area(const ArrayDescription& array) {
   return array.taxel_area_m2.value_or(std::numbers::pi / 4.0 * diameter * diameter);
 }
 
+/// The mean of both axes [m]; 0 without a cover, and on a strip.
+double cover_spread_m(const ArrayDescription& array) {
+  if (!array.cover || array.cover->is_unknown() || strip_pitch_m(array)) return 0.0;
+  const CoverKernel kernel(array);
+  return std::sqrt(kernel.row_spread_m() * kernel.col_spread_m());
+}
+
 /// Taxels of a strip may be long across it.
 double taxel_radius(const ArrayDescription& array) {
+  if (cover_spread_m(array) > 0.0) return std::sqrt(array.row_pitch_m * array.col_pitch_m / std::numbers::pi);
   const double radius = std::sqrt(taxel_area(array) / std::numbers::pi);
   const std::optional<double> pitch = strip_pitch_m(array);
   return pitch ? std::min(radius, 0.5 * *pitch) : radius;
@@ -32,7 +40,9 @@ TaxelPlane::TaxelPlane(const ArrayDescription& array)
       row_pitch_m(array.row_pitch_m),
       col_pitch_m(array.col_pitch_m),
       taxel_area_m2(taxel_area(array)),
-      taxel_radius_m(taxel_radius(array)) {
+      taxel_radius_m(taxel_radius(array)),
+      cover_spread(cover_spread_m(array) / taxel_radius_m),
+      responses(PatchResponses::of(cover_spread)) {
   for (std::size_t taxel = 0; taxel < array.taxel_count(); ++taxel) {
     places.push_back({centre(taxel).x / taxel_radius_m, centre(taxel).y / taxel_radius_m});
   }

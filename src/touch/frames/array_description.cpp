@@ -14,7 +14,8 @@ namespace dermis {
 namespace {
 
 constexpr double kMostSupplyNoise = 0.1;
-constexpr int kMaxAdcBits = 24;  // Counts are kept in float, which holds 24 bits exactly.
+constexpr double kMostOfAllShares = 1.001;  // of a cover: they may be rounded
+constexpr int kMaxAdcBits = 24;             // Counts are kept in float, which holds 24 bits exactly.
 
 bool is_positive(double value) {
   return std::isfinite(value) && value > 0.0;
@@ -288,6 +289,28 @@ Status validate_readout(const ArrayDescription& array) {
   return validate_extra_resistors("column_segment_ohm", readout.column_segment_ohm, array.cols);
 }
 
+/// Not known yet, or shares of one force.
+Status validate_cover(const ArrayDescription& array) {
+  constexpr double kMostSpreadM = 1.0;
+  if (!array.cover || array.cover->is_unknown()) return Done{};
+  const Cover& cover = *array.cover;
+  if (cover.shares.empty()) {
+    if (cover.spread_m >= 0.0 && cover.spread_m <= kMostSpreadM) return Done{};
+    return bad_input("array.cover_spread_mm: must be 0 to 1000");
+  }
+  double sum = 0.0;
+  double centre = 0.0;
+  for (const auto& [rows, cols, share] : cover.shares) {
+    if (rows >= kMaxLines || cols >= kMaxLines || !(share >= 0.0)) {
+      return bad_input("array.cover_shares: must be [rows away, columns away, share], the share 0 or more");
+    }
+    sum += share * (rows > 0 ? 2.0 : 1.0) * (cols > 0 ? 2.0 : 1.0);
+    if (rows == 0 && cols == 0) centre = share;
+  }
+  if (centre > 0.0 && sum <= kMostOfAllShares) return Done{};
+  return bad_input("array.cover_shares: must have [0, 0, share], and no more than 1 in all four directions together");
+}
+
 }  // namespace
 
 double Readout::full_scale_counts() const noexcept {
@@ -323,6 +346,7 @@ Status ArrayDescription::validate() const {
   if (cols < 1 || cols > kMaxLines) return bad_input("array.cols: must be 1 to " + std::to_string(kMaxLines));
   if (Status valid = validate_geometry(*this); !valid) return valid;
   if (Status valid = validate_absent(*this); !valid) return valid;
+  if (Status valid = validate_cover(*this); !valid) return valid;
   if (Status valid = validate_temperatures(*this); !valid) return valid;
   if (Status valid = validate_order(*this); !valid) return valid;
   return validate_readout(*this);

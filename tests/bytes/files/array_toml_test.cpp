@@ -427,6 +427,23 @@ TEST(ArrayToml, reads_which_taxels_the_sheet_does_not_have) {
             std::string::npos);
 }
 
+TEST(ArrayToml, reads_and_writes_a_cover) {
+  const auto read_with = [](const std::string& lines) {
+    return array_from_toml(with("[readout]", lines + "\n[readout]"), "array.toml");
+  };
+  const Result<ArrayDescription> spread = read_with("cover_spread_mm = 5");
+  ASSERT_TRUE(spread) << spread.error().message;
+  EXPECT_DOUBLE_EQ(spread->cover->spread_m, 0.005);
+  EXPECT_NE(array_to_toml(*spread).find("cover_spread_mm = 5\n"), std::string::npos);
+  const Result<ArrayDescription> shares = read_with("cover_shares = [[0, 0, 0.6], [0, 1, 0.1], [1, 0, 0.1]]");
+  ASSERT_TRUE(shares) << shares.error().message;
+  EXPECT_EQ(array_from_toml(array_to_toml(*shares), "array.toml")->cover->shares, shares->cover->shares);
+  EXPECT_TRUE(read_with("cover = \"fit\"")->cover->is_unknown());
+  EXPECT_NE(error_of(with("[readout]", "cover = \"foam\"\n[readout]")).find("must be \"fit\""), std::string::npos);
+  EXPECT_NE(error_of(with("[readout]", "cover_spread_mm = -1\n[readout]")).find("must be 0 to 1000"),
+            std::string::npos);
+}
+
 TEST(ArrayToml, reads_and_writes_where_the_temperature_is_measured) {
   const std::string key = "temperature_gradient_celsius = 4.5\ntemperature_sensors = ";
   const Result<ArrayDescription> few = array_from_toml(with("[readout]", key + "[[0, 0], [1, 1.5]]\n[readout]"), "a");

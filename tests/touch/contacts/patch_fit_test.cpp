@@ -16,7 +16,7 @@ constexpr float kPitch = 2.857F;
 
 /// Taxels of 4 x 4 under a patch without noise, each known to `relative` of its force and `least_n`.
 std::vector<FitTaxel> taxels_under(const Patch& patch, PatchProfile profile, float relative, float least_n) {
-  const PatchResponse::Row response = PatchResponse::of(profile).row(patch.log_radius);
+  const PatchResponse::Row response = PatchResponses::of(0.0)->of(profile).row(patch.log_radius);
   std::vector<FitTaxel> taxels;
   for (int row = -1; row <= 2; ++row) {
     for (int col = -1; col <= 2; ++col) {
@@ -32,7 +32,7 @@ std::vector<FitTaxel> taxels_under(const Patch& patch, PatchProfile profile, flo
 /// Chi squared of the best force at a place and radius, and its second derivative by the force.
 std::array<double, 3> best_force(const std::vector<FitTaxel>& taxels, PatchProfile profile, double x, double y,
                                  double log_radius) {
-  const PatchResponse::Row response = PatchResponse::of(profile).row(static_cast<float>(log_radius));
+  const PatchResponse::Row response = PatchResponses::of(0.0)->of(profile).row(static_cast<float>(log_radius));
   double square = 0.0;
   double product = 0.0;
   double all = 0.0;
@@ -49,8 +49,8 @@ std::array<double, 3> best_force(const std::vector<FitTaxel>& taxels, PatchProfi
 TEST(PatchFit, finds_the_patch_that_presses) {
   const Patch patch{0.7F, 1.1F, std::log(5.0F), 12.0F};
   for (const PatchProfile profile : {PatchProfile::hertz, PatchProfile::flat}) {
-    const PatchFit fit =
-        fit_patch(taxels_under(patch, profile, 0.01F, 0.01F), profile, {0.3F, 0.5F, std::log(3.5F), 1.0F}, kPrior);
+    const PatchFit fit = fit_patch(taxels_under(patch, profile, 0.01F, 0.01F), *PatchResponses::of(0.0), profile,
+                                   {0.3F, 0.5F, std::log(3.5F), 1.0F}, kPrior);
     EXPECT_NEAR(fit.patch.x, patch.x, 0.02F);
     EXPECT_NEAR(fit.patch.y, patch.y, 0.02F);
     EXPECT_NEAR(fit.patch.log_radius, patch.log_radius, 0.02F);
@@ -79,8 +79,8 @@ TEST(MeanOverRadii, is_that_of_all_patches_each_by_its_likelihood) {
     }
   }
   for (double& sum : sums) sum /= weight;
-  const PatchFit fit = fit_patch(taxels, PatchProfile::hertz, patch, kPrior);
-  const PatchFit mean = mean_over_radii(taxels, fit, kPrior);
+  const PatchFit fit = fit_patch(taxels, *PatchResponses::of(0.0), PatchProfile::hertz, patch, kPrior);
+  const PatchFit mean = mean_over_radii(taxels, *PatchResponses::of(0.0), fit, kPrior);
   const double sigma_x = std::sqrt(sums[2] - sums[0] * sums[0]);
   const double sigma_y = std::sqrt(sums[3] - sums[1] * sums[1]);
   EXPECT_NEAR(mean.patch.x, sums[0], 0.2 * sigma_x);

@@ -37,9 +37,11 @@ struct SimulationOptions {
 /// their defaults. `rubber.carbon_percent` (5, 10 or 15) sets the defaults of that grade. Unknown keys are errors.
 [[nodiscard]] Result<SimulationOptions> read_simulation_options(const std::string& path);
 
-/// A simulated array as a source of frames: scene -> rubber -> readout circuit -> ADC. The piece of rubber depends only
-/// on RubberOptions::seed, so the same array can go through several scenes. `seed` drives contacts, supply, temperature
-/// and all noise. Not thread-safe: one reader.
+class CoverSpread;
+
+/// A simulated array as a source of frames: scene -> cover -> rubber -> readout circuit -> ADC. The piece of rubber
+/// depends only on RubberOptions::seed, so the same array can go through several scenes. `seed` drives contacts,
+/// supply, temperature and all noise. Not thread-safe: one reader.
 class Simulator final : public FrameSource {
  public:
   /// `frames`: number of frames of the scenes "multitouch", "contacts", "idle" and "touches". Fails as Scene::create
@@ -66,6 +68,10 @@ class Simulator final : public FrameSource {
   /// The true law of the material.
   [[nodiscard]] const ConductiveRubber& rubber() const noexcept { return rubber_; }
 
+  ~Simulator() override;
+  Simulator(const Simulator&) = delete;
+  Simulator& operator=(const Simulator&) = delete;
+
  private:
   [[nodiscard]] double celsius_at(const TemperatureSensor& place) const;
   [[nodiscard]] std::vector<double> taxel_celsius() const;
@@ -81,6 +87,7 @@ class Simulator final : public FrameSource {
   std::optional<FaultyCircuit> faulty_;
   SamplingCapacitor capacitor_;
   Adc adc_;
+  std::unique_ptr<const CoverSpread> cover_;
   EnvironmentOptions environment_;
   Random instruments_;
   std::size_t next_frame_ = 0;

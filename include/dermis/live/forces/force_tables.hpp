@@ -13,6 +13,7 @@
 #include "dermis/touch/frames/frames.hpp"
 #include "dermis/touch/frames/result.hpp"
 #include "dermis/touch/pipeline/model.hpp"
+#include "dermis/touch/pipeline/surface_forces.hpp"
 
 namespace dermis::live::forces {
 
@@ -22,6 +23,7 @@ struct ForceTablePaths {
   std::string sigmas;  ///< Of the forces, their standard deviations.
   std::string contacts;
   std::string totals{};  ///< The force on the whole array.
+  bool surface = false;  ///< Forces and sigmas are those on the cover, where the model has one.
 
   [[nodiscard]] bool is_any() const { return !(forces + sigmas + contacts + totals).empty(); }
 };
@@ -47,9 +49,7 @@ class ForceTables {
   };
 
   ForceTables() = default;
-  template <typename Work>
-  [[nodiscard]] Status for_each(Work work);
-
+  std::optional<touch::pipeline::SurfaceForces> surface_;
   std::optional<bytes::files::ForcesCsvWriter> forces_;
   std::optional<bytes::files::ForcesCsvWriter> sigmas_;
   std::optional<ContactTable> contacts_;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "dermis/touch/frames/cover.hpp"
 #include "dermis/touch/frames/film.hpp"
 #include "dermis/touch/frames/line_order.hpp"
 #include "dermis/touch/frames/result.hpp"
@@ -132,6 +133,7 @@ struct ArrayDescription {
   /// Crossings of lines where the sheet has no taxel, as row-major indices, rising. They conduct nothing, their
   /// readings are ignored and they have no force. Not all taxels may be absent.
   std::vector<std::size_t> absent;
+  std::optional<Cover> cover;  ///< Over all taxels; empty: they feel what stands on them.
   /// Places on the sheet of those that RawFrame::sensor_celsius has: at most 64, or one on each taxel in their order.
   /// Empty: frames have one temperature for all taxels.
   std::vector<TemperatureSensor> temperature_sensors;

@@ -19,6 +19,7 @@
 #include "learn/calibration/evaluation/sum_judgement.hpp"
 #include "learn/calibration/labels/label_check.hpp"
 #include "learn/calibration/labels/labels.hpp"
+#include "learn/calibration/sheet/felt_loads.hpp"
 
 namespace dermis::learn::calibration {
 namespace {
@@ -122,7 +123,8 @@ Result<Evaluation> evaluate(const touch::pipeline::Model& model, std::span<const
 
   Evaluation evaluation;
   evaluation.array = model.array;
-  const LoadsOfFrames loads_of(loads, frames.size());
+  const std::vector<Load> felt = felt_loads(model.array, loads);
+  const LoadsOfFrames loads_of(felt, frames.size());
   evaluation.judged_from_n = judged_from(model, loads_of);
   Judges judges(model, loads_of, EstimatorRow(model, std::move(*pipeline), further, evaluation.judged_from_n));
   for (std::size_t frame = 0; frame < frames.size(); ++frame) judges.judge(frame, frames[frame], evaluation);

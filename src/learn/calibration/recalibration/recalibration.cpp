@@ -17,6 +17,7 @@
 #include "learn/calibration/labels/reading_check.hpp"
 #include "learn/calibration/recalibration/known_presses.hpp"
 #include "learn/calibration/recalibration/unloaded_change.hpp"
+#include "learn/calibration/sheet/felt_loads.hpp"
 
 namespace dermis::learn::calibration {
 namespace {
@@ -93,7 +94,7 @@ Result<Recalibration> recalibrate(const touch::pipeline::Model& model, std::span
   if (Status checked = check_loads(model.array, frames.size(), loads); !checked) return checked.error();
   if (Status checked = check_readings(model.array, frames, loads); !checked) return checked.error();
   if (const auto turn = check_labels(model.array, frames, loads, {}).turn) return bad_input(*turn);
-  const Result<Gathered> gathered = gather(model, frames, loads, model.array);
+  const Result<Gathered> gathered = gather(model, frames, felt_totals(model.array, loads), model.array);
   if (!gathered) return gathered.error();
   const std::vector<KnownPress>& presses = gathered->presses.presses();
   if (presses.empty()) return bad_input("no load above zero has a force: a known weight is needed");

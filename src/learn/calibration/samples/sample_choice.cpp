@@ -50,7 +50,7 @@ std::vector<Candidate> candidates_of(const LoadsOfFrames& loads) {
     const std::span<const Load> of_frame = loads[frame];
     if (of_frame.empty()) continue;
     Candidate candidate{place_of(of_frame), 0.0, static_cast<std::uint32_t>(frame)};
-    for (const Load& load : of_frame) candidate.load += load.value;
+    for (const Load& load : of_frame) candidate.load += load.value > 0.0 ? load.value : 0.0;
     candidates.push_back(candidate);
   }
   std::sort(candidates.begin(), candidates.end(),

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "dermis/bytes/files/config_table.hpp"
+#include "dermis/touch/frames/cover.hpp"
+
+namespace dermis::bytes::files {
+
+/// The keys of a cover: a spread, shares as [[rows away, columns away, share], ...], or "fit".
+void read_cover(ConfigFile& file, std::optional<Cover>& cover);
+
+/// Their lines; empty without a cover.
+[[nodiscard]] std::string cover_toml(const std::optional<Cover>& cover);
+
+}  // namespace dermis::bytes::files

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "learn/calibration/sheet/cover_fit.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "dermis/touch/frames/cover.hpp"
+#include "dermis/touch/frames/millimetres.hpp"
+#include "learn/calibration/circuit_fit/circuit_trial.hpp"
+#include "learn/calibration/sheet/cover_shares.hpp"
+#include "learn/calibration/sheet/single_presses.hpp"
+#include "learn/calibration/sheet/taxel_curves.hpp"
+
+namespace dermis::learn::calibration {
+namespace {
+
+constexpr std::size_t kLeastLines = 3;
+constexpr std::size_t kLeastPairs = 8;
+constexpr double kSigmas = 5.0;       // what must not be chance
+constexpr double kOverFar = 4.0;      // of what taxels far away show
+constexpr double kLeastShare = 3e-4;  // across a corner, of the centre's
+constexpr double kMostScatter = 0.6;  // of pairs of taxels
+constexpr double kAlike = 1.3;        // spreads along rows and columns, one over the other
+constexpr double kLeastCorner = 0.4;  // of the product of both neighbours
+constexpr std::size_t kMostReach = 12;
+constexpr double kKeptSigmas = 3.0;
+constexpr double kGaussianError = 0.012;  // of all shares together
+constexpr double kGuessedDriveOhm = 30.0;
+constexpr double kGuessedLoadOhm = 1000.0;
+
+/// The described circuit, what is unknown of it guessed.
+ArrayDescription guessed(ArrayDescription array) {
+  Readout& readout = array.readout;
+  readout.film = readout.film && readout.film->is_unknown() ? std::nullopt : readout.film;
+  if (readout.circuit == Circuit::automatic) return without_circuit(array);
+  for (double& ohm : readout.drive_ohm) ohm = std::isnan(ohm) ? kGuessedDriveOhm : ohm;
+  for (double& ohm : readout.load_ohm) ohm = std::isnan(ohm) ? kGuessedLoadOhm : ohm;
+  if (std::isnan(readout.supply_ohm.value_or(0.0))) readout.supply_ohm.reset();
+  return array;
+}
+
+/// The least x of 0 ... `most` with rising(x) >= value.
+template <typename Rising>
+double solve(Rising rising, double value, double most) {
+  constexpr int kHalvings = 40;
+  double low = 0.0;
+  double high = most;
+  for (int k = 0; k < kHalvings; ++k) {
+    const double middle = 0.5 * (low + high);
+    (rising(middle) < value ? low : high) = middle;
+  }
+  return high;
+}
+
+/// Share of the neighbour of a Gaussian, over the one at the centre.
+double beside(double pitches) {
+  return gaussian_share(pitches, 1) / gaussian_share(pitches, 0);
+}
+
+constexpr double kMostPitches = 20.0;
+
+double spread_m(double share_beside, double pitch_m) {
+  return pitch_m * solve(beside, share_beside, kMostPitches);
+}
+
+double spread_m_by_corner(double share, const ArrayDescription& array) {
+  const auto corner = [&](double metres) {
+    return beside(metres / array.row_pitch_m) * beside(metres / array.col_pitch_m);
+  };
+  return solve(corner, share, kMostPitches * std::min(array.row_pitch_m, array.col_pitch_m));
+}
+
+double times(std::size_t rows, std::size_t cols) {
+  return (rows > 0 ? 2.0 : 1.0) * (cols > 0 ? 2.0 : 1.0);
+}
+
+/// One cover as its shares tell it.
+class Evidence {
+ public:
+  Evidence(const ArrayDescription& array, const SinglePresses& single, const TaxelCurves& curves)
+      : array_(array), shares_(array, single, curves) {
+    const std::size_t rows = std::min(array.rows - 1, std::max(kLeastLines, array.rows / 2));
+    const std::size_t cols = std::min(array.cols - 1, std::max(kLeastLines, array.cols / 2));
+    far_ = shares_.at(rows, cols).share;
+    corner_ = shares_.at(1, 1);
+  }
+
+  [[nodiscard]] const RelativeShare& corner() const noexcept { return corner_; }
+  [[nodiscard]] bool has_pairs() const noexcept { return corner_.pairs >= kLeastPairs; }
+
+  /// Taxels across the corners rise, in all directions, with nearly every press.
+  [[nodiscard]] bool shows_cover() const {
+    const double least = std::max({kSigmas * corner_.error, kOverFar * far_, kLeastShare});
+    return has_pairs() && corner_.least > least && corner_.scatter < kMostScatter && corner_.share < 1.0;
+  }
+
+  /// Neighbours in rows and columns are as the corners say, alike in both.
+  [[nodiscard]] bool lines_agree() const {
+    const double down = shares_.at(1, 0).share;
+    const double right = shares_.at(0, 1).share;
+    if (!(down > corner_.share && right > corner_.share && down < 1.0 && right < 1.0)) return false;
+    const double ratio = spread_m(down, array_.row_pitch_m) / spread_m(right, array_.col_pitch_m);
+    return ratio < kAlike && ratio > 1.0 / kAlike && corner_.share > kLeastCorner * down * right;
+  }
+
+  [[nodiscard]] Cover by_corner() const { return {spread_m_by_corner(corner_.share, array_), {}}; }
+
+  /// All shares that stand out; a Gaussian where it explains them.
+  [[nodiscard]] Cover by_all() const {
+    std::vector<CoverShare> found{{0, 0, 1.0}};
+    const std::size_t most = std::min({kMostReach, array_.rows - 1, array_.cols - 1});
+    for (std::size_t ring = 1; ring <= most && add_ring(ring, found); ++ring) {
+    }
+    double sum = 0.0;
+    for (const auto& [rows, cols, share] : found) sum += times(rows, cols) * share;
+    for (CoverShare& share : found) share.share /= sum;
+    return gaussian_or({std::numeric_limits<double>::quiet_NaN(), std::move(found)});
+  }
+
+ private:
+  /// The shares whose larger distance is `ring`; false: none stands out.
+  bool add_ring(std::size_t ring, std::vector<CoverShare>& found) const {
+    bool any = false;
+    for (std::size_t k = 0; k <= ring; ++k) {
+      for (const auto& [rows, cols] : {std::pair{ring, k}, std::pair{k, ring}}) {
+        if (k == ring && any_at(found, rows, cols)) continue;
+        const RelativeShare share = shares_.at(rows, cols);
+        if (share.share < std::max(kKeptSigmas * share.error, 2.0 * far_)) continue;
+        found.push_back({rows, cols, share.share});
+        any = true;
+      }
+    }
+    return any;
+  }
+
+  static bool any_at(const std::vector<CoverShare>& found, std::size_t rows, std::size_t cols) {
+    return std::any_of(found.begin(), found.end(),
+                       [&](const CoverShare& share) { return share.rows == rows && share.cols == cols; });
+  }
+
+  [[nodiscard]] double misfit(double metres, const std::vector<CoverShare>& shares) const {
+    double misfit = 0.0;
+    double rest = 1.0;
+    for (const auto& [rows, cols, share] : shares) {
+      const double gaussian =
+          gaussian_share(metres / array_.row_pitch_m, rows) * gaussian_share(metres / array_.col_pitch_m, cols);
+      misfit += times(rows, cols) * std::abs(share - gaussian);
+      rest -= times(rows, cols) * gaussian;
+    }
+    return misfit + rest;
+  }
+
+  [[nodiscard]] Cover gaussian_or(Cover cover) const {
+    constexpr int kSteps = 60;
+    const double middle = spread_m_by_corner(corner_.share, array_);
+    double best = middle;
+    for (int step = -kSteps; step <= kSteps; ++step) {
+      const double trial = middle * std::exp(0.2 * step / kSteps);
+      if (misfit(trial, cover.shares) < misfit(best, cover.shares)) best = trial;
+    }
+    if (misfit(best, cover.shares) < kGaussianError) return {best, {}};
+    return cover;
+  }
+
+  const ArrayDescription& array_;
+  CoverShares shares_;
+  double far_ = 0.0;
+  RelativeShare corner_;
+};
+
+std::string sentence(ArrayDescription array, const Cover& cover) {
+  array.cover = cover;
+  const CoverKernel kernel(array);
+  const auto percent = [&](std::size_t rows, std::size_t cols) { return 100.0 * kernel.share(rows, cols); };
+  const double right = percent(0, 1);
+  const double down = percent(1, 0);
+  const bool are_alike = std::abs(right - down) < 0.15 * (right + down);
+  const std::string shares = are_alike
+                                 ? fmt::format("{:.2g} % beside it", 0.5 * (right + down))
+                                 : fmt::format("{:.2g} % beside it in its row, {:.2g} % in its column", right, down);
+  const std::string key = cover.shares.empty()
+                              ? fmt::format("cover_spread_mm = {:.2f}", cover.spread_m * kMillimetresPerMetre)
+                              : std::string("cover_shares");
+  return fmt::format(
+      "your sheet spreads a press over its neighbours: {}, {:.2g} % across the corner; labels are taken "
+      "for what stood on the cover ({})",
+      shares, percent(1, 1), key);
+}
+
+}  // namespace
+
+CoverFit fit_cover(const ArrayDescription& array, std::span<const RawFrame> frames, std::span<const Load> loads,
+                   Nanos settle_time) {
+  if (array.rows < kLeastLines || array.cols < kLeastLines) return {};
+  const bool is_guessed = array.has_unknown_circuit();
+  const ArrayDescription known = is_guessed ? guessed(array) : array;
+  const std::optional<SinglePresses> single = single_presses(known, frames, loads, settle_time);
+  if (!single) return {};
+  const TaxelCurves curves(*single);
+  if (!curves.any()) return {};
+  const Evidence evidence(known, *single, curves);
+  if (!evidence.shows_cover()) return {};
+  CoverFit fit;
+  if (is_guessed) {
+    fit.is_guessed = true;
+    fit.cover = evidence.by_corner();
+  } else if (evidence.lines_agree()) {
+    fit.cover = evidence.by_all();
+  }
+  if (fit.cover) fit.sentence = sentence(array, *fit.cover);
+  return fit;
+}
+
+}  // namespace dermis::learn::calibration

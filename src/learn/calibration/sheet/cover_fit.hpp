@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "dermis/touch/frames/array_description.hpp"
+#include "dermis/touch/frames/frames.hpp"
+#include "dermis/touch/frames/loads.hpp"
+
+namespace dermis::learn::calibration {
+
+/// What presses of single taxels tell of a cover.
+struct CoverFit {
+  std::optional<Cover> cover;
+  bool is_guessed = false;  ///< By the corners alone, as the circuit is not known yet.
+  std::string sentence;     ///< On the cover, or on the press that would tell; may be empty.
+};
+
+/// A cover raises the taxels around a press, on both lines of it and across the corners, the less the farther they are.
+/// No circuit of crossings does that. A taxel that a press raises feels the force under which it, pressed alone,
+/// conducts as much. Those forces over the one on the cover, as medians of all pairs of taxels so far apart, are the
+/// shares of the cover over that at its centre; together they are 1. `array`: a circuit that is unknown, or in part, is
+/// guessed, and the lines of a press then do not count.
+[[nodiscard]] CoverFit fit_cover(const ArrayDescription& array, std::span<const RawFrame> frames,
+                                 std::span<const Load> loads, Nanos settle_time);
+
+}  // namespace dermis::learn::calibration

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "dermis/touch/frames/array_description.hpp"
+#include "dermis/touch/frames/frames.hpp"
+#include "dermis/touch/frames/loads.hpp"
+
+namespace dermis::learn::calibration {
+
+/// What presses of single taxels tell of a film over the lines.
+struct FilmFit {
+  std::optional<Film> film;
+  std::string sentence;  ///< May be empty.
+};
+
+/// A film raises the taxels beside a press in its row or its column, as the circuit has it, but hardly those across the
+/// corners; what raises a whole line is none. It is the one with which the taxels beside presses conduct as if nothing
+/// pressed, or as a cover has it that raises both lines alike. `array`: its circuit is known, but perhaps for the film.
+[[nodiscard]] FilmFit fit_film(const ArrayDescription& array, std::span<const RawFrame> frames,
+                               std::span<const Load> loads, Nanos settle_time);
+
+}  // namespace dermis::learn::calibration

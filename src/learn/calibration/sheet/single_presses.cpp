@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "learn/calibration/sheet/single_presses.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <utility>
+
+#include "dermis/touch/frames/quantile.hpp"
+#include "learn/calibration/circuit_fit/circuit_frames.hpp"
+#include "learn/calibration/circuit_fit/inverted_frame.hpp"
+#include "learn/calibration/circuit_fit/line_parameters.hpp"
+#include "learn/calibration/labels/labels.hpp"
+
+namespace dermis::learn::calibration {
+namespace {
+
+constexpr double kMostWork = 2e6;      // frames x taxels
+constexpr double kMostSlowWork = 2e5;  // the same of floating lines
+constexpr std::size_t kMostIdle = 60;  // frames
+constexpr std::size_t kLeastIdle = 1;  // frames, of which each is the mean of many
+constexpr std::size_t kLeastBase = 8;  // frames, for the unloaded conductance of a taxel beside presses
+constexpr std::size_t kFar = 4;        // lines from a press
+constexpr double kSigmasOfDeviation = 1.4826;
+
+/// The only taxel that a label names; empty: none or several.
+std::optional<std::size_t> only_taxel(std::span<const Load> loads, std::size_t cols) {
+  std::optional<std::size_t> taxel;
+  for (const Load& load : loads) {
+    if (!(load.value > 0.0)) continue;
+    if (taxel || load.where.taxel_count() != 1) return std::nullopt;
+    taxel = load.where.first_row * cols + load.where.first_col;
+  }
+  return taxel;
+}
+
+struct Labelled {
+  const CircuitFrame* frame = nullptr;
+  std::size_t taxel = 0;
+  double newtons = 0.0;  // 0: nothing presses
+};
+
+std::vector<Labelled> labelled_frames(const ArrayDescription& array, const CircuitFrames& frames,
+                                      const LoadsOfFrames& loads_of) {
+  std::vector<Labelled> labelled;
+  std::size_t idle = 0;
+  for (const CircuitFrame& frame : frames.frames) {
+    const std::span<const Load> loads = loads_of[frame.first_frame];
+    const bool is_idle = std::all_of(loads.begin(), loads.end(), [](const Load& load) { return load.value == 0.0; });
+    if (is_idle && idle++ < kMostIdle) labelled.push_back({&frame, 0, 0.0});
+    const std::optional<std::size_t> taxel = only_taxel(loads, array.cols);
+    if (!taxel) continue;
+    const auto newtons = static_cast<double>(frame.newtons[*taxel]);  // not a number: saturated
+    if (newtons > 0.0) labelled.push_back({&frame, *taxel, newtons});
+  }
+  return labelled;
+}
+
+/// At most so many, the lighter presses of each taxel left out first.
+void thin_out(std::vector<Labelled>& labelled, std::size_t most) {
+  const auto is_before = [](const Labelled& a, const Labelled& b) {
+    return a.taxel != b.taxel ? a.taxel < b.taxel : a.newtons > b.newtons;
+  };
+  std::stable_sort(labelled.begin(), labelled.end(), is_before);
+  if (labelled.size() <= most) return;
+  std::vector<std::size_t> place_in_taxel;
+  for (std::size_t k = 0; k < labelled.size(); ++k) {
+    const bool goes_on = k > 0 && labelled[k].taxel == labelled[k - 1].taxel;
+    place_in_taxel.push_back(labelled[k].newtons == 0.0 ? 0 : goes_on ? place_in_taxel.back() + 1 : 0);
+  }
+  const std::size_t last = ranked(place_in_taxel, most);
+  std::vector<Labelled> kept;
+  for (std::size_t k = 0; k < labelled.size(); ++k) {
+    if (place_in_taxel[k] <= last) kept.push_back(labelled[k]);
+  }
+  labelled = std::move(kept);
+}
+
+bool is_far(const ArrayDescription& array, std::size_t a, std::size_t b) {
+  const auto apart = [](std::size_t x, std::size_t y) { return x > y ? x - y : y - x; };
+  const std::size_t rows = apart(a / array.cols, b / array.cols);
+  const std::size_t cols = apart(a % array.cols, b % array.cols);
+  return rows > 0 && cols > 0 && (rows >= kFar || cols >= kFar);
+}
+
+/// The unloaded conductance of a taxel and the scatter about it, by frames far from presses, else by unloaded ones.
+void find_unloaded(const ArrayDescription& array, std::span<const double> idle, SinglePresses& single) {
+  for (std::size_t taxel = 0; taxel < array.taxel_count(); ++taxel) {
+    std::vector<double> far;
+    for (const SinglePress& press : single.presses) {
+      if (is_far(array, taxel, press.taxel)) far.push_back(press.siemens[taxel]);
+    }
+    for (std::size_t k = taxel; k < idle.size(); k += array.taxel_count()) far.push_back(idle[k]);
+    const double level = quantile(far, 0.5);
+    for (double& value : far) value = std::abs(value - level);
+    single.unloaded.push_back(level);
+    single.sigma.push_back(kSigmasOfDeviation * quantile(std::move(far), 0.5));
+  }
+}
+
+}  // namespace
+
+std::optional<SinglePresses> single_presses(const ArrayDescription& array, std::span<const RawFrame> frames,
+                                            std::span<const Load> loads, Nanos settle_time) {
+  const Result<CircuitFrames> circuit = circuit_frames(array, frames, loads, settle_time);
+  if (!circuit) return std::nullopt;
+  std::vector<Labelled> labelled = labelled_frames(array, *circuit, LoadsOfFrames(loads, frames.size()));
+  const double work = is_inverted_slowly(array) ? kMostSlowWork : kMostWork;
+  thin_out(labelled, static_cast<std::size_t>(work / static_cast<double>(array.taxel_count())));
+  std::vector<const CircuitFrame*> chosen;
+  for (const Labelled& one : labelled) chosen.push_back(one.frame);
+  const Result<InvertedFrames> inverted = invert_frames(array, chosen);
+  if (!inverted) return std::nullopt;
+  SinglePresses single;
+  std::vector<double> idle;
+  for (std::size_t k = 0; k < labelled.size(); ++k) {
+    if (!(*inverted)[k]) continue;
+    const std::vector<double>& siemens = (*inverted)[k]->siemens;
+    if (labelled[k].newtons > 0.0) {
+      single.presses.push_back({labelled[k].taxel, labelled[k].newtons, siemens});
+    } else {
+      idle.insert(idle.end(), siemens.begin(), siemens.end());
+    }
+  }
+  if (idle.size() < kLeastIdle * array.taxel_count() || single.presses.size() < kLeastBase) return std::nullopt;
+  find_unloaded(array, idle, single);
+  return single;
+}
+
+}  // namespace dermis::learn::calibration

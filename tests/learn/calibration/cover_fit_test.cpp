@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "learn/calibration/sheet/cover_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "dermis/learn/simulation/adc.hpp"
+#include "dermis/learn/simulation/readout_circuit.hpp"
+#include "dermis/touch/frames/cover.hpp"
+#include "dermis/touch/frames/random.hpp"
+#include "learn/calibration/sheet/felt_loads.hpp"
+#include "support/reference_array.hpp"
+
+namespace dermis::learn::calibration {
+namespace {
+
+constexpr std::size_t kLines = 8;
+
+/// Single presses of 0.4 to 40 N on each taxel of a sheet, labelled as they stand on its cover.
+struct Presses {
+  std::vector<RawFrame> frames;
+  std::vector<Load> loads;
+
+  Presses(const ArrayDescription& array, std::uint64_t seed) : random_(seed), adc_(array.readout, 0.8), array_(array) {
+    for (std::size_t taxel = 0; taxel < kLines * kLines; ++taxel)
+      ohm_.push_back(900.0 * std::exp(0.15 * random_.normal()));
+    for (int k = 0; k < 20; ++k) {
+      loads.push_back({frames.size(), LoadKind::force, all_taxels(array), 0.0});
+      press(0, 0.0);
+    }
+    for (std::size_t taxel = 0; taxel < kLines * kLines; ++taxel) {
+      for (const double newtons : {0.4, 1.0, 2.5, 6.0, 15.0, 40.0}) {
+        const std::size_t row = taxel / kLines;
+        const std::size_t col = taxel % kLines;
+        loads.push_back({frames.size(), LoadKind::force, {row, col, row, col}, newtons});
+        press(taxel, newtons);
+      }
+    }
+  }
+
+  [[nodiscard]] CoverFit fit(const ArrayDescription& described) const {
+    return fit_cover(described, frames, loads, Nanos{0});
+  }
+
+ private:
+  void press(std::size_t taxel, double newtons) {
+    std::vector<double> surface(kLines * kLines);
+    surface[taxel] = newtons;
+    std::vector<double> felt(surface.size());
+    CoverKernel(array_).spread(std::span<const double>(surface), std::span<double>(felt));
+    std::vector<double> siemens(surface.size(), 1.0 / 300e3);
+    for (std::size_t k = 0; k < felt.size(); ++k) {
+      if (felt[k] > 1e-6)
+        siemens[k] += std::exp(0.004 * random_.normal()) / (60.0 + ohm_[k] * std::pow(10.0 / felt[k], 0.9));
+    }
+    RawFrame frame;
+    frame.time = std::chrono::milliseconds(500 * frames.size());
+    frame.counts.resize(siemens.size());
+    std::vector<double> ratio(siemens.size());
+    simulation::ReadoutCircuit::create(array_)->ratios(siemens, ratio);
+    adc_.convert(ratio, 5.0, random_, frame.counts);
+    frames.push_back(std::move(frame));
+  }
+
+  Random random_;
+  simulation::Adc adc_;
+  ArrayDescription array_;
+  std::vector<double> ohm_;
+};
+
+ArrayDescription sheet(std::optional<Cover> cover) {
+  ArrayDescription array = support::reference_array(kLines, kLines);
+  array.row_pitch_m = array.col_pitch_m = 0.010;
+  array.cover = std::move(cover);
+  return array;
+}
+
+ArrayDescription without_cover(ArrayDescription array) {
+  array.cover.reset();
+  return array;
+}
+
+TEST(CoverFit, finds_by_how_much_a_cover_spreads) {
+  for (const double spread_m : {0.004, 0.006, 0.010}) {
+    const ArrayDescription array = sheet(Cover{spread_m, {}});
+    const CoverFit fit = Presses(array, 3).fit(without_cover(array));
+    ASSERT_TRUE(fit.cover) << spread_m;
+    ASSERT_TRUE(fit.cover->shares.empty()) << spread_m;
+    EXPECT_NEAR(fit.cover->spread_m, spread_m, 0.02 * spread_m);
+    EXPECT_NE(fit.sentence.find("your sheet spreads a press over its neighbours"), std::string::npos);
+  }
+}
+
+TEST(CoverFit, finds_the_shares_of_a_cover_that_is_no_gaussian) {
+  std::vector<CoverShare> shares;
+  double sum = 0.0;
+  for (std::size_t row = 0; row < 6; ++row) {
+    for (std::size_t col = 0; col < 6; ++col) {
+      const double share = std::exp(-std::hypot(static_cast<double>(row), static_cast<double>(col)) / 0.6);
+      sum += share * (row > 0 ? 2.0 : 1.0) * (col > 0 ? 2.0 : 1.0);
+      shares.push_back({row, col, share});
+    }
+  }
+  for (CoverShare& share : shares) share.share /= sum;
+  const ArrayDescription array = sheet(Cover{0.0, shares});
+  const CoverFit fit = Presses(array, 4).fit(without_cover(array));
+  ASSERT_TRUE(fit.cover);
+  ArrayDescription found = array;
+  found.cover = fit.cover;
+  const CoverKernel truth(array);
+  const CoverKernel kernel(found);
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t col = 0; col < 3; ++col) {
+      EXPECT_NEAR(kernel.share(row, col), truth.share(row, col), 0.03 * truth.share(row, col)) << row << " " << col;
+    }
+  }
+}
+
+TEST(CoverFit, finds_none_where_there_is_none) {
+  for (const Circuit circuit : {Circuit::divider, Circuit::transimpedance}) {
+    for (std::uint64_t seed = 1; seed < 4; ++seed) {
+      ArrayDescription array = sheet({});
+      array.readout.circuit = circuit;
+      ArrayDescription described = array;
+      EXPECT_FALSE(Presses(array, seed).fit(described).cover);
+      described.readout.drive_ohm.assign(kLines, 60.0);  // and not for wrong drivers
+      EXPECT_FALSE(Presses(array, seed).fit(described).cover);
+    }
+  }
+}
+
+TEST(CoverFit, knows_the_cover_by_the_corners_where_the_drivers_are_not_known) {
+  const ArrayDescription array = sheet(Cover{0.006, {}});
+  ArrayDescription described = without_cover(array);
+  described.readout.drive_ohm.assign(kLines, kFitOhm);
+  const CoverFit fit = Presses(array, 5).fit(described);
+  ASSERT_TRUE(fit.cover);
+  EXPECT_TRUE(fit.is_guessed);
+  EXPECT_NEAR(fit.cover->spread_m, 0.006, 0.0006);
+}
+
+TEST(FeltLoads, of_a_weight_on_one_taxel_are_the_forces_on_all_that_feel_it) {
+  const ArrayDescription array = sheet(Cover{0.005, {}});
+  const std::vector<Load> felt = felt_loads(array, std::vector<Load>{{7, LoadKind::force, {4, 4, 4, 4}, 10.0}});
+  double sum = 0.0;
+  for (const Load& load : felt) {
+    EXPECT_EQ(load.frame, 7U);
+    EXPECT_EQ(load.where.taxel_count(), 1U);
+    sum += load.value;
+  }
+  EXPECT_NEAR(sum, 10.0, 0.01);
+}
+
+TEST(FeltLoads, of_a_weight_on_several_taxels_are_on_all_that_may_feel_it) {
+  const ArrayDescription array = sheet(Cover{0.005, {}});
+  const std::vector<Load> felt = felt_loads(array, std::vector<Load>{{7, LoadKind::force, {3, 3, 4, 4}, 10.0}});
+  ASSERT_EQ(felt.size(), 1U);
+  EXPECT_EQ(felt[0].where, (TaxelRegion{0, 0, 7, 7}));
+  EXPECT_NEAR(felt[0].value, 10.0, 0.01);
+}
+
+TEST(FeltLoads, are_those_of_the_labels_without_a_cover) {
+  const std::vector<Load> loads{{7, LoadKind::force, {3, 3, 4, 4}, 10.0}, {8, LoadKind::pressure, {0, 0, 1, 1}, 1e4}};
+  const std::vector<Load> felt = felt_loads(sheet({}), loads);
+  ASSERT_EQ(felt.size(), 2U);
+  EXPECT_EQ(felt[1].value, 1e4);
+}
+
+}  // namespace
+}  // namespace dermis::learn::calibration
