@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "touch/compensation/faults/masked_taxels.hpp"
 #include "touch/compensation/readout_parts.hpp"
@@ -45,6 +46,7 @@ FaultInversion::FaultInversion(const ArrayDescription& array, double tolerance_r
                                const ReferenceConductances& references)
     : array_(array),
       tolerance_(tolerance_ratio),
+      film_(array, references),
       is_(array),
       missing_(array_, references),
       measured_(array.taxel_count()),
@@ -244,8 +246,7 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
   for (int round = 0; round < kMaxRounds; ++round) {
     missing_.estimate(siemens);
     for (const std::size_t taxel : crossings_.in_first) siemens[taxel] = kOpenSiemens;
-    circuits_->healthy.solve(siemens, correction_.healthy_ratio);
-    circuits_->faulty.solve(siemens, correction_.faulty_ratio);
+    solve_circuits(siemens);
     result.residual_ratio = misfit(siemens);
     if (correct(round == 0) <= tolerance_) return result;
     keep_crossings(siemens);
@@ -253,6 +254,22 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
   }
   result.solved = false;
   return result;
+}
+
+void FaultInversion::hold_film(const FilmConductances& film) noexcept {
+  film_.hold(film);
+  if (!circuits_ || !film_.any()) return;
+  circuits_->healthy.set_film(film_.film());
+  circuits_->faulty.set_film(film_.film());
+}
+
+void FaultInversion::solve_circuits(std::span<const double> siemens) noexcept {
+  const bool is_new = film_.follow(siemens);
+  for (const auto& [circuit, ratio] : {std::pair(&circuits_->healthy, &correction_.healthy_ratio),
+                                       std::pair(&circuits_->faulty, &correction_.faulty_ratio)}) {
+    if (is_new) circuit->set_film(film_.film());
+    circuit->solve(siemens, *ratio);
+  }
 }
 
 /// The lines are healthy: taxels without a reading are estimated, and the others solved with them. At first the

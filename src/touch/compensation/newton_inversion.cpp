@@ -33,7 +33,7 @@ constexpr double kNear = 1e-2;             // a last pass that its own steps nee
 
 NewtonInversion::NewtonInversion(const ArrayDescription& array, CircuitModel model, double tolerance_ratio,
                                  const InversionOptions& options)
-    : circuit_(array, std::move(model)),
+    : circuit_(array, std::move(model), options.references),
       equations_(circuit_),
       driver_errors_(array, options.counts_driver_errors),
       noise_(make_newton_noise(circuit_, equations_, driver_errors_, options)),
@@ -43,7 +43,8 @@ NewtonInversion::NewtonInversion(const ArrayDescription& array, CircuitModel mod
       last_x_(array.taxel_count()),
       change_(array.taxel_count()),
       last_shift_(array.taxel_count()) {
-  if (FloatingRows::inverts(array.readout)) floating_rows_ = std::make_unique<FloatingRows>(array);
+  if (FloatingRows::inverts(array.readout) && !array.readout.film)
+    floating_rows_ = std::make_unique<FloatingRows>(array);
 }
 
 double NewtonInversion::siemens_per_ratio() const noexcept {
