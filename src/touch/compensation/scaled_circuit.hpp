@@ -44,6 +44,7 @@ class ScaledCircuit {
 
   /// See CrosstalkInversion.
   void hold_film(const FilmConductances& film) noexcept;
+  [[nodiscard]] bool has_film() const noexcept { return film_.any(); }
 
   /// The frame to compare with; `ratio` is to outlive the comparison. Where it is not a number, the taxel is wanted at
   /// `siemens`, and its measured() is that.
