@@ -10,6 +10,7 @@
 #include "dermis/touch/compensation/crosstalk.hpp"
 #include "dermis/touch/compensation/line_fault.hpp"
 #include "dermis/touch/frames/axis.hpp"
+#include "touch/compensation/anderson_mixing.hpp"
 #include "touch/compensation/film_follower.hpp"
 #include "touch/compensation/joined_lines.hpp"
 #include "touch/compensation/lumped_circuit.hpp"
@@ -124,6 +125,7 @@ class FaultInversion {
   void keep_crossings(std::span<double> siemens) noexcept;
   void solve_circuits(std::span<const double> siemens) noexcept;
   double correct(bool first) noexcept;
+  void mix(bool first) noexcept;
   [[nodiscard]] bool is_doubtful(std::size_t taxel) const noexcept;
   [[nodiscard]] double misfit(std::span<const double> siemens) const noexcept;
 
@@ -144,6 +146,7 @@ class FaultInversion {
   std::vector<double> equivalent_;                         // T' [taxels]
   JoinedLines lines_;
   Correction correction_;
+  std::optional<AndersonMixing> mixing_;  // of T', under a film
 };
 
 }  // namespace dermis::touch::compensation

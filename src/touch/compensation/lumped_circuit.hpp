@@ -20,7 +20,7 @@ class LumpedCircuit {
   /// `array` has a known circuit that is not `none`.
   explicit LumpedCircuit(const ArrayDescription& array);
 
-  /// Of an array with a film: what it conducts, at first where it is unloaded. Allocates nothing.
+  /// The film of an array that has one, at first an unloaded one. Allocates nothing.
   void set_film(const FilmConductances& film) noexcept;
 
   /// Takes all faults away.
