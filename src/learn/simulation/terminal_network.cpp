@@ -105,11 +105,13 @@ class NodalEquations {
 FilmTables film_tables(const Film& film, const Table& newtons) {
   const Index driven = newtons.rows();
   const Index sensed = newtons.cols();
+  const double of_sensed = 1.0 / (film.unloaded_ohm * static_cast<double>(sensed));
+  const double of_driven = 1.0 / (film.unloaded_ohm * static_cast<double>(driven));
   FilmTables tables{Table(driven - 1, sensed), Table(driven, sensed - 1)};
   for (Index i = 0; i < driven; ++i) {
     for (Index j = 0; j < sensed; ++j) {
-      if (i > 0) tables.along_sensed(i - 1, j) = film.siemens(newtons(i - 1, j), newtons(i, j));
-      if (j > 0) tables.along_driven(i, j - 1) = film.siemens(newtons(i, j - 1), newtons(i, j));
+      if (i > 0) tables.along_sensed(i - 1, j) = of_sensed + film.rise(newtons(i - 1, j), newtons(i, j));
+      if (j > 0) tables.along_driven(i, j - 1) = of_driven + film.rise(newtons(i, j - 1), newtons(i, j));
     }
   }
   return tables;

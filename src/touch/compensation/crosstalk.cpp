@@ -36,13 +36,26 @@ Inversion inversion(const Arguments&... arguments) {
   return std::unique_ptr<CrosstalkInversion>(std::make_unique<Kind>(arguments...));
 }
 
+/// [cols, rows] of [rows, cols]; empty stays empty.
+std::vector<double> exchange(std::span<const double> values, const ArrayDescription& array) {
+  std::vector<double> exchanged(values.size());
+  for (std::size_t taxel = 0; taxel < values.size(); ++taxel) {
+    exchanged[taxel % array.cols * array.rows + taxel / array.cols] = values[taxel];
+  }
+  return exchanged;
+}
+
 /// One column driven, the others grounded, one row sensed: the divider with one load, rows and columns exchanged.
 Inversion flexitac(const ArrayDescription& array, double tolerance, const InversionOptions& options) {
   ArrayDescription exchanged = array;
   std::swap(exchanged.rows, exchanged.cols);
   exchanged.readout.circuit = Circuit::divider;
   exchanged.readout.idle_columns = IdleColumns::floating;
-  auto rows_driven = std::make_unique<GroundedRows>(exchanged, tolerance, options);
+  const std::vector<double> typical = exchange(options.references.typical, array);
+  const std::vector<double> unloaded = exchange(options.references.unloaded, array);
+  InversionOptions of_exchanged = options;
+  of_exchanged.references = {typical, unloaded, options.references.loads};
+  auto rows_driven = std::make_unique<GroundedRows>(exchanged, tolerance, of_exchanged);
   return std::unique_ptr<CrosstalkInversion>(
       std::make_unique<Transposed>(std::move(rows_driven), array.rows, array.cols));
 }
@@ -94,8 +107,8 @@ Inversion sagging_supply(const ArrayDescription& array, double tolerance, const 
   with_ideal_supply.readout.supply_ohm.reset();
   Inversion ideal = make_crosstalk_inversion(with_ideal_supply, options);
   if (!ideal) return ideal.error();
-  return std::unique_ptr<CrosstalkInversion>(
-      std::make_unique<SaggingSupply>(std::move(*ideal), std::move(*model), tolerance));
+  return std::unique_ptr<CrosstalkInversion>(std::make_unique<SaggingSupply>(
+      std::move(*ideal), std::move(*model), FilmFollower(array, options.references), tolerance));
 }
 
 }  // namespace
@@ -147,6 +160,11 @@ Compensator::~Compensator() = default;
 void Compensator::set_faults(std::span<const LineFault> faults) {
   faults_->set_faults(faults, *inversion_);
   possible_->set_shorted(faults_->shorted_crossings());
+}
+
+void Compensator::hold_film(const FilmConductances& film) noexcept {
+  inversion_->hold_film(film);
+  faults_->hold_film(film);
 }
 
 void Compensator::forget() noexcept {

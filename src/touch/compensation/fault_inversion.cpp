@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "touch/compensation/faults/masked_taxels.hpp"
 #include "touch/compensation/readout_parts.hpp"
@@ -15,7 +16,10 @@ namespace dermis::touch::compensation {
 namespace {
 
 constexpr int kMaxRounds = 20;
-constexpr int kEstimateRounds = 3;  // the estimate from a taxel's neighbours hardly depends on it
+constexpr int kMaxMixedRounds = 40;      // under a film
+constexpr std::size_t kMixingDepth = 8;  // likewise
+constexpr double kMixedShare = 2.0;      // of a difference: the mixing goes half the way
+constexpr int kEstimateRounds = 3;       // the estimate from a taxel's neighbours hardly depends on it
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();  // a reading that is not used
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr double kShortSiemens = 20.0;  // of a shorted crossing that is kept
@@ -45,12 +49,14 @@ FaultInversion::FaultInversion(const ArrayDescription& array, double tolerance_r
                                const ReferenceConductances& references)
     : array_(array),
       tolerance_(tolerance_ratio),
+      film_(array, references),
       is_(array),
       missing_(array_, references),
       measured_(array.taxel_count()),
       equivalent_(array.taxel_count()),
       lines_(array.rows, array.cols),
       correction_(array.taxel_count()) {
+  if (film_.any()) mixing_.emplace(array.taxel_count(), kMixingDepth);
   if (is_modelled(array)) circuits_ = Circuits{LumpedCircuit(array), LumpedCircuit(array)};
   supplied_rows_.reserve(array.rows);
   crossings_.taxels.reserve(array.taxel_count());
@@ -241,11 +247,10 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
   keep_crossings(siemens);
   InversionResult result = healthy.invert(equivalent_, siemens);
   if (!circuits_) return result;
-  for (int round = 0; round < kMaxRounds; ++round) {
+  for (int round = 0; round < (mixing_ ? kMaxMixedRounds : kMaxRounds); ++round) {
     missing_.estimate(siemens);
     for (const std::size_t taxel : crossings_.in_first) siemens[taxel] = kOpenSiemens;
-    circuits_->healthy.solve(siemens, correction_.healthy_ratio);
-    circuits_->faulty.solve(siemens, correction_.faulty_ratio);
+    solve_circuits(siemens);
     result.residual_ratio = misfit(siemens);
     if (correct(round == 0) <= tolerance_) return result;
     keep_crossings(siemens);
@@ -253,6 +258,22 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
   }
   result.solved = false;
   return result;
+}
+
+void FaultInversion::hold_film(const FilmConductances& film) noexcept {
+  film_.hold(film);
+  if (!circuits_ || !film_.any()) return;
+  circuits_->healthy.set_film(film_.film());
+  circuits_->faulty.set_film(film_.film());
+}
+
+void FaultInversion::solve_circuits(std::span<const double> siemens) noexcept {
+  const bool is_new = film_.follow(siemens);
+  for (const auto& [circuit, ratio] : {std::pair(&circuits_->healthy, &correction_.healthy_ratio),
+                                       std::pair(&circuits_->faulty, &correction_.faulty_ratio)}) {
+    if (is_new) circuit->set_film(film_.film());
+    circuit->solve(siemens, *ratio);
+  }
 }
 
 /// The lines are healthy: taxels without a reading are estimated, and the others solved with them. At first the
@@ -306,6 +327,10 @@ double FaultInversion::correct(bool first) noexcept {
     square += turn * turn;
     correction_.difference[taxel] = difference;
   }
+  if (mixing_ && std::isfinite(sum)) {
+    mix(first);
+    return change;
+  }
   const double share = first || square == 0.0 ? 0.0 : std::clamp(along / square, -kMostStretch, kMostStretch);
   for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) {
     const double corrected = equivalent_[taxel] + correction_.difference[taxel];
@@ -314,6 +339,20 @@ double FaultInversion::correct(bool first) noexcept {
     correction_.last_difference[taxel] = correction_.difference[taxel];
   }
   return std::isfinite(sum) ? change : std::numeric_limits<double>::infinity();
+}
+
+/// A film couples all lines, so that the last change alone does not tell the way.
+void FaultInversion::mix(bool first) noexcept {
+  if (first) mixing_->forget();
+  std::vector<double>& next = correction_.last_corrected;
+  for (std::size_t taxel = 0; taxel < next.size(); ++taxel) {
+    next[taxel] = std::isnan(equivalent_[taxel]) ? 0.0 : equivalent_[taxel];
+    correction_.difference[taxel] *= kMixedShare;
+  }
+  mixing_->advance(next, correction_.difference);
+  for (std::size_t taxel = 0; taxel < next.size(); ++taxel) {
+    if (!std::isnan(equivalent_[taxel])) equivalent_[taxel] = next[taxel];
+  }
 }
 
 /// Lines that are one node give the same reading several times, in known ratios; what differs is noise.

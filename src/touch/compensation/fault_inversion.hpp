@@ -10,6 +10,8 @@
 #include "dermis/touch/compensation/crosstalk.hpp"
 #include "dermis/touch/compensation/line_fault.hpp"
 #include "dermis/touch/frames/axis.hpp"
+#include "touch/compensation/anderson_mixing.hpp"
+#include "touch/compensation/film_follower.hpp"
 #include "touch/compensation/joined_lines.hpp"
 #include "touch/compensation/lumped_circuit.hpp"
 #include "touch/compensation/missing_taxels.hpp"
@@ -36,6 +38,9 @@ class FaultInversion {
   /// `healthy` gets the shorted crossings. Allocates nothing.
   void set_faults(std::span<const LineFault> faults, CrosstalkInversion& healthy);
   [[nodiscard]] bool any() const noexcept { return any_; }
+
+  /// See CrosstalkInversion.
+  void hold_film(const FilmConductances& film) noexcept;
 
   /// The bounds on the readings of a line together still hold: none is at the supply or joined with another.
   [[nodiscard]] bool keeps_bounds() const noexcept { return keeps_bounds_; }
@@ -118,7 +123,9 @@ class FaultInversion {
   void average(Axis axis, std::size_t first, std::size_t last) noexcept;
   InversionResult keep_estimates(CrosstalkInversion& healthy, std::span<double> siemens) noexcept;
   void keep_crossings(std::span<double> siemens) noexcept;
+  void solve_circuits(std::span<const double> siemens) noexcept;
   double correct(bool first) noexcept;
+  void mix(bool first) noexcept;
   [[nodiscard]] bool is_doubtful(std::size_t taxel) const noexcept;
   [[nodiscard]] double misfit(std::span<const double> siemens) const noexcept;
 
@@ -129,6 +136,7 @@ class FaultInversion {
   bool has_crossings_ = false;     // that are shorted
   bool lines_are_faulty_ = false;  // so that the circuit is another one
   std::optional<Circuits> circuits_;
+  FilmFollower film_;
   Masks is_;
   MissingTaxels missing_;
   Crossings crossings_;
@@ -138,6 +146,7 @@ class FaultInversion {
   std::vector<double> equivalent_;                         // T' [taxels]
   JoinedLines lines_;
   Correction correction_;
+  std::optional<AndersonMixing> mixing_;  // of T', under a film
 };
 
 }  // namespace dermis::touch::compensation

@@ -49,7 +49,7 @@ FilmFollower::FilmFollower(const ArrayDescription& array, const ReferenceConduct
   for (const double share : kFilmCorners) {
     const double newtons = share * film_->loaded_newtons;
     pairs.push_back(2.0 * newtons);
-    rises.push_back(film_->siemens(newtons, newtons) - 1.0 / film_->unloaded_ohm);
+    rises.push_back(film_->rise(newtons, newtons));
   }
   pairs.push_back(2.0 * pairs.back());
   rises.push_back(rises.back());
@@ -92,15 +92,14 @@ bool FilmFollower::follow(std::span<const double> siemens, std::size_t stride) n
   }
   loads_.apply(pairs_.data(), newtons_.data(), pairs_.size());
   const double unloaded = 1.0 / film_->unloaded_ohm;
-  std::fill(conductances_.between_cols.begin(), conductances_.between_cols.end(),
-            unloaded * static_cast<double>(rows_));
+  std::fill(conductances_.between_cols.begin(), conductances_.between_cols.end(), unloaded);
   find_rises(newtons_.data(), newtons_.data() + 1, newtons_.size() - 1);
   for (std::size_t row = 0; row < rows_; ++row) {
     for (std::size_t col = 0; col + 1 < cols_; ++col) conductances_.between_cols[col] += rises_[row * cols_ + col];
   }
   find_rises(newtons_.data(), newtons_.data() + cols_, newtons_.size() - cols_);
   for (std::size_t row = 0; row + 1 < rows_; ++row) {
-    double sum = unloaded * static_cast<double>(cols_);
+    double sum = unloaded;
     for (std::size_t col = 0; col < cols_; ++col) sum += rises_[row * cols_ + col];
     conductances_.between_rows[row] = sum;
   }

@@ -29,6 +29,7 @@ class FilmFollower {
 
   /// The film of these conductances [rows, stride]; true where they tell it anew.
   bool follow(std::span<const double> siemens, std::size_t stride) noexcept;
+  bool follow(std::span<const double> siemens) noexcept { return follow(siemens, cols_); }
 
   [[nodiscard]] const FilmConductances& film() const noexcept { return conductances_; }
 

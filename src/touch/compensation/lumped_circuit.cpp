@@ -20,6 +20,7 @@ LumpedCircuit::LumpedCircuit(const ArrayDescription& array)
     : array_(array),
       driven_(driven_axis(array)),
       nodes_(array.rows + array.cols),
+      film_siemens_(nodes_),
       right_columns_(array.driven_lines() + (one_loaded() ? array.sensed_lines() : 0)),
       matrix_(nodes_ * nodes_),
       assembled_(nodes_ * nodes_),
@@ -27,6 +28,16 @@ LumpedCircuit::LumpedCircuit(const ArrayDescription& array)
   assert(!array.has_unknown_circuit() && array.readout.circuit != Circuit::none);
   crossings_.reserve(array.taxel_count());
   restore();
+  if (!array.readout.film) return;
+  FilmConductances film(array.rows, array.cols);
+  film.set(*array.readout.film, std::vector<double>(array.taxel_count()));
+  set_film(film);
+}
+
+void LumpedCircuit::set_film(const FilmConductances& film) noexcept {
+  std::copy(film.between_rows.begin(), film.between_rows.end(), film_siemens_.begin());
+  std::copy(film.between_cols.begin(), film.between_cols.end(),
+            film_siemens_.begin() + static_cast<std::ptrdiff_t>(array_.rows));
 }
 
 void LumpedCircuit::restore() {
@@ -117,7 +128,8 @@ void LumpedCircuit::assemble(std::span<const double> siemens) noexcept {
   std::swap(matrix_, assembled_);  // connect() writes into matrix_
   for (std::size_t node = 0; node < nodes_; ++node) {
     matrix_[node * nodes_ + node] += kLeakSiemens + supply_siemens_[node] + ground_siemens_[node];
-    if (joint_siemens_[node] > 0.0) connect(node, node + 1, joint_siemens_[node]);
+    const double beside = joint_siemens_[node] + film_siemens_[node];
+    if (beside > 0.0) connect(node, node + 1, beside);
   }
   for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
     connect(taxel / array_.cols, array_.rows + taxel % array_.cols, siemens[taxel]);

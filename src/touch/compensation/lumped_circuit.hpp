@@ -20,6 +20,9 @@ class LumpedCircuit {
   /// `array` has a known circuit that is not `none`.
   explicit LumpedCircuit(const ArrayDescription& array);
 
+  /// The film of an array that has one, at first an unloaded one. Allocates nothing.
+  void set_film(const FilmConductances& film) noexcept;
+
   /// Takes all faults away.
   void restore();
 
@@ -54,6 +57,7 @@ class LumpedCircuit {
   ArrayDescription array_;
   Axis driven_;
   std::size_t nodes_;                   // rows, then columns
+  std::vector<double> film_siemens_;    // from every node to the next one [nodes]
   std::vector<double> drive_siemens_;   // [driven lines]
   std::vector<double> load_siemens_;    // [sensed lines]
   std::vector<double> supply_siemens_;  // from every node to the supply [nodes]

@@ -25,15 +25,16 @@ constexpr double kRoundingMerit = 1e-12;  // below it a step that does not halve
 constexpr double kAccuracy = 0.1;
 constexpr double kBestAccuracy = 1e-6;
 constexpr double kLeastAccuracy = 1e-2;
-constexpr double kShareOfTolerance = 0.1;  // to which floating rows are solved without Newton's method
-constexpr double kFineEnough = 1e-9;       // and where it goes on in any case
-constexpr double kNear = 1e-2;             // a last pass that its own steps need not start anew after
+constexpr double kShareOfTolerance =
+    0.1;                              // to which floating rows are solved without Newton's method; not under a film
+constexpr double kFineEnough = 1e-9;  // and where it goes on in any case
+constexpr double kNear = 1e-2;        // a last pass that its own steps need not start anew after
 
 }  // namespace
 
 NewtonInversion::NewtonInversion(const ArrayDescription& array, CircuitModel model, double tolerance_ratio,
                                  const InversionOptions& options)
-    : circuit_(array, std::move(model)),
+    : circuit_(array, std::move(model), options.references),
       equations_(circuit_),
       driver_errors_(array, options.counts_driver_errors),
       noise_(make_newton_noise(circuit_, equations_, driver_errors_, options)),
@@ -43,7 +44,9 @@ NewtonInversion::NewtonInversion(const ArrayDescription& array, CircuitModel mod
       last_x_(array.taxel_count()),
       change_(array.taxel_count()),
       last_shift_(array.taxel_count()) {
-  if (FloatingRows::inverts(array.readout)) floating_rows_ = std::make_unique<FloatingRows>(array);
+  if (FloatingRows::inverts(array.readout)) {
+    floating_rows_ = std::make_unique<FloatingRows>(array, options.references);
+  }
 }
 
 double NewtonInversion::siemens_per_ratio() const noexcept {
@@ -76,8 +79,8 @@ bool NewtonInversion::solve(std::span<const double> ratio, std::span<const doubl
       return false;
     }
     std::copy(siemens.begin(), siemens.end(), circuit_.siemens().begin());
-    const double moved =
-        floating_rows_->solve(ratio, std::max(kShareOfTolerance * tolerance_, kFineEnough), circuit_.siemens());
+    const double enough = (circuit_.has_film() ? 1.0 : kShareOfTolerance) * tolerance_;
+    const double moved = floating_rows_->solve(ratio, std::max(enough, kFineEnough), circuit_.siemens());
     if (moved <= kNear) {
       start_at_siemens();
       if (iterate(0)) return true;
@@ -92,6 +95,11 @@ bool NewtonInversion::solve(std::span<const double> ratio, std::span<const doubl
     if (iterate(bold_steps)) return true;
   }
   return false;
+}
+
+void NewtonInversion::hold_film(const FilmConductances& film) noexcept {
+  circuit_.hold_film(film);
+  if (floating_rows_) floating_rows_->hold_film(film);
 }
 
 void NewtonInversion::forget() noexcept {

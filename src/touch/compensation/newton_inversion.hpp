@@ -44,6 +44,7 @@ class NewtonInversion final : public CrosstalkInversion {
 
   [[nodiscard]] InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept override;
   void start_frame(double share) noexcept override { budget_.start_frame(share); }
+  void hold_film(const FilmConductances& film) noexcept override;
   void forget() noexcept override;
   void propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept override;
   [[nodiscard]] double siemens_per_ratio() const noexcept override;

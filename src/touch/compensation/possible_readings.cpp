@@ -30,6 +30,12 @@ constexpr double kImplied = 3.0;        // times the limits, where other shorts 
 constexpr double kMostly = 0.7;         // of a line's current
 constexpr double kLittleLeft = 0.6;     // readings of a line together, over what a taxel of 0 ohm reads alone
 
+/// Most that a film brings to a line from its neighbours beside a taxel of it [S].
+double most_film_siemens(const ArrayDescription& array) {
+  if (!array.readout.film) return 0.0;
+  return 2.0 * static_cast<double>(array.rows + array.cols) / array.readout.film->loaded_ohm;
+}
+
 /// Most impossible readings of a line of so many taxels: with more, none of its readings counts.
 std::size_t most_bad(std::size_t taxels) {
   return std::max<std::size_t>(2, taxels / 4);
@@ -58,7 +64,8 @@ PossibleReadings::PossibleReadings(const ArrayDescription& array)
   const double weakest_driver = *std::max_element(drive_ohm_.begin(), drive_ohm_.end());
   for (std::size_t line = 0; line < array.sensed_lines(); ++line) {
     const SensedLine sensed = sensed_line(array.readout, line);
-    const double short_ohm = std::clamp(kShortOfLoad * sensed.rho, kShortOhm, kMostShortOhm);
+    const double bare_ohm = std::clamp(kShortOfLoad * sensed.rho, kShortOhm, kMostShortOhm);
+    const double short_ohm = bare_ohm / (1.0 + bare_ohm * most_film_siemens(array));
     heads_.push_back({1.0 / sensed.gain, -sensed.offset / sensed.gain, sensed.rho, sensed.emf, short_ohm,
                       sensed.rho / (sensed.rho + weakest_driver + short_ohm)});
     limits_.current.push_back(heads_.back().current);

@@ -29,9 +29,10 @@ enum class ReadingVerdict { possible, unknown, shorted, impossible };
 /// and with others it is near that while drivers are strong. A driven and a sensed line are one node if both stand at
 /// the same voltage with all driven, U_k = 1 - Rd_k sum_j I_kj and W_j = sum_k r_kj, whatever else conducts. Taxels of
 /// many ohm can have that by chance, too. So each driven line of the node must be one with each sensed line, and most
-/// of their current must be their own: then the taxels between them are a few ohm. A reading that was taken away in the
-/// last frame must stay further from its limits. Many members: facts of the lines and work space, as check() may not
-/// allocate.
+/// of their current must be their own: then the taxels between them are a few ohm. A film brings further current
+/// to a line, so that fewer ohm are a short. No film lifts a line above the driven one. A reading that was
+/// taken away in the last frame must stay further from its limits. Many members: facts of the lines and work space, as
+/// check() may not allocate.
 class PossibleReadings {
  public:
   explicit PossibleReadings(const ArrayDescription& array);

@@ -14,9 +14,11 @@ constexpr double kRounded = 1e-12;  // of a ratio; what is left of it is roundin
 
 }  // namespace
 
-SaggingSupply::SaggingSupply(std::unique_ptr<CrosstalkInversion> ideal, CircuitModel model, double tolerance_ratio)
+SaggingSupply::SaggingSupply(std::unique_ptr<CrosstalkInversion> ideal, CircuitModel model, FilmFollower film,
+                             double tolerance_ratio)
     : ideal_(std::move(ideal)),
       model_(std::move(model)),
+      film_(std::move(film)),
       tolerance_(std::max(tolerance_ratio, kRounded)),
       left_(model_.ratio().size(), 1.0),
       full_ratio_(left_.size()) {
@@ -30,6 +32,7 @@ InversionResult SaggingSupply::invert(std::span<const double> ratio, std::span<d
     for (std::size_t k = 0; k < ratio.size(); ++k) full_ratio_[k] = ratio[k] / left_[k];
     result = ideal_->invert(full_ratio_, siemens);
     if (!result.solved) break;
+    if (film_.follow(siemens)) model_.set_film(film_.film());
     model_.solve(siemens);
     change = follow_supply(ratio);
     if (change <= tolerance_) break;
@@ -48,6 +51,12 @@ double SaggingSupply::follow_supply(std::span<const double> ratio) noexcept {
     if (!std::isnan(ratio[k])) change = std::max(change, std::abs(ratio[k] / left_[k] - full_ratio_[k]));
   }
   return change;
+}
+
+void SaggingSupply::hold_film(const FilmConductances& film) noexcept {
+  ideal_->hold_film(film);
+  film_.hold(film);
+  model_.set_film(film_.film());
 }
 
 void SaggingSupply::forget() noexcept {

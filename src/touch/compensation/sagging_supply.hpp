@@ -8,6 +8,7 @@
 
 #include "dermis/touch/compensation/circuit_model.hpp"
 #include "dermis/touch/compensation/crosstalk.hpp"
+#include "touch/compensation/film_follower.hpp"
 
 namespace dermis::touch::compensation {
 
@@ -20,10 +21,12 @@ namespace dermis::touch::compensation {
 /// pass shrinks the error to about the share that the supply loses.
 class SaggingSupply final : public CrosstalkInversion {
  public:
-  /// `ideal`: of the same circuit with an ideal supply. `model`: of the circuit.
-  SaggingSupply(std::unique_ptr<CrosstalkInversion> ideal, CircuitModel model, double tolerance_ratio);
+  /// `ideal`: of the same circuit with an ideal supply. `model`: of the circuit. `film`: of the array.
+  SaggingSupply(std::unique_ptr<CrosstalkInversion> ideal, CircuitModel model, FilmFollower film,
+                double tolerance_ratio);
 
   [[nodiscard]] InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept override;
+  void hold_film(const FilmConductances& film) noexcept override;
   void start_frame(double share) noexcept override { ideal_->start_frame(share); }
   void forget() noexcept override;
   void propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept override;
@@ -34,6 +37,7 @@ class SaggingSupply final : public CrosstalkInversion {
 
   std::unique_ptr<CrosstalkInversion> ideal_;
   CircuitModel model_;
+  FilmFollower film_;
   double tolerance_;
   std::vector<double> left_;        // of the supply in each reading
   std::vector<double> full_ratio_;  // of an ideal supply

@@ -45,7 +45,8 @@ double ReadingScale::siemens_slope(double x) const noexcept {
   return 2.0 * scale * std::cosh(x);
 }
 
-ScaledCircuit::ScaledCircuit(const ArrayDescription& array, CircuitModel model) : model_(std::move(model)) {
+ScaledCircuit::ScaledCircuit(const ArrayDescription& array, CircuitModel model, const ReferenceConductances& references)
+    : model_(std::move(model)), film_(array, references) {
   const Readout& readout = array.readout;
   const double noise_ratio = readout.adc_noise_counts / readout.full_scale_counts();
   const bool columns_are_driven = readout.circuit == Circuit::flexitac;
@@ -58,6 +59,11 @@ ScaledCircuit::ScaledCircuit(const ArrayDescription& array, CircuitModel model) 
     }
   }
   for (auto* values : {&measured_, &x_, &siemens_, &misfit_}) values->resize(array.taxel_count());
+}
+
+void ScaledCircuit::hold_film(const FilmConductances& film) noexcept {
+  film_.hold(film);
+  model_.set_film(film_.film());
 }
 
 void ScaledCircuit::set_frame(std::span<const double> ratio, std::span<const double> siemens) noexcept {
@@ -75,6 +81,7 @@ void ScaledCircuit::set_frame(std::span<const double> ratio, std::span<const dou
 
 void ScaledCircuit::solve() noexcept {
   for (std::size_t k = 0; k < x_.size(); ++k) siemens_[k] = readings_[k].siemens(x_[k]);
+  if (film_.follow(siemens_)) model_.set_film(film_.film());
   model_.solve(siemens_);
   for (std::size_t k = 0; k < x_.size(); ++k) {
     misfit_[k] = measured_[k] - (is_kept(k) ? x_[k] : readings_[k].scaled(model_.ratio()[k]));

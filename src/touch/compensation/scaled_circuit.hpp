@@ -9,6 +9,7 @@
 
 #include "dermis/touch/compensation/circuit_model.hpp"
 #include "dermis/touch/frames/array_description.hpp"
+#include "touch/compensation/film_follower.hpp"
 
 namespace dermis::touch::compensation {
 
@@ -38,8 +39,12 @@ inline constexpr double kMostSiemens = 1e3;
 /// A circuit with its taxels and readings on that scale, beside the readings of a frame.
 class ScaledCircuit {
  public:
-  /// `model` is of `array`.
-  ScaledCircuit(const ArrayDescription& array, CircuitModel model);
+  /// `model` is of `array`. A film follows the taxels by `references`.
+  ScaledCircuit(const ArrayDescription& array, CircuitModel model, const ReferenceConductances& references);
+
+  /// See CrosstalkInversion.
+  void hold_film(const FilmConductances& film) noexcept;
+  [[nodiscard]] bool has_film() const noexcept { return film_.any(); }
 
   /// The frame to compare with; `ratio` is to outlive the comparison. Where it is not a number, the taxel is wanted at
   /// `siemens`, and its measured() is that.
@@ -72,6 +77,7 @@ class ScaledCircuit {
  private:
   std::vector<ReadingScale> readings_;
   CircuitModel model_;
+  FilmFollower film_;
   std::span<const double> ratio_;
   std::vector<double> measured_;
   std::vector<double> x_;

@@ -16,7 +16,12 @@ class Transposed final : public CrosstalkInversion {
  public:
   /// `inversion` is for [cols, rows].
   Transposed(std::unique_ptr<CrosstalkInversion> inversion, std::size_t rows, std::size_t cols)
-      : inversion_(std::move(inversion)), rows_(rows), cols_(cols), ratio_(rows * cols), values_(rows * cols) {
+      : inversion_(std::move(inversion)),
+        rows_(rows),
+        cols_(cols),
+        ratio_(rows * cols),
+        values_(rows * cols),
+        film_(cols, rows) {
     shorted_.reserve(rows * cols);
   }
 
@@ -31,6 +36,11 @@ class Transposed final : public CrosstalkInversion {
     shorted_.clear();
     for (const std::size_t taxel : taxels) shorted_.push_back(taxel % cols_ * rows_ + taxel / cols_);
     return inversion_->set_shorted(shorted_);
+  }
+  void hold_film(const FilmConductances& film) noexcept override {
+    film_.between_rows = film.between_cols;
+    film_.between_cols = film.between_rows;
+    inversion_->hold_film(film_);
   }
   void start_frame(double share) noexcept override { inversion_->start_frame(share); }
   void forget() noexcept override { inversion_->forget(); }
@@ -53,6 +63,7 @@ class Transposed final : public CrosstalkInversion {
   std::size_t cols_;
   std::vector<double> ratio_;   // [cols, rows]
   std::vector<double> values_;  // [cols, rows]
+  FilmConductances film_;       // [cols, rows]
   std::vector<std::size_t> shorted_;
 };
 

@@ -113,6 +113,22 @@ TEST(FloatingRows, open_rows_and_columns_read_zero) {
   EXPECT_EQ(inverted, std::vector<double>(siemens.size()));
 }
 
+TEST(FloatingRows, every_taxel_comes_back_under_a_film) {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Random random(seed);
+    auto array = random_floating_array(2 + random.below(15), 2 + random.below(15), random);
+    const double ohm = random.log_uniform(2e4, 1e6);
+    array.readout.film = Film{ohm, ohm};
+    const auto siemens = random_taxels(array, random);
+    std::vector<double> inverted(siemens.size());
+    ASSERT_LE(FloatingRows(array).solve(ratios_of(array, siemens), kEnough, inverted), kEnough);
+    for (std::size_t k = 0; k < siemens.size(); ++k) {
+      ASSERT_NEAR(inverted[k] / siemens[k], 1.0, 1e-4) << array.taxel_name(k);
+    }
+  }
+}
+
 TEST(FloatingRows, refuses_readings_that_no_driver_carries) {
   Random random(1);
   auto array = random_floating_array(4, 4, random);

@@ -35,8 +35,8 @@ class CircuitModel {
   /// Replaces the resistances of the drivers and loads [ohm], sizes driven_lines() and sensed_lines().
   void set_resistors(std::span<const double> drive_ohm, std::span<const double> load_ohm);
 
-  /// Of an array with a film (Readout::film): what it conducts from now on, at first where it is unloaded. Along a line
-  /// with resistance it is spread evenly. Allocates nothing.
+  /// The film of an array that has one (Readout::film), at first an unloaded one. Along a line with resistance it is
+  /// spread evenly. Allocates nothing.
   void set_film(const FilmConductances& film) noexcept;
 
   /// Readings over the supply at the last solution [rows, cols].

@@ -119,7 +119,7 @@ class Compensator {
   void process(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept;
 
   /// See CrosstalkInversion.
-  void hold_film(const FilmConductances& film) noexcept { inversion_->hold_film(film); }
+  void hold_film(const FilmConductances& film) noexcept;
   void forget() noexcept;
   [[nodiscard]] double siemens_per_ratio() const noexcept { return inversion_->siemens_per_ratio(); }
 

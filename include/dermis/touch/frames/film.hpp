@@ -9,21 +9,21 @@
 namespace dermis {
 
 /// One piece of film or rubber over all lines also conducts from each electrode to its neighbours. Between two
-/// neighbouring taxels, of one row or of one column, it conducts
+/// neighbouring rows, and between two neighbouring columns, it conducts
 ///
-///   1/unloaded_ohm + (1/loaded_ohm - 1/unloaded_ohm) min(F / loaded_newtons, 1)^0.9,   F the mean of their forces.
+///   1/unloaded_ohm + sum of (1/loaded_ohm - 1/unloaded_ohm) min(F / loaded_newtons, 1)^0.9
 ///
-/// Two neighbouring rows are connected by the sum of this over the columns, two columns by the sum over the rows. The
-/// exponent is that of a taxel of such films: shared/research/literature.md. Both resistances may be kFitOhm.
+/// over all pairs of neighbouring taxels on the two lines, F the mean of their two forces. The exponent is that of a
+/// taxel of such films: shared/research/literature.md. Both resistances may be kFitOhm.
 struct Film {
-  double unloaded_ohm = 0.0;     ///< > 0
-  double loaded_ohm = 0.0;       ///< > 0, at most unloaded_ohm.
-  double loaded_newtons = 20.0;  ///< On each of the two taxels, > 0.
+  double unloaded_ohm = 0.0;     ///< Between two neighbouring lines with nothing on the sheet, > 0.
+  double loaded_ohm = 0.0;       ///< The same where one pair of taxels is loaded, > 0, at most unloaded_ohm.
+  double loaded_newtons = 20.0;  ///< On each of these two, > 0.
 
   [[nodiscard]] bool is_unknown() const noexcept;  ///< A resistance is kFitOhm.
   [[nodiscard]] bool is_constant() const noexcept { return loaded_ohm == unloaded_ohm; }
-  /// Between two neighbouring taxels under these forces, 0 or more [S].
-  [[nodiscard]] double siemens(double newtons, double other_newtons) const noexcept;
+  /// By how much more it conducts with two neighbouring taxels under these forces, 0 or more [S].
+  [[nodiscard]] double rise(double newtons, double other_newtons) const noexcept;
 };
 
 /// What a film conducts from each row to the next [rows - 1] and from each column to the next [cols - 1] [S].

@@ -21,7 +21,7 @@ class ScannedLines {
   /// Replaces the resistances of the drivers and loads [ohm].
   void set_resistors(std::span<const double> drive_ohm, std::span<const double> load_ohm);
 
-  /// Of an array with a film: what it conducts, at first where it is unloaded. Allocates nothing.
+  /// The film of an array that has one, at first an unloaded one. Allocates nothing.
   void set_film(const FilmConductances& film) noexcept { film_ = film; }
   [[nodiscard]] const FilmConductances& film() const noexcept { return film_; }
   [[nodiscard]] bool has_film() const noexcept { return array_.readout.film.has_value(); }
