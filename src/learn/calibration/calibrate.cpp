@@ -88,6 +88,7 @@ Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std:
   preparation.find_settling();
   preparation.find_cover();
   if (Status found = preparation.find_circuit(); !found) return found.error();
+  preparation.find_film();
   preparation.judge_instrument();
   preparation.doubt_circuit();
   return preparation.invert(progress);

@@ -19,6 +19,7 @@
 #include "learn/calibration/samples/inverted_frames.hpp"
 #include "learn/calibration/samples/sample_choice.hpp"
 #include "learn/calibration/sheet/felt_loads.hpp"
+#include "learn/calibration/sheet/film_fit.hpp"
 
 namespace dermis::learn::calibration {
 namespace {
@@ -99,6 +100,8 @@ void Preparation::find_settling() {
   append(remarks_, settling.statements);
   asks_for_instrument_ = calibration::asks_for_instrument(settling.array.readout);
   known_ = without_unknown_instrument(std::move(settling.array));
+  asks_for_film_ = known_.readout.film && known_.readout.film->is_unknown();
+  if (asks_for_film_) known_.readout.film.reset();
 }
 
 void Preparation::take_cover(const std::optional<Cover>& cover) {
@@ -126,6 +129,25 @@ Status Preparation::find_circuit() {
     take_cover(cover_.cover);
   }
   return Done{};
+}
+
+void Preparation::find_film() {
+  if (known_.readout.film || known_.readout.circuit == Circuit::none) return;
+  const bool is_cover_told = described_.cover && !described_.cover->is_unknown();
+  constexpr int kRounds = 3;  // a film feels what the cover hands on, and hides a cover
+  FilmFit film;
+  for (int round = 0; round < kRounds; ++round) {
+    const bool had_cover = known_.cover.has_value();
+    known_.readout.film.reset();
+    film = fit_film(known_, frames_, surface_, settle_time_);
+    known_.readout.film = film.film;
+    if (!film.film || is_cover_told) break;
+    cover_ = fit_cover(known_, frames_, surface_, settle_time_);
+    take_cover(cover_.cover);
+    if (had_cover == known_.cover.has_value()) break;
+  }
+  if (!film.sentence.empty()) remarks_.push_back(film.sentence);
+  if (!film.film && asks_for_film_) remarks_.emplace_back("no film conducts between the lines, as far as presses tell");
 }
 
 Trainable Preparation::trainable() const {

@@ -32,6 +32,8 @@ class Preparation {
   void find_cover();
   /// Unknown resistances, or an unknown circuit.
   [[nodiscard]] Status find_circuit();
+  /// A film that conducts from line to line, where presses tell one, or where it is to be found.
+  void find_film();
   /// ADC and supply, and what remains unexplained of them.
   void judge_instrument();
   /// Another circuit that explains the frames better.
@@ -54,6 +56,7 @@ class Preparation {
   std::vector<Load> chosen_;  // of the frames that become samples
   std::vector<std::string> remarks_;
   bool asks_for_instrument_ = false;
+  bool asks_for_film_ = false;
   CoverFit cover_;
   std::optional<CircuitFit> circuit_;
   InstrumentFit instrument_;

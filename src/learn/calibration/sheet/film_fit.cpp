@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "learn/calibration/circuit_fit/line_parameters.hpp"
 #include "learn/calibration/sheet/cover_shares.hpp"
 #include "learn/calibration/sheet/single_presses.hpp"
 #include "learn/calibration/sheet/taxel_curves.hpp"
@@ -20,15 +21,21 @@ namespace dermis::learn::calibration {
 namespace {
 
 constexpr std::size_t kLeastLines = 3;
-constexpr std::size_t kFar = 3;              // lines from a press: what it raises there is no film
-constexpr double kOutlier = 5.0;             // sigmas
-constexpr double kLeastRelativeSigma = 1e-3; // of a taxel beside a press, in the conductance of the press
-constexpr double kEvidence = 60.0;           // squares that a film must explain
-constexpr double kLeastExplained = 0.3;      // of the squares beyond noise
+constexpr std::size_t kFar = 3;               // lines from a press: what it raises there is no film
+constexpr double kOutlier = 5.0;              // sigmas
+constexpr double kLeastRelativeSigma = 1e-3;  // of a taxel beside a press, in the conductance of the press
+constexpr double kMostWork = 1e5;             // frames x taxels of a trial
+constexpr double kMostSlowWork = 2e4;         // the same of floating lines
+constexpr double kSuspicious = 1.0;           // mean square
+constexpr double kEvidence = 60.0;            // squares that a film must explain
+constexpr double kLeastExplained = 0.3;       // of the squares beyond noise
+constexpr double kLeastCorner = 0.4;          // share across a corner of a cover, over the square of the one beside
 constexpr double kLeastOhm = 100.0;
 constexpr double kMostOhm = 10e6;
 constexpr double kFirstFactor = 4.0;
+constexpr double kNearFactor = 1.5;
 constexpr double kLastFactor = 1.01;
+constexpr double kClearlyLess = 0.98;                       // squares, for another force
 constexpr std::array kForces{20.0, 5.0, 10.0, 40.0, 80.0};  // under which the film is at its least resistance [N]
 
 /// Sum of squares in which outliers count by their first power (Huber), and how many there are.
@@ -50,27 +57,54 @@ std::size_t apart(std::size_t a, std::size_t b) {
 /// What the taxels around presses show with one film undone.
 class Surroundings {
  public:
-  Surroundings(const ArrayDescription& array, const SinglePresses& single, bool has_cover)
+  Surroundings(const ArrayDescription& array, const SinglePresses& single)
       : array_(array), single_(single), curves_(single) {
-    if (!curves_.any() || !has_cover) return;
+    if (!curves_.any()) return;
     const CoverShares shares(array, single, curves_);
     corner_ = shares.at(1, 1).share;
-    beside_ = std::min(shares.at(0, 1).share, shares.at(1, 0).share);
-    second_ = std::min(shares.at(0, 2).share, shares.at(2, 0).share);
+    beside_ = std::min({shares.at(0, 1).share, shares.at(1, 0).share, std::sqrt(corner_ / kLeastCorner)});
+    second_ = std::min({shares.at(0, 2).share, shares.at(2, 0).share, corner_});
   }
 
+  /// Taxels that would have to conduct less than nothing count where there are more of them than far from presses.
   [[nodiscard]] Misfit misfit() const {
     Misfit misfit;
-    for (const SinglePress& press : single_.presses) add(press, misfit);
+    Held near;
+    Held far;
+    for (const SinglePress& press : single_.presses) {
+      add(press, misfit, near);
+      for (std::size_t taxel = 0; taxel < array_.taxel_count(); ++taxel) {
+        if (is_far(press.taxel, taxel)) far.add(press.siemens[taxel]);
+      }
+    }
+    const double usual = far.count > 0.0 ? far.held / far.count * near.count : 0.0;
+    misfit.squares += kOutlier * kOutlier * std::max(near.held - usual, 0.0);
     return misfit;
   }
 
  private:
-  void add(const SinglePress& press, Misfit& misfit) const {
+  struct Held {
+    double held = 0.0;
+    double count = 0.0;
+
+    void add(double siemens) {
+      held += siemens == 0.0 ? 1.0 : 0.0;
+      count += 1.0;
+    }
+  };
+
+  [[nodiscard]] bool is_far(std::size_t pressed, std::size_t taxel) const {
+    return apart(pressed / array_.cols, taxel / array_.cols) >= kFar &&
+           apart(pressed % array_.cols, taxel % array_.cols) >= kFar && !array_.is_absent(taxel);
+  }
+
+  void add(const SinglePress& press, Misfit& misfit, Held& near) const {
     const std::size_t row = press.taxel / array_.cols;
     const std::size_t col = press.taxel % array_.cols;
-    const double of_row = far_rise(press, [&](std::size_t i, std::size_t j) { return i == row && apart(j, col) >= kFar; });
-    const double of_col = far_rise(press, [&](std::size_t i, std::size_t j) { return j == col && apart(i, row) >= kFar; });
+    const double of_row =
+        far_rise(press, [&](std::size_t i, std::size_t j) { return i == row && apart(j, col) >= kFar; });
+    const double of_col =
+        far_rise(press, [&](std::size_t i, std::size_t j) { return j == col && apart(i, row) >= kFar; });
     for (std::size_t i = row < 2 ? 0 : row - 2; i < std::min(row + 3, array_.rows); ++i) {
       for (std::size_t j = col < 2 ? 0 : col - 2; j < std::min(col + 3, array_.cols); ++j) {
         const std::size_t rows = apart(i, row);
@@ -81,6 +115,7 @@ class Surroundings {
         const double covered = curves_.any() ? curves_.siemens(taxel, share(rows, cols) * press.newtons) : 0.0;
         const double rise = press.siemens[taxel] - single_.unloaded[taxel] - of_line - covered;
         const double of_press = press.siemens[press.taxel] - single_.unloaded[press.taxel];
+        near.add(press.siemens[taxel]);
         misfit.add(rise / std::hypot(single_.sigma[taxel], kLeastRelativeSigma * of_press, 0.03 * covered));
       }
     }
@@ -115,60 +150,66 @@ class Surroundings {
 /// Films over one recording.
 class FilmSearch {
  public:
-  FilmSearch(ArrayDescription array, std::span<const RawFrame> frames, std::span<const Load> loads, Nanos settle_time)
-      : array_(std::move(array)), frames_(frames), loads_(loads), settle_time_(settle_time) {}
+  FilmSearch(ArrayDescription array, const LabelledPresses& presses) : array_(std::move(array)), presses_(presses) {}
 
   /// Empty: the circuit cannot be so.
-  [[nodiscard]] std::optional<Misfit> misfit(const std::optional<Film>& film, bool has_cover) {
+  [[nodiscard]] std::optional<Misfit> misfit(const std::optional<Film>& film) {
     array_.readout.film = film;
-    const std::optional<SinglePresses> single = single_presses(array_, frames_, loads_, settle_time_);
+    const std::optional<SinglePresses> single = presses_.invert(array_);
     if (!single) return std::nullopt;
-    return Surroundings(array_, *single, has_cover).misfit();
+    return Surroundings(array_, *single).misfit();
   }
 
   /// The film of least misfit, from coarse steps of both resistances to fine ones.
-  [[nodiscard]] std::optional<Film> best(bool has_cover) {
-    Film film{50e3, 10e3, kForces.front()};
-    double least = squares(film, has_cover);
-    for (double factor = kFirstFactor; factor > kLastFactor; factor = std::sqrt(factor)) {
-      while (improve(factor, has_cover, film, least)) {}
+  [[nodiscard]] std::optional<Film> best() {
+    Candidate best = improved({50e3, 10e3, kForces.front()}, kFirstFactor);
+    for (std::size_t k = 1; k < kForces.size(); ++k) {
+      const Candidate other = improved({best.film.unloaded_ohm, best.film.loaded_ohm, kForces[k]}, kNearFactor);
+      if (other.squares < kClearlyLess * best.squares) best = other;
     }
-    for (const double newtons : kForces) {
-      Film other{film.unloaded_ohm, film.loaded_ohm, newtons};
-      double of_other = squares(other, has_cover);
-      for (double factor = 1.5; factor > kLastFactor; factor = std::sqrt(factor)) {
-        while (improve(factor, has_cover, other, of_other)) {}
-      }
-      if (of_other < 0.98 * least) std::tie(film, least) = std::pair(other, of_other);
-    }
-    if (!std::isfinite(least)) return std::nullopt;
-    return film;
+    if (!std::isfinite(best.squares)) return std::nullopt;
+    return best.film;
   }
 
  private:
-  [[nodiscard]] double squares(const Film& film, bool has_cover) {
-    const bool is_possible = film.loaded_ohm <= film.unloaded_ohm && film.loaded_ohm >= kLeastOhm && film.unloaded_ohm <= kMostOhm;
-    const std::optional<Misfit> found = is_possible ? misfit(film, has_cover) : std::nullopt;
+  struct Candidate {
+    Film film;
+    double squares = 0.0;
+  };
+
+  [[nodiscard]] double squares(const Film& film) {
+    const bool is_possible =
+        film.loaded_ohm <= film.unloaded_ohm && film.loaded_ohm >= kLeastOhm && film.unloaded_ohm <= kMostOhm;
+    const std::optional<Misfit> found = is_possible ? misfit(film) : std::nullopt;
     return found ? found->squares : std::numeric_limits<double>::infinity();
   }
 
+  [[nodiscard]] Candidate improved(const Film& start, double first_factor) {
+    Candidate best{start, squares(start)};
+    for (double factor = first_factor; factor > kLastFactor; factor = std::sqrt(factor)) {
+      while (improve(factor, best)) {
+      }
+    }
+    return best;
+  }
+
   /// A step along one of the resistances, or both, that lowers the misfit.
-  bool improve(double factor, bool has_cover, Film& film, double& least) {
-    for (const auto& [unloaded, loaded] : {std::pair{factor, 1.0}, {1.0 / factor, 1.0}, {1.0, factor}, {1.0, 1.0 / factor}, {factor, factor}, {1.0 / factor, 1.0 / factor}}) {
-      const Film trial{film.unloaded_ohm * unloaded, film.loaded_ohm * loaded, film.loaded_newtons};
-      const double found = squares(trial, has_cover);
-      if (!(found < least)) continue;
-      film = trial;
-      least = found;
+  bool improve(double factor, Candidate& best) {
+    const double back = 1.0 / factor;
+    const std::array<std::pair<double, double>, 6> steps{
+        {{factor, 1.0}, {back, 1.0}, {1.0, factor}, {1.0, back}, {factor, factor}, {back, back}}};
+    for (const auto& [unloaded, loaded] : steps) {
+      const Film film{best.film.unloaded_ohm * unloaded, best.film.loaded_ohm * loaded, best.film.loaded_newtons};
+      const double found = squares(film);
+      if (!(found < best.squares)) continue;
+      best = {film, found};
       return true;
     }
     return false;
   }
 
   ArrayDescription array_;
-  std::span<const RawFrame> frames_;
-  std::span<const Load> loads_;
-  Nanos settle_time_;
+  const LabelledPresses& presses_;
 };
 
 std::string ohm_text(double ohm) {
@@ -176,9 +217,12 @@ std::string ohm_text(double ohm) {
 }
 
 std::string sentence(const Film& film) {
-  const std::string loaded = film.is_constant() ? "" : fmt::format(", {} under {:.0f} N", ohm_text(film.loaded_ohm), film.loaded_newtons);
-  return fmt::format("your sheet is one film: it also conducts between neighbouring lines, {} from taxel to taxel{}; this is undone (film_ohm)",
-                     ohm_text(film.unloaded_ohm), loaded);
+  const std::string loaded = film.is_constant() ? ""
+                                                : fmt::format(", {} where {:.0f} N press on both",
+                                                              ohm_text(film.loaded_ohm), film.loaded_newtons);
+  return fmt::format(
+      "your sheet is one film: it also conducts between neighbouring lines, {}{}; this is undone (film_ohm)",
+      ohm_text(film.unloaded_ohm), loaded);
 }
 
 bool explains(const Misfit& with, const Misfit& without) {
@@ -192,18 +236,18 @@ bool explains(const Misfit& with, const Misfit& without) {
 FilmFit fit_film(const ArrayDescription& array, std::span<const RawFrame> frames, std::span<const Load> loads,
                  Nanos settle_time) {
   if (array.rows < kLeastLines || array.cols < kLeastLines) return {};
-  FilmSearch search(array, frames, loads, settle_time);
-  const std::optional<Misfit> plain = search.misfit(std::nullopt, false);
-  if (!plain) return {};
-  const std::optional<Misfit> covered = search.misfit(std::nullopt, true);
-  const std::optional<Film> film = search.best(false);
-  if (!film) return {};
-  const std::optional<Misfit> with = search.misfit(film, false);
-  fmt::print(stderr, "plain {:.1f}/{} covered {:.1f} film {:.1f} un {} lo {} F {}\n", plain->squares, plain->count, covered->squares, with->squares, film->unloaded_ohm, film->loaded_ohm, film->loaded_newtons);
-  const std::optional<Film> film2 = search.best(true);
-  const std::optional<Misfit> with2 = search.misfit(film2, true);
-  fmt::print(stderr, "  with cover: film {:.1f} un {} lo {} F {}\n",  with2->squares, film2->unloaded_ohm, film2->loaded_ohm, film2->loaded_newtons);
-  if (!explains(*with, *plain)) return {};
+  const double work = is_inverted_slowly(array) ? kMostSlowWork : kMostWork;
+  const auto presses = LabelledPresses::create(array, frames, loads, settle_time, work);
+  if (!presses) return {};
+  FilmSearch search(array, *presses);
+  const std::optional<Misfit> without = search.misfit(std::nullopt);
+  if (!without || !(without->squares > kSuspicious * without->count)) return {};
+  const std::optional<Film> film = search.best();
+  const std::optional<Misfit> with = film ? search.misfit(film) : std::nullopt;
+  if (std::getenv("FILM_DEBUG"))
+    fmt::print(stderr, "film: without {:.1f}/{} with {:.1f} un {} lo {} F {}\n", without->squares, without->count,
+               with ? with->squares : -1.0, film->unloaded_ohm, film->loaded_ohm, film->loaded_newtons);
+  if (!with || !explains(*with, *without)) return {};
   return {film, sentence(*film)};
 }
 

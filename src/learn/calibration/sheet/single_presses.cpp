@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "dermis/touch/frames/cover.hpp"
 #include "dermis/touch/frames/quantile.hpp"
 #include "learn/calibration/circuit_fit/circuit_frames.hpp"
 #include "learn/calibration/circuit_fit/inverted_frame.hpp"
@@ -35,48 +36,6 @@ std::optional<std::size_t> only_taxel(std::span<const Load> loads, std::size_t c
   return taxel;
 }
 
-struct Labelled {
-  const CircuitFrame* frame = nullptr;
-  std::size_t taxel = 0;
-  double newtons = 0.0;  // 0: nothing presses
-};
-
-std::vector<Labelled> labelled_frames(const ArrayDescription& array, const CircuitFrames& frames,
-                                      const LoadsOfFrames& loads_of) {
-  std::vector<Labelled> labelled;
-  std::size_t idle = 0;
-  for (const CircuitFrame& frame : frames.frames) {
-    const std::span<const Load> loads = loads_of[frame.first_frame];
-    const bool is_idle = std::all_of(loads.begin(), loads.end(), [](const Load& load) { return load.value == 0.0; });
-    if (is_idle && idle++ < kMostIdle) labelled.push_back({&frame, 0, 0.0});
-    const std::optional<std::size_t> taxel = only_taxel(loads, array.cols);
-    if (!taxel) continue;
-    const auto newtons = static_cast<double>(frame.newtons[*taxel]);  // not a number: saturated
-    if (newtons > 0.0) labelled.push_back({&frame, *taxel, newtons});
-  }
-  return labelled;
-}
-
-/// At most so many, the lighter presses of each taxel left out first.
-void thin_out(std::vector<Labelled>& labelled, std::size_t most) {
-  const auto is_before = [](const Labelled& a, const Labelled& b) {
-    return a.taxel != b.taxel ? a.taxel < b.taxel : a.newtons > b.newtons;
-  };
-  std::stable_sort(labelled.begin(), labelled.end(), is_before);
-  if (labelled.size() <= most) return;
-  std::vector<std::size_t> place_in_taxel;
-  for (std::size_t k = 0; k < labelled.size(); ++k) {
-    const bool goes_on = k > 0 && labelled[k].taxel == labelled[k - 1].taxel;
-    place_in_taxel.push_back(labelled[k].newtons == 0.0 ? 0 : goes_on ? place_in_taxel.back() + 1 : 0);
-  }
-  const std::size_t last = ranked(place_in_taxel, most);
-  std::vector<Labelled> kept;
-  for (std::size_t k = 0; k < labelled.size(); ++k) {
-    if (place_in_taxel[k] <= last) kept.push_back(labelled[k]);
-  }
-  labelled = std::move(kept);
-}
-
 bool is_far(const ArrayDescription& array, std::size_t a, std::size_t b) {
   const auto apart = [](std::size_t x, std::size_t y) { return x > y ? x - y : y - x; };
   const std::size_t rows = apart(a / array.cols, b / array.cols);
@@ -101,24 +60,80 @@ void find_unloaded(const ArrayDescription& array, std::span<const double> idle, 
 
 }  // namespace
 
-std::optional<SinglePresses> single_presses(const ArrayDescription& array, std::span<const RawFrame> frames,
-                                            std::span<const Load> loads, Nanos settle_time) {
-  const Result<CircuitFrames> circuit = circuit_frames(array, frames, loads, settle_time);
+std::vector<LabelledPresses::Labelled> LabelledPresses::labelled_frames(const ArrayDescription& array,
+                                                                        const CircuitFrames& frames,
+                                                                        const LoadsOfFrames& loads_of) {
+  std::vector<Labelled> labelled;
+  std::size_t idle = 0;
+  for (const CircuitFrame& frame : frames.frames) {
+    const std::span<const Load> loads = loads_of[frame.first_frame];
+    const bool is_idle = std::all_of(loads.begin(), loads.end(), [](const Load& load) { return load.value == 0.0; });
+    if (is_idle && idle++ < kMostIdle) labelled.push_back({&frame, 0, 0.0});
+    const std::optional<std::size_t> taxel = only_taxel(loads, array.cols);
+    if (!taxel) continue;
+    const auto newtons = static_cast<double>(frame.newtons[*taxel]);  // not a number: saturated
+    if (newtons > 0.0) labelled.push_back({&frame, *taxel, newtons});
+  }
+  return labelled;
+}
+
+/// At most so many, the lighter presses of each taxel left out first.
+void LabelledPresses::thin_out(std::vector<Labelled>& labelled, std::size_t most) {
+  const auto is_before = [](const Labelled& a, const Labelled& b) {
+    return a.taxel != b.taxel ? a.taxel < b.taxel : a.newtons > b.newtons;
+  };
+  std::stable_sort(labelled.begin(), labelled.end(), is_before);
+  if (labelled.size() <= most) return;
+  std::vector<std::size_t> place_in_taxel;
+  for (std::size_t k = 0; k < labelled.size(); ++k) {
+    const bool goes_on = k > 0 && labelled[k].taxel == labelled[k - 1].taxel;
+    place_in_taxel.push_back(labelled[k].newtons == 0.0 ? 0 : goes_on ? place_in_taxel.back() + 1 : 0);
+  }
+  const std::size_t last = ranked(place_in_taxel, most);
+  std::vector<Labelled> kept;
+  for (std::size_t k = 0; k < labelled.size(); ++k) {
+    if (place_in_taxel[k] <= last) kept.push_back(labelled[k]);
+  }
+  labelled = std::move(kept);
+}
+
+std::optional<LabelledPresses> LabelledPresses::create(const ArrayDescription& array, std::span<const RawFrame> frames,
+                                                       std::span<const Load> loads, Nanos settle_time, double work) {
+  Result<CircuitFrames> circuit = circuit_frames(array, frames, loads, settle_time);
   if (!circuit) return std::nullopt;
-  std::vector<Labelled> labelled = labelled_frames(array, *circuit, LoadsOfFrames(loads, frames.size()));
-  const double work = is_inverted_slowly(array) ? kMostSlowWork : kMostWork;
-  thin_out(labelled, static_cast<std::size_t>(work / static_cast<double>(array.taxel_count())));
+  LabelledPresses presses;
+  presses.circuit_ = *std::move(circuit);
+  presses.labelled_ = labelled_frames(array, presses.circuit_, LoadsOfFrames(loads, frames.size()));
+  thin_out(presses.labelled_, static_cast<std::size_t>(work / static_cast<double>(array.taxel_count())));
+  return presses;
+}
+
+std::optional<SinglePresses> LabelledPresses::invert(const ArrayDescription& array) const {
   std::vector<const CircuitFrame*> chosen;
-  for (const Labelled& one : labelled) chosen.push_back(one.frame);
+  std::vector<CircuitFrame> felt;
+  if (array.readout.film && array.cover) {
+    felt.reserve(labelled_.size());
+    const CoverKernel kernel(array);
+    std::vector<float> surface(array.taxel_count());
+    for (const auto& [frame, taxel, newtons] : labelled_) {
+      felt.push_back(*frame);
+      surface[taxel] = static_cast<float>(newtons);
+      kernel.spread<float>(surface, felt.back().newtons);
+      surface[taxel] = 0.0F;
+      chosen.push_back(&felt.back());
+    }
+  } else {
+    for (const Labelled& one : labelled_) chosen.push_back(one.frame);
+  }
   const Result<InvertedFrames> inverted = invert_frames(array, chosen);
   if (!inverted) return std::nullopt;
   SinglePresses single;
   std::vector<double> idle;
-  for (std::size_t k = 0; k < labelled.size(); ++k) {
+  for (std::size_t k = 0; k < labelled_.size(); ++k) {
     if (!(*inverted)[k]) continue;
     const std::vector<double>& siemens = (*inverted)[k]->siemens;
-    if (labelled[k].newtons > 0.0) {
-      single.presses.push_back({labelled[k].taxel, labelled[k].newtons, siemens});
+    if (labelled_[k].newtons > 0.0) {
+      single.presses.push_back({labelled_[k].taxel, labelled_[k].newtons, siemens});
     } else {
       idle.insert(idle.end(), siemens.begin(), siemens.end());
     }
@@ -126,6 +141,13 @@ std::optional<SinglePresses> single_presses(const ArrayDescription& array, std::
   if (idle.size() < kLeastIdle * array.taxel_count() || single.presses.size() < kLeastBase) return std::nullopt;
   find_unloaded(array, idle, single);
   return single;
+}
+
+std::optional<SinglePresses> single_presses(const ArrayDescription& array, std::span<const RawFrame> frames,
+                                            std::span<const Load> loads, Nanos settle_time) {
+  const double work = is_inverted_slowly(array) ? kMostSlowWork : kMostWork;
+  const auto presses = LabelledPresses::create(array, frames, loads, settle_time, work);
+  return presses ? presses->invert(array) : std::nullopt;
 }
 
 }  // namespace dermis::learn::calibration

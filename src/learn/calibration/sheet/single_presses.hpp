@@ -10,6 +10,8 @@
 #include "dermis/touch/frames/array_description.hpp"
 #include "dermis/touch/frames/frames.hpp"
 #include "dermis/touch/frames/loads.hpp"
+#include "learn/calibration/circuit_fit/circuit_frames.hpp"
+#include "learn/calibration/labels/labels.hpp"
 
 namespace dermis::learn::calibration {
 
@@ -27,8 +29,34 @@ struct SinglePresses {
   std::vector<double> sigma;         ///< [taxels] [S], of one frame.
 };
 
-/// Empty: too few frames for a word on the sheet, or a circuit that is not known. Saturated presses are left out, and
-/// of very many presses those that are lighter.
+/// The frames of a recording in which one taxel alone is labelled, or nothing presses. Saturated presses are left out,
+/// and of very many presses those that are lighter.
+class LabelledPresses {
+ public:
+  /// Empty: no frame that can be used. `work`: frames times taxels, at most.
+  static std::optional<LabelledPresses> create(const ArrayDescription& array, std::span<const RawFrame> frames,
+                                               std::span<const Load> loads, Nanos settle_time, double work);
+
+  /// Empty: too few frames for a word on the sheet, or a circuit that is not known or cannot give them. A film over the
+  /// lines feels what the cover of `array` hands on.
+  [[nodiscard]] std::optional<SinglePresses> invert(const ArrayDescription& array) const;
+
+ private:
+  struct Labelled {
+    const CircuitFrame* frame = nullptr;
+    std::size_t taxel = 0;
+    double newtons = 0.0;  // 0: nothing presses
+  };
+
+  static std::vector<Labelled> labelled_frames(const ArrayDescription& array, const CircuitFrames& frames,
+                                               const LoadsOfFrames& loads_of);
+  static void thin_out(std::vector<Labelled>& labelled, std::size_t most);
+
+  CircuitFrames circuit_;
+  std::vector<Labelled> labelled_;  // refers to circuit_
+};
+
+/// The presses that are affordable once.
 [[nodiscard]] std::optional<SinglePresses> single_presses(const ArrayDescription& array,
                                                           std::span<const RawFrame> frames, std::span<const Load> loads,
                                                           Nanos settle_time);
