@@ -184,6 +184,7 @@ Result<SampleDatabase> Preparation::invert(const std::function<void(double)>& pr
   database->lacks_proof = instrument_.lacks_proof;
   database->unexplained_share = instrument_.unexplained;
   database->circuit_fit = std::move(circuit_);
+  database->cover_error = cover_.error;
   if (!cover_.sentence.empty()) remarks_.push_back(cover_.sentence);
   std::move(remarks_.begin(), remarks_.end(), std::back_inserter(database->remarks));
   return database;

@@ -14,6 +14,7 @@ constexpr double kPriorRadiusPitches = 0.75;  // fingers and heels of hands on a
 constexpr float kPriorSigma = 0.6F;
 constexpr float kMismatchOfTaxel = 0.003F;  // deviation of a real patch's shape from the model's
 constexpr float kMismatchOfPeak = 0.0005F;
+constexpr float kMismatchUnderCover = 0.01F;  // of a taxel: no cover is quite a Gaussian
 constexpr float kPlainMisfit = 2.0F;        // chi squared per degree of freedom, up to which noise explains a misfit
 constexpr float kMostShareOfOther = 0.35F;  // of a peak, that a contact without a valley before it can have
 
@@ -79,7 +80,7 @@ void PatchSearch::add(const ForceFrame& force, std::uint32_t taxel) {
   if (!std::isfinite(newtons) || !std::isfinite(sigma)) return;
   const PlaneVector at = plane_.places[taxel];
   const PlaneVector origin = plane_.places[peak_];
-  const float of_taxel = kMismatchOfTaxel * newtons;
+  const float of_taxel = (plane_.cover_spread > 0.0 ? kMismatchUnderCover : kMismatchOfTaxel) * newtons;
   const float of_peak = kMismatchOfPeak * peak_newtons_;
   const float weight = 1.0F / std::sqrt(sigma * sigma + of_taxel * of_taxel + of_peak * of_peak);
   taxels_.push_back({static_cast<float>(at.x - origin.x), static_cast<float>(at.y - origin.y), newtons, weight});

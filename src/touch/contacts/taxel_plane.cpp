@@ -17,11 +17,14 @@ double taxel_area(const ArrayDescription& array) {
   return array.taxel_area_m2.value_or(std::numbers::pi / 4.0 * diameter * diameter);
 }
 
-/// The mean of both axes [m]; 0 without a cover, and on a strip.
+/// The mean of both axes [m]; 0 without a cover, and on a strip. A disc of a cell's area is a little narrower than the
+/// cell: what its variance lacks is added.
 double cover_spread_m(const ArrayDescription& array) {
   if (!array.cover || array.cover->is_unknown() || strip_pitch_m(array)) return 0.0;
   const CoverKernel kernel(array);
-  return std::sqrt(kernel.row_spread_m() * kernel.col_spread_m());
+  constexpr double kCellOverDisc = 1.0 / 12.0 - 0.25 / std::numbers::pi;
+  const double spread = kernel.row_spread_m() * kernel.col_spread_m();
+  return spread > 0.0 ? std::sqrt(spread + kCellOverDisc * array.row_pitch_m * array.col_pitch_m) : 0.0;
 }
 
 /// Taxels of a strip may be long across it.

@@ -59,6 +59,7 @@ struct SampleDatabase {
   bool lacks_proof = false;
   /// Relative residual of presses on several taxels under circuit and ADC, beside that of single presses; 0: nothing.
   double unexplained_share = 0.0;
+  double cover_error = 0.0;               ///< Relative error that all forces have in common, as the cover was fitted.
   std::optional<CircuitFit> circuit_fit;  ///< Where resistances or the circuit were unknown; `array` holds its result.
 };
 

@@ -65,7 +65,7 @@ struct ForceNetworks {
   /// heaviest calibrated load.
   std::array<float, 2> end_bends{};
 
-  GainErrors gain_errors;  ///< Changes of gains that a recalibration saw and left; empty: none.
+  GainErrors gain_errors;  ///< Changes of gains that a recalibration saw and left, or of a fitted cover; empty: none.
 
   [[nodiscard]] std::size_t taxel_count() const noexcept { return gain.size(); }
 

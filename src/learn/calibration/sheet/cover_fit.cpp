@@ -27,10 +27,12 @@ constexpr double kSigmas = 5.0;       // what must not be chance
 constexpr double kOverFar = 4.0;      // of what taxels far away show
 constexpr double kLeastShare = 3e-4;  // across a corner, of the centre's
 constexpr double kMostScatter = 0.6;  // of pairs of taxels
-constexpr double kAlike = 1.3;        // spreads along rows and columns, one over the other
+constexpr double kAlike = 1.08;       // spreads along rows and columns, one over the other
 constexpr double kLeastCorner = 0.4;  // of the product of both neighbours
 constexpr std::size_t kMostReach = 12;
 constexpr double kKeptSigmas = 3.0;
+constexpr double kLeastKept = 2e-4;       // of the centre's share
+constexpr double kErrorOfShares = 0.005;  // that their noise does not show
 constexpr double kGaussianError = 0.012;  // of all shares together
 constexpr double kGuessedDriveOhm = 30.0;
 constexpr double kGuessedLoadOhm = 1000.0;
@@ -81,6 +83,11 @@ double times(std::size_t rows, std::size_t cols) {
   return (rows > 0 ? 2.0 : 1.0) * (cols > 0 ? 2.0 : 1.0);
 }
 
+struct FoundCover {
+  Cover cover;
+  double error = 0.0;  // relative, of all shares together
+};
+
 /// One cover as its shares tell it.
 class Evidence {
  public:
@@ -107,37 +114,75 @@ class Evidence {
     const double right = shares_.at(0, 1).share;
     if (!(down > corner_.share && right > corner_.share && down < 1.0 && right < 1.0)) return false;
     const double ratio = spread_m(down, array_.row_pitch_m) / spread_m(right, array_.col_pitch_m);
-    return ratio < kAlike && ratio > 1.0 / kAlike && corner_.share > kLeastCorner * down * right;
+    const double pitches = array_.row_pitch_m / array_.col_pitch_m;
+    const double alike = kAlike * std::sqrt(std::max(pitches, 1.0 / pitches));  // no cover is quite a Gaussian
+    return ratio < alike && ratio > 1.0 / alike && corner_.share > kLeastCorner * down * right;
   }
 
   [[nodiscard]] Cover by_corner() const { return {spread_m_by_corner(corner_.share, array_), {}}; }
 
   /// All shares that stand out; a Gaussian where it explains them.
-  [[nodiscard]] Cover by_all() const {
+  [[nodiscard]] FoundCover by_all() const {
     std::vector<CoverShare> found{{0, 0, 1.0}};
+    Sum sum{1.0, 0.0};
+    std::vector<double> rings;
     const std::size_t most = std::min({kMostReach, array_.rows - 1, array_.cols - 1});
-    for (std::size_t ring = 1; ring <= most && add_ring(ring, found); ++ring) {
+    for (std::size_t ring = 1; ring <= most; ++ring) {
+      const Sum of_ring = add_ring(ring, found);
+      if (of_ring.shares == 0.0) break;
+      rings.push_back(of_ring.shares);
+      sum = {sum.shares + of_ring.shares, sum.variance + of_ring.variance};
     }
-    double sum = 0.0;
-    for (const auto& [rows, cols, share] : found) sum += times(rows, cols) * share;
-    for (CoverShare& share : found) share.share /= sum;
-    return gaussian_or({std::numeric_limits<double>::quiet_NaN(), std::move(found)});
+    const double beyond = beyond_last(rings);
+    for (CoverShare& share : found) share.share /= sum.shares + beyond;
+    const double error = std::sqrt(sum.variance) / sum.shares;
+    Cover cover{std::numeric_limits<double>::quiet_NaN(), std::move(found)};
+    if (const std::optional<double> spread = gaussian(cover.shares)) return {{*spread, {}}, error};
+    return {std::move(cover), std::hypot(error, kErrorOfShares, 0.5 * beyond / sum.shares)};
   }
 
  private:
-  /// The shares whose larger distance is `ring`; false: none stands out.
-  bool add_ring(std::size_t ring, std::vector<CoverShare>& found) const {
-    bool any = false;
+  /// Over the share of the centre.
+  struct Sum {
+    double shares = 0.0;
+    double variance = 0.0;
+  };
+
+  /// Adds the shares whose larger distance is `ring`; their sum is 0 where none stands out.
+  Sum add_ring(std::size_t ring, std::vector<CoverShare>& found) const {
+    Sum sum;
     for (std::size_t k = 0; k <= ring; ++k) {
       for (const auto& [rows, cols] : {std::pair{ring, k}, std::pair{k, ring}}) {
         if (k == ring && any_at(found, rows, cols)) continue;
         const RelativeShare share = shares_.at(rows, cols);
-        if (share.share < std::max(kKeptSigmas * share.error, 2.0 * far_)) continue;
+        if (!stands_out(share) || share.share > most_at(found, rows, cols)) continue;
         found.push_back({rows, cols, share.share});
-        any = true;
+        sum.shares += times(rows, cols) * share.share;
+        sum.variance += std::pow(times(rows, cols) * share.error, 2);
       }
     }
-    return any;
+    return sum;
+  }
+
+  /// What lies beyond the rings that stand out, were each the same share of the one before.
+  static double beyond_last(const std::vector<double>& rings) {
+    constexpr double kMostRatio = 0.5;
+    if (rings.size() < 2) return 0.0;
+    const double ratio = std::min(kMostRatio, rings.back() / rings[rings.size() - 2]);
+    return rings.back() * ratio / (1.0 - ratio);
+  }
+
+  [[nodiscard]] bool stands_out(const RelativeShare& share) const {
+    return share.pairs >= kLeastPairs && share.share > std::max({kKeptSigmas * share.error, 2.0 * far_, kLeastKept});
+  }
+
+  /// The least of the shares of taxels that are nearer.
+  static double most_at(const std::vector<CoverShare>& found, std::size_t rows, std::size_t cols) {
+    double most = 1.0;
+    for (const CoverShare& nearer : found) {
+      if (nearer.rows <= rows && nearer.cols <= cols) most = std::min(most, nearer.share);
+    }
+    return most;
   }
 
   static bool any_at(const std::vector<CoverShare>& found, std::size_t rows, std::size_t cols) {
@@ -157,16 +202,16 @@ class Evidence {
     return misfit + rest;
   }
 
-  [[nodiscard]] Cover gaussian_or(Cover cover) const {
+  [[nodiscard]] std::optional<double> gaussian(const std::vector<CoverShare>& shares) const {
     constexpr int kSteps = 60;
     const double middle = spread_m_by_corner(corner_.share, array_);
     double best = middle;
     for (int step = -kSteps; step <= kSteps; ++step) {
       const double trial = middle * std::exp(0.2 * step / kSteps);
-      if (misfit(trial, cover.shares) < misfit(best, cover.shares)) best = trial;
+      if (misfit(trial, shares) < misfit(best, shares)) best = trial;
     }
-    if (misfit(best, cover.shares) < kGaussianError) return {best, {}};
-    return cover;
+    if (misfit(best, shares) < kGaussianError) return best;
+    return std::nullopt;
   }
 
   const ArrayDescription& array_;
@@ -212,7 +257,9 @@ CoverFit fit_cover(const ArrayDescription& array, std::span<const RawFrame> fram
     fit.is_guessed = true;
     fit.cover = evidence.by_corner();
   } else if (evidence.lines_agree()) {
-    fit.cover = evidence.by_all();
+    FoundCover found = evidence.by_all();
+    fit.cover = std::move(found.cover);
+    fit.error = found.error;
   }
   if (fit.cover) fit.sentence = sentence(array, *fit.cover);
   return fit;

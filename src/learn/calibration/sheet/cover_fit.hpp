@@ -15,6 +15,7 @@ namespace dermis::learn::calibration {
 /// What presses of single taxels tell of a cover.
 struct CoverFit {
   std::optional<Cover> cover;
+  double error = 0.0;       ///< Relative, of all felt forces in common.
   bool is_guessed = false;  ///< By the corners alone, as the circuit is not known yet.
   std::string sentence;     ///< On the cover, or on the press that would tell; may be empty.
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -12,12 +13,18 @@
 namespace dermis::learn::calibration {
 namespace {
 
-constexpr double kLeastSigmas = 5.0;     // of the noise, for a logarithm
-constexpr double kBinsPerUnit = 2.5;     // of the logarithm of the force
-constexpr double kLeastSlopeSpan = 0.7;  // the same, for the slope of an end
+constexpr double kLeastSigmas = 5.0;  // of the noise, for a logarithm
+constexpr double kBinsPerUnit = 2.5;  // of the logarithm of the force
+constexpr double kLeastSpan = 0.7;    // of the logarithm of the force, for the slope of an end
 constexpr int kRounds = 3;
 constexpr double kLeastSlope = 0.2;
 constexpr double kMostSlope = 4.0;
+
+struct Bin {
+  double log_newtons = 0.0;  // sums
+  double log_siemens = 0.0;
+  double count = 0.0;
+};
 
 /// Value at x of the line through both points.
 template <typename Point>
@@ -56,23 +63,21 @@ TaxelCurves::TaxelCurves(const SinglePresses& single) : taxel_(single.unloaded.s
   }
 }
 
-/// Medians in bins of the force, the level of each taxel taken out.
+/// Means in bins of the force, the level of each taxel taken out.
 void TaxelCurves::fit_sheet(const std::vector<Points>& measured) {
   std::vector<double> level(measured.size());
   for (int round = 0; round < kRounds; ++round) {
-    std::map<int, std::pair<std::vector<double>, std::vector<double>>> bins;
+    std::map<int, Bin> bins;
     for (std::size_t taxel = 0; taxel < measured.size(); ++taxel) {
       for (const auto& [log_newtons, log_siemens] : measured[taxel]) {
-        auto& [forces, values] = bins[static_cast<int>(std::floor(kBinsPerUnit * log_newtons))];
-        forces.push_back(log_newtons);
-        values.push_back(log_siemens - level[taxel]);
+        Bin& bin = bins[static_cast<int>(std::floor(kBinsPerUnit * log_newtons))];
+        bin.log_newtons += log_newtons;
+        bin.log_siemens += log_siemens - level[taxel];
+        bin.count += 1.0;
       }
     }
     sheet_.clear();
-    for (auto& [bin, of_bin] : bins) {
-      const double force = quantile(of_bin.first, 0.5);
-      sheet_.push_back({force, quantile(std::move(of_bin.second), 0.5)});
-    }
+    for (const auto& [place, bin] : bins) sheet_.push_back({bin.log_newtons / bin.count, bin.log_siemens / bin.count});
     if (!any()) return;
     for (std::size_t taxel = 0; taxel < measured.size(); ++taxel) {
       std::vector<double> above;
@@ -84,18 +89,49 @@ void TaxelCurves::fit_sheet(const std::vector<Points>& measured) {
   }
 }
 
+/// Cubics through the points with the slopes of the parabolas through each three of them.
 double TaxelCurves::of_sheet(double log_newtons) const {
-  const auto beyond = [&](const Point& end, const Point& inner) {
-    const double slope = (inner.log_siemens - end.log_siemens) / (inner.log_newtons - end.log_newtons);
-    return end.log_siemens + std::clamp(slope, kLeastSlope, kMostSlope) * (log_newtons - end.log_newtons);
+  const auto after = std::lower_bound(sheet_.begin(), sheet_.end(), log_newtons,
+                                      [](const Point& point, double value) { return point.log_newtons < value; });
+  const auto last = static_cast<std::size_t>(after - sheet_.begin());
+  const auto beyond = [&](std::size_t end) {
+    const double slope = std::clamp(end_slope(end), kLeastSlope, kMostSlope);
+    return sheet_[end].log_siemens + slope * (log_newtons - sheet_[end].log_newtons);
   };
-  if (log_newtons < sheet_.front().log_newtons) {
-    auto inner = sheet_.begin() + 1;
-    while (inner + 1 != sheet_.end() && inner->log_newtons - sheet_.front().log_newtons < kLeastSlopeSpan) ++inner;
-    return beyond(sheet_.front(), *inner);
+  if (last == 0) return beyond(0);
+  if (last == sheet_.size()) return beyond(last - 1);
+  const Point& low = sheet_[last - 1];
+  const Point& high = sheet_[last];
+  const double span = high.log_newtons - low.log_newtons;
+  const double t = (log_newtons - low.log_newtons) / span;
+  const double off_low = span * slope_at(last - 1) - (high.log_siemens - low.log_siemens);
+  const double off_high = span * slope_at(last) - (high.log_siemens - low.log_siemens);
+  return low.log_siemens + t * (high.log_siemens - low.log_siemens) +
+         t * (1.0 - t) * ((1.0 - t) * off_low - t * off_high);
+}
+
+/// That of the first or last points, which are far enough from each other not to follow noise.
+double TaxelCurves::end_slope(std::size_t end) const {
+  const Point& at = sheet_[end];
+  std::size_t inner = end == 0 ? 1 : end - 1;
+  const std::size_t step = end == 0 ? 1 : std::numeric_limits<std::size_t>::max();  // -1
+  while (inner > 0 && inner + 1 < sheet_.size() && std::abs(sheet_[inner].log_newtons - at.log_newtons) < kLeastSpan) {
+    inner += step;
   }
-  if (log_newtons > sheet_.back().log_newtons) return beyond(sheet_.back(), *(sheet_.end() - 2));
-  return between(sheet_, log_newtons);
+  return (sheet_[inner].log_siemens - at.log_siemens) / (sheet_[inner].log_newtons - at.log_newtons);
+}
+
+double TaxelCurves::slope_at(std::size_t point) const {
+  const std::size_t middle = std::clamp<std::size_t>(point, 1, std::max<std::size_t>(sheet_.size() - 2, 1));
+  const auto slope = [&](std::size_t k) {
+    return (sheet_[k + 1].log_siemens - sheet_[k].log_siemens) / (sheet_[k + 1].log_newtons - sheet_[k].log_newtons);
+  };
+  if (sheet_.size() == 2) return slope(0);
+  const double before = sheet_[middle].log_newtons - sheet_[middle - 1].log_newtons;
+  const double behind = sheet_[middle + 1].log_newtons - sheet_[middle].log_newtons;
+  const double bend = (slope(middle) - slope(middle - 1)) / (before + behind);
+  return slope(middle - 1) +
+         bend * (2.0 * sheet_[point].log_newtons - sheet_[middle - 1].log_newtons - sheet_[middle].log_newtons);
 }
 
 double TaxelCurves::siemens(std::size_t taxel, double newtons) const {

@@ -29,6 +29,8 @@ class TaxelCurves {
 
   void fit_sheet(const std::vector<Points>& measured);
   [[nodiscard]] double of_sheet(double log_newtons) const;
+  [[nodiscard]] double slope_at(std::size_t point) const;
+  [[nodiscard]] double end_slope(std::size_t end) const;
 
   Points sheet_;               // by force
   std::vector<Points> taxel_;  // [taxels], by force

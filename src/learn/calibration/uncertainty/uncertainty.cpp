@@ -265,6 +265,10 @@ Result<UncertaintyReport> fit_uncertainty(const SampleDatabase& database, const 
   fit_material(*judged, training, model.networks, report);
   report.unexplained_share = database.unexplained_share;
   widen(report.unexplained_share, model.networks);
+  if (database.cover_error > 0.0) {
+    const auto error = static_cast<float>(database.cover_error);
+    model.networks.gain_errors = {std::vector<float>(database.array.taxel_count(), error), database.array.cols, 1.0};
+  }
   model.networks.end_bends = find_end_bends(database, model.networks);  // the errors above are of the loads themselves
   return report;
 }
