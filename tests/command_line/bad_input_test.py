@@ -116,6 +116,13 @@ class Usage(SmallArray):
         physics = self.written("physics.toml", "[rubber]\ncreep = 0.1\n")
         self.refuse([*simulate, "touches", "--memory", "rubber", "--physics", physics], ["rubber.creep", "simple"])
 
+    def test_a_film_that_is_none(self):
+        simulate = ["simulate", "--array", self.array, "--out", self.work / "o", "--scene", "touches", "--film"]
+        self.refuse([*simulate, "5000,1000"], ["--film", "UNLOADED,LOADED,NEWTONS"])
+        self.refuse([*simulate, "1000,5000,20"], ["--film", "load lowers the resistance"])
+        self.refuse([*simulate, "0"], ["--film", "more than 0 ohm"])
+        self.refuse([*simulate, "5000,1000,0"], ["--film", "more than 0 N"])
+
     def test_a_scene_of_fixed_length_with_another_length(self):
         self.refuse(
             ["simulate", "--array", self.array, "--scene", "paper", "--frames", "3", "--out", self.work / "o"],

@@ -399,6 +399,13 @@ class Memory(SmallArray):
             seen.add(str(frames))
         self.assertEqual(len(seen), 4)  # simple is what it is without an option
 
+    def test_the_film_is_that_of_the_option(self):
+        seen = set()
+        for options in ((), ("--film", 5000), ("--film", "5000,5000,20"), ("--film", "50000,2000,20")):
+            frames, _ = self.simulated("film" + str(len(seen)) + str(len(options)), "touches", "--frames", 60, *options)
+            seen.add(str(frames))
+        self.assertEqual(len(seen), 3)  # one resistance is a film that loads do not change
+
 
 class Determinism(SmallArray):
     def simulated(self, name, *options, prefix=()):

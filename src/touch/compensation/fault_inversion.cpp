@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "touch/compensation/faults/masked_taxels.hpp"
 #include "touch/compensation/readout_parts.hpp"
@@ -18,7 +17,6 @@ namespace {
 constexpr int kMaxRounds = 20;
 constexpr int kMaxMixedRounds = 40;      // under a film
 constexpr std::size_t kMixingDepth = 8;  // likewise
-constexpr double kMixedShare = 2.0;      // of a difference: the mixing goes half the way
 constexpr int kEstimateRounds = 3;       // the estimate from a taxel's neighbours hardly depends on it
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();  // a reading that is not used
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
@@ -260,20 +258,13 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
   return result;
 }
 
-void FaultInversion::hold_film(const FilmConductances& film) noexcept {
-  film_.hold(film);
-  if (!circuits_ || !film_.any()) return;
-  circuits_->healthy.set_film(film_.film());
-  circuits_->faulty.set_film(film_.film());
-}
-
 void FaultInversion::solve_circuits(std::span<const double> siemens) noexcept {
-  const bool is_new = film_.follow(siemens);
-  for (const auto& [circuit, ratio] : {std::pair(&circuits_->healthy, &correction_.healthy_ratio),
-                                       std::pair(&circuits_->faulty, &correction_.faulty_ratio)}) {
-    if (is_new) circuit->set_film(film_.film());
-    circuit->solve(siemens, *ratio);
+  film_.follow(siemens);
+  for (LumpedCircuit* const circuit : {&circuits_->healthy, &circuits_->faulty}) {
+    if (film_.any()) circuit->set_film(film_.film());
   }
+  circuits_->healthy.solve(siemens, correction_.healthy_ratio);
+  circuits_->faulty.solve(siemens, correction_.faulty_ratio);
 }
 
 /// The lines are healthy: taxels without a reading are estimated, and the others solved with them. At first the
@@ -347,7 +338,6 @@ void FaultInversion::mix(bool first) noexcept {
   std::vector<double>& next = correction_.last_corrected;
   for (std::size_t taxel = 0; taxel < next.size(); ++taxel) {
     next[taxel] = std::isnan(equivalent_[taxel]) ? 0.0 : equivalent_[taxel];
-    correction_.difference[taxel] *= kMixedShare;
   }
   mixing_->advance(next, correction_.difference);
   for (std::size_t taxel = 0; taxel < next.size(); ++taxel) {

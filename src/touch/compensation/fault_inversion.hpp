@@ -40,7 +40,7 @@ class FaultInversion {
   [[nodiscard]] bool any() const noexcept { return any_; }
 
   /// See CrosstalkInversion.
-  void hold_film(const FilmConductances& film) noexcept;
+  void hold_film(const FilmConductances& film) noexcept { film_.hold(film); }
 
   /// The bounds on the readings of a line together still hold: none is at the supply or joined with another.
   [[nodiscard]] bool keeps_bounds() const noexcept { return keeps_bounds_; }

@@ -104,6 +104,23 @@ TEST(Simulator, counts_are_the_circuits_readings) {
   }
 }
 
+TEST(Simulator, a_film_follows_the_forces_on_the_taxels) {
+  ArrayDescription array = reference_array(6, 6);
+  array.readout.film = Film{50e3, 500.0, 20.0};
+  SimulationOptions options;
+  options.environment.adc_noise_lsb = 0.0;
+  const auto simulator = simulate(array, "multitouch", 4, 20, options);
+  const ReadoutCircuit circuit = ReadoutCircuit::create(array).value();
+  std::vector<double> ratio(array.taxel_count());
+  RawFrame frame;
+  while (*simulator->next(frame)) {
+    circuit.ratios(simulator->true_siemens(), simulator->truth().force_n, ratio);
+    for (std::size_t i = 0; i < ratio.size(); ++i) {
+      EXPECT_NEAR(frame.counts[i], ratio[i] * simulator->truth().supply_v / 5.0 * 4095.0, 0.5 + 1e-6);
+    }
+  }
+}
+
 TEST(Simulator, instruments_report_with_their_noise) {
   constexpr std::size_t kFrames = 4000;
   const auto simulator = simulate(reference_array(1, 1), "idle", 5, kFrames);

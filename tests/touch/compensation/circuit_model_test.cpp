@@ -73,8 +73,9 @@ TEST_P(EveryCircuit, a_film_conducts_as_it_is_told) {
     Random random(seed);
     auto array = random_array(GetParam(), 1 + random.below(5), 1 + random.below(5), random);
     FilmConductances film(array.rows, array.cols);
-    for (double& siemens : film.between_rows) siemens = random.uniform(0.0, 5e-3);
-    for (double& siemens : film.between_cols) siemens = random.uniform(0.0, 5e-3);
+    const double most = GetParam().resistive_lines ? 1.0 / array.readout.film->unloaded_ohm : 5e-3;  // spread evenly
+    for (double& siemens : film.between_rows) siemens = random.uniform(0.0, most);
+    for (double& siemens : film.between_cols) siemens = random.uniform(0.0, most);
     const auto siemens = random_siemens(array, random);
     auto model = model_of(array);
     model.set_film(film);

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "dermis/learn/simulation/line_faults.hpp"
 #include "dermis/learn/simulation/readout_circuit.hpp"
 #include "dermis/touch/compensation/circuit_model.hpp"
 #include "dermis/touch/compensation/crosstalk.hpp"
@@ -263,6 +264,38 @@ TEST_P(UnderFilm, a_healthy_array_has_no_faults) {
     Random random(6);
     Sheet sheet(GetParam(), 7, 8, film, random);
     EXPECT_EQ(faults_of(sheet, 200), "") << "seed 6, film of " << film.loaded_ohm << " ohm";
+  }
+}
+
+/// The film still feeds it, but no reading tells of its taxels.
+TEST(FaultUnderFilm, an_open_row_leaves_the_others_right) {
+  for (const Film& film : {kFilm, Film{50e3, 50e3}}) {
+    SCOPED_TRACE(testing::Message() << "seed 7, film of " << film.loaded_ohm << " ohm");
+    Random random(7);
+    Sheet sheet({"", Circuit::divider, IdleRows::floating}, 8, 8, film, random);
+    learn::simulation::LineFaults faults;
+    faults.rows.open = {2};
+    const auto circuit = learn::simulation::FaultyCircuit::create(sheet.array(), faults).value();
+    auto compensator = Compensator::create(sheet.array(), sheet.references()).value();
+    const LineFault open{.kind = LineFaultKind::silent_row, .place = 2};
+    compensator.set_faults({&open, 1});
+    ConditionedFrame conditioned;
+    ConductanceFrame conductance;
+    conditioned.sigma_ratio = 1e-4;
+    conditioned.taxels.assign(64, TaxelStatus::ok);
+    conditioned.ratio.resize(64);
+    std::vector<double> errors;
+    for (int frame = 0; frame < 20; ++frame) {
+      auto newtons = sheet.random_presses();
+      for (std::size_t taxel = 8; taxel < 32; ++taxel) newtons[taxel] = 0.0;  // on it, and beside it
+      circuit.ratios(Sheet::siemens(newtons), newtons, 0, conditioned.ratio);
+      conditioned.time = std::chrono::milliseconds(100 * frame);
+      compensator.process(conditioned, conductance);
+      EXPECT_FALSE(has(conductance.status, FrameStatus::not_converged)) << "frame " << frame;
+      errors.push_back(error_of(conductance.siemens, newtons));
+    }
+    std::sort(errors.begin(), errors.end());
+    EXPECT_LT(errors[errors.size() / 2], 0.02);
   }
 }
 

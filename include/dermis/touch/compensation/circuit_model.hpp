@@ -35,8 +35,8 @@ class CircuitModel {
   /// Replaces the resistances of the drivers and loads [ohm], sizes driven_lines() and sensed_lines().
   void set_resistors(std::span<const double> drive_ohm, std::span<const double> load_ohm);
 
-  /// The film of an array that has one (Readout::film), at first an unloaded one. Along a line with resistance it is
-  /// spread evenly. Allocates nothing.
+  /// The film of an array that has one (Readout::film), at first an unloaded one. Along a line with resistance that is
+  /// spread evenly, and what it conducts beyond as the taxels do; derivatives leave out this share. Allocates nothing.
   void set_film(const FilmConductances& film) noexcept;
 
   /// Readings over the supply at the last solution [rows, cols].

@@ -92,6 +92,20 @@ std::vector<std::size_t> connect_film(const ScannedLines& lines, const LineNodes
   return counts;
 }
 
+/// All that two lines have together. More than the unloaded film is where the taxels beside it conduct: taxel k of the
+/// first line is taxels[k * along], its neighbour stands `beside` after it.
+void spread_film(double together, double unloaded, const double* taxels, std::size_t along, std::size_t beside,
+                 std::span<double> edges) noexcept {
+  const auto count = static_cast<double>(edges.size());
+  const double rise = edges.size() > 1 ? std::max(together - count * unloaded, 0.0) : 0.0;
+  double sum = 0.0;
+  for (std::size_t k = 0; k < edges.size(); ++k) sum += taxels[k * along] + taxels[k * along + beside];
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    const double share = sum > 0.0 ? (taxels[k * along] + taxels[k * along + beside]) / sum : 1.0 / count;
+    edges[k] = (together - rise) / count + rise * share;
+  }
+}
+
 std::vector<double> segment_conductances(const ScannedLines& lines, const LineNodes& nodes, std::size_t edges) {
   std::vector<double> siemens(lines.taxels(), 0.0);
   for (std::size_t line = 0; line < lines.count(); ++line) {
@@ -141,7 +155,7 @@ LineNetwork::LineNetwork(const ScannedLines& lines, const LineNodes& nodes)
 
 void LineNetwork::eliminate(const ScannedLines& lines, std::span<const double> siemens) noexcept {
   std::copy(siemens.begin(), siemens.end(), edge_siemens_.begin());
-  if (!film_counts_.empty()) copy_film(lines.film());
+  if (!film_counts_.empty()) copy_film(lines, siemens);
   std::fill(ground_siemens_.begin(), ground_siemens_.end(), 0.0);
   for (std::size_t line = 0; line < lines.count(); ++line) {
     if (lines.is_tied(line) && !lines.is_held(line)) ground_siemens_[head_[line]] = 1.0 / lines.rho(line);
@@ -149,13 +163,19 @@ void LineNetwork::eliminate(const ScannedLines& lines, std::span<const double> s
   network_.eliminate(edge_siemens_, ground_siemens_);
 }
 
-void LineNetwork::copy_film(const FilmConductances& film) noexcept {
-  double* siemens = edge_siemens_.data() + edge_siemens_.size();
+void LineNetwork::copy_film(const ScannedLines& lines, std::span<const double> siemens) noexcept {
+  const ArrayDescription& array = lines.array();
+  const FilmConductances& film = lines.film();
+  const std::size_t rows = film.between_rows.size();
+  double* of_pair = edge_siemens_.data() + edge_siemens_.size();
   for (std::size_t pair = film_counts_.size(); pair-- > 0;) {
-    const std::size_t rows = film.between_rows.size();
-    const double together = pair < rows ? film.between_rows[pair] : film.between_cols[pair - rows];
-    siemens -= film_counts_[pair];
-    std::fill_n(siemens, film_counts_[pair], together / static_cast<double>(film_counts_[pair]));
+    const bool is_of_rows = pair < rows;
+    const double together = is_of_rows ? film.between_rows[pair] : film.between_cols[pair - rows];
+    const double* const first = &siemens[is_of_rows ? pair * array.cols : pair - rows];
+    const std::size_t along = is_of_rows ? 1 : array.cols;
+    const std::size_t beside = is_of_rows ? array.cols : 1;
+    of_pair -= film_counts_[pair];
+    spread_film(together, 1.0 / array.readout.film->unloaded_ohm, first, along, beside, {of_pair, film_counts_[pair]});
   }
 }
 

@@ -12,7 +12,8 @@
 namespace dermis::touch::compensation {
 
 /// The base network: taxels and a film between lines, and those lines tied through their rho that stay tied in all
-/// scans. A line is one node, or one a taxel where it has resistance. The film is then spread evenly over the taxels.
+/// scans. A line is one node, or one a taxel where it has resistance. An unloaded film is then spread evenly over the
+/// taxels, and what it conducts under load as their conductances are.
 class LineNetwork {
  public:
   using Potentials = ResistorNetwork::Potentials;  // [nodes, any]
@@ -45,7 +46,7 @@ class LineNetwork {
 
  private:
   LineNetwork(const ScannedLines& lines, const std::vector<std::vector<std::size_t>>& line_nodes);
-  void copy_film(const FilmConductances& film) noexcept;
+  void copy_film(const ScannedLines& lines, std::span<const double> siemens) noexcept;
 
   std::vector<std::size_t> head_;  // [lines]
   std::vector<ResistorNetwork::Edge> edges_;
