@@ -12,7 +12,7 @@ namespace dermis::touch::compensation {
 namespace {
 
 /// Shares of the loaded force, at which the polygon of the film meets its law.
-constexpr std::array kFilmCorners{0.0, 0.02, 0.08, 0.22, 0.5, 1.0};
+constexpr std::array kFilmCorners{0.0, 0.004, 0.015, 0.04, 0.08, 0.14, 0.22, 0.33, 0.47, 0.63, 0.81, 1.0};
 
 template <std::size_t Corners>
 DERMIS_PROCESSOR_CLONES void add_corners(const std::array<double, Corners>& x,

@@ -36,7 +36,7 @@ class FilmFollower {
  private:
   /// y = sum over the corners of change max(0, x - corner).
   struct Polygon {
-    static constexpr std::size_t kCorners = 12;
+    static constexpr std::size_t kCorners = 16;
 
     std::array<double, kCorners> x{};
     std::array<double, kCorners> change{};  // of the slope; 0 behind the last corner

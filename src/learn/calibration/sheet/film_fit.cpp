@@ -26,6 +26,7 @@ constexpr double kOutlier = 5.0;              // sigmas
 constexpr double kLeastRelativeSigma = 1e-3;  // of a taxel beside a press, in the conductance of the press
 constexpr double kMostWork = 1e5;             // frames x taxels of a trial
 constexpr double kMostSlowWork = 5e4;         // the same of floating lines
+constexpr double kCoarseShare = 0.2;          // of them for the first steps
 constexpr double kSuspicious = 1.0;           // mean square
 constexpr double kEvidence = 60.0;            // squares that a film must explain
 constexpr double kLeastExplained = 0.3;       // of the squares beyond noise
@@ -33,7 +34,7 @@ constexpr double kLeastCorner = 0.4;          // share across a corner of a cove
 constexpr double kLeastOhm = 100.0;
 constexpr double kMostOhm = 10e6;
 constexpr double kFirstFactor = 4.0;
-constexpr double kNearFactor = 1.5;
+constexpr double kNearFactor = 1.2;
 constexpr double kLastFactor = 1.01;
 constexpr double kClearlyLess = 0.98;                       // squares, for another force
 constexpr std::array kForces{20.0, 5.0, 10.0, 40.0, 80.0};  // under which the film is at its least resistance [N]
@@ -161,10 +162,12 @@ class FilmSearch {
   }
 
   /// The film of least misfit, from coarse steps of both resistances to fine ones.
-  [[nodiscard]] std::optional<Film> best() {
-    Candidate best = improved({50e3, 10e3, kForces.front()}, kFirstFactor);
+  [[nodiscard]] Film coarse() { return improved({50e3, 10e3, kForces.front()}, kFirstFactor, kNearFactor).film; }
+  [[nodiscard]] std::optional<Film> best(const Film& start) {
+    Candidate best = improved(start, kNearFactor, kLastFactor);
     for (std::size_t k = 1; k < kForces.size(); ++k) {
-      const Candidate other = improved({best.film.unloaded_ohm, best.film.loaded_ohm, kForces[k]}, kNearFactor);
+      const Candidate other =
+          improved({best.film.unloaded_ohm, best.film.loaded_ohm, kForces[k]}, kNearFactor, kLastFactor);
       if (other.squares < kClearlyLess * best.squares) best = other;
     }
     if (!std::isfinite(best.squares)) return std::nullopt;
@@ -184,9 +187,9 @@ class FilmSearch {
     return found ? found->squares : std::numeric_limits<double>::infinity();
   }
 
-  [[nodiscard]] Candidate improved(const Film& start, double first_factor) {
+  [[nodiscard]] Candidate improved(const Film& start, double first_factor, double last_factor) {
     Candidate best{start, squares(start)};
-    for (double factor = first_factor; factor > kLastFactor; factor = std::sqrt(factor)) {
+    for (double factor = first_factor; factor > last_factor; factor = std::sqrt(factor)) {
       while (improve(factor, best)) {
       }
     }
@@ -242,7 +245,8 @@ FilmFit fit_film(const ArrayDescription& array, std::span<const RawFrame> frames
   FilmSearch search(array, *presses);
   const std::optional<Misfit> without = search.misfit(std::nullopt);
   if (!without || !(without->squares > kSuspicious * without->count)) return {};
-  const std::optional<Film> film = search.best();
+  const auto few = LabelledPresses::create(array, frames, loads, settle_time, kCoarseShare * work);
+  const std::optional<Film> film = search.best(FilmSearch(array, *few).coarse());
   const std::optional<Misfit> with = film ? search.misfit(film) : std::nullopt;
   if (std::getenv("FILM_DEBUG"))
     fmt::print(stderr, "film: without {:.1f}/{} with {:.1f} un {} lo {} F {}\n", without->squares, without->count,
