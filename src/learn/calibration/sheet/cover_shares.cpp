@@ -49,7 +49,7 @@ CoverShares::CoverShares(const ArrayDescription& array, const SinglePresses& sin
 double CoverShares::of_pair(const Place& pressed, std::size_t beside) const {
   double rise = 0.0;
   for (std::size_t k = pressed.first; k < pressed.last; ++k) {
-    rise += single_.presses[k].siemens[beside] - single_.unloaded[beside];
+    rise += curves_.at_middle(single_.presses[k].rise[beside], single_.presses[k].temperature);
   }
   if (!(rise > 0.0)) return 0.0;
   double low = std::log(kLeastShare);

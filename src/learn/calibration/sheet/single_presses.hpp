@@ -17,18 +17,19 @@ namespace dermis::learn::calibration {
 struct SinglePress {
   std::size_t taxel = 0;
   double newtons = 0.0;
-  std::vector<double> siemens;  ///< [taxels], the crosstalk of the described circuit removed
+  double temperature = 0.0;  ///< In [-1, 1] over the recording; 0 where it is not an input.
+  std::vector<double> rise;  ///< Conductances above the unloaded ones [taxels] [S].
 };
 
 /// What presses of single taxels show of a sheet.
 struct SinglePresses {
-  std::vector<SinglePress> presses;  ///< By taxel, then as recorded.
-  std::vector<double> unloaded;      ///< [taxels] [S], by frames in which nothing presses on their lines and near them.
-  std::vector<double> sigma;         ///< [taxels] [S], of one frame.
+  std::vector<SinglePress> presses;  ///< By taxel, the heaviest first.
+  std::vector<double> sigma;         ///< Of a rise in one frame [taxels] [S].
 };
 
-/// Empty: too few frames for a word on the sheet, or a circuit that is not known. Saturated presses are left out, and
-/// of very many presses those that are lighter.
+/// Unloaded conductances are those of frames in which nothing presses on the lines of a taxel and near it, by the
+/// described circuit. Empty: too few frames for a word on the sheet, or a circuit that is not known. Saturated presses
+/// are left out, and of very many presses those that are lighter.
 [[nodiscard]] std::optional<SinglePresses> single_presses(const ArrayDescription& array,
                                                           std::span<const RawFrame> frames, std::span<const Load> loads,
                                                           Nanos settle_time);
