@@ -165,7 +165,7 @@ class Evidence {
     return sum;
   }
 
-  /// What lies beyond the rings that stand out, were each the same share of the one before.
+  /// The shares beyond the rings that stand out, were each ring the same share of the one before.
   static double beyond_last(const std::vector<double>& rings) {
     constexpr double kMostRatio = 0.5;
     if (rings.size() < 2) return 0.0;

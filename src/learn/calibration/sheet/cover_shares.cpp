@@ -26,7 +26,7 @@ double deviation(std::vector<double> values, double level) {
   return kSigmasOfDeviation * quantile(std::move(values), 0.5);
 }
 
-/// The middle of the directions. Of two that differ by more than chance the lesser: what was pressed just before has
+/// The middle of the directions, or the lesser of two that differ by more than chance: what was pressed just before has
 /// not recovered yet.
 double middle(std::vector<double> shares, double error) {
   std::sort(shares.begin(), shares.end());
