@@ -158,7 +158,7 @@ TEST(FeltLoads, for_learning_forget_what_is_too_faint_to_be_known) {
   std::size_t known = 0;
   std::size_t forgotten = 0;
   for (const Load& load : felt) ++(load.frame == 7 && !std::isnan(load.value) ? known : forgotten);
-  EXPECT_EQ(known, 9U);
+  EXPECT_EQ(known, 5U);  // the corners feel less than any weight that stood above a taxel
   EXPECT_GT(forgotten, 0U);
 }
 
