@@ -47,7 +47,7 @@ Result<int> check(const CheckOptions& options) {
   if (!finding) return finding.error();
   if (finding->presses.empty()) return failed(options.in + ": " + learn::health::describe(*finding));
   fmt::print("{}", learn::health::describe(*finding));
-  return finding->has_aged() ? kExitAged : 0;
+  return finding->has_aged() || finding->has_lost_cover() ? kExitAged : 0;
 }
 
 }  // namespace

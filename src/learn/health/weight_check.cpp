@@ -9,6 +9,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "dermis/touch/frames/cover.hpp"
+
 namespace dermis::learn::health {
 namespace {
 
@@ -22,6 +24,32 @@ constexpr double kNewtonsPerGram = 9.80665e-3;
 constexpr double kSigmas = 3.0;
 constexpr double kTooMuch = 0.1;      // of a gain: a check that is less sure is of little use
 constexpr double kLeastSigma = 1e-3;  // relative
+
+constexpr double kNarrower = 0.88;  // than a point on the cover: less cannot be its noise
+constexpr double kReachOfPoint = 2.5;
+constexpr double kMuchWider = 1.25;  // a point on a cover that spreads more, or a larger object
+
+/// Standard deviation of the forces of a point on the cover, along the narrower axis; 0 without a cover.
+double point_under(const ArrayDescription& array) {
+  if (!array.cover || array.cover->is_unknown() || array.rows == 1 || array.cols == 1) return 0.0;
+  const CoverKernel kernel(array);
+  const double spread = std::min(kernel.row_spread_m(), kernel.col_spread_m());
+  const double pitch = std::min(array.row_pitch_m, array.col_pitch_m);
+  return spread > 0.0 ? std::sqrt(spread * spread + pitch * pitch / 12.0) : 0.0;
+}
+
+/// On the cover, where the presses tell something of it.
+std::string cover_line(const WeightFinding& finding) {
+  if (finding.point_m == 0.0) return {};
+  const std::string widths = fmt::format("{:.1f} mm wide under the cover, where a point was {:.1f} mm",
+                                         1e3 * finding.narrowest_m, 1e3 * finding.point_m);
+  if (finding.has_lost_cover()) {
+    return fmt::format("recalibrate: the cover has changed, it spreads less: the object is {}\n", widths);
+  }
+  if (finding.narrowest_m < kMuchWider * finding.point_m) return {};
+  return fmt::format("the object is {}: if it is smaller than a taxel, the cover has changed and spreads more\n",
+                     widths);
+}
 
 bool is_near(double ratio) {
   return ratio < kSomethingElse && ratio > 1.0 / kSomethingElse;
@@ -80,6 +108,10 @@ bool WeightFinding::has_aged() const noexcept {
   return !presses.empty() && std::abs(std::log(ratio)) > limit();
 }
 
+bool WeightFinding::has_lost_cover() const noexcept {
+  return !presses.empty() && narrowest_m < kNarrower * point_m;
+}
+
 std::string describe(const WeightFinding& finding) {
   if (finding.presses.empty()) return missing(finding);
   const std::size_t count = finding.presses.size();
@@ -89,6 +121,7 @@ std::string describe(const WeightFinding& finding) {
   if (finding.others + finding.unsteady > 0) {
     text += fmt::format("besides {} of another weight, {} not steady\n", finding.others, finding.unsteady);
   }
+  text += cover_line(finding);
   const double change = finding.ratio - 1.0;
   if (finding.has_aged()) {
     return text + fmt::format("recalibrate: gains have changed by about {:.0f} % (\u00b1 {:.0f} %): it reads {}\n",
@@ -105,6 +138,11 @@ WeightCheck::WeightCheck(const touch::pipeline::Model& model, double weight_n)
     : tracker_(model.array, {}, model.strip) {
   assert(weight_n > 0.0);
   finding_.weight_n = weight_n;
+  finding_.point_m = point_under(model.array);
+  const ArrayDescription& array = model.array;
+  middle_ = {0.5 * static_cast<double>(array.cols - 1) * array.col_pitch_m,
+             0.5 * static_cast<double>(array.rows - 1) * array.row_pitch_m};
+  room_ = {middle_.x - kReachOfPoint * finding_.point_m, middle_.y - kReachOfPoint * finding_.point_m};
 }
 
 void WeightCheck::add(const ForceFrame& force) {
@@ -136,6 +174,16 @@ void WeightCheck::hold(Nanos time) {
   piece->sum_n += report_.total_force_n;
   piece->sum_square += report_.total_force_n * report_.total_force_n;
   piece->sum_sigma_n += report_.sigma_total_n;
+  piece->sum_width_m += width_m();
+}
+
+/// At the rim a cover loses some, and nothing can be said.
+double WeightCheck::width_m() const {
+  const auto strongest = std::max_element(report_.contacts.begin(), report_.contacts.end(),
+                                          [](const Contact& a, const Contact& b) { return a.force_n < b.force_n; });
+  const bool is_inside =
+      std::abs(strongest->position.x - middle_.x) < room_.x && std::abs(strongest->position.y - middle_.y) < room_.y;
+  return is_inside ? strongest->minor_axis_m : finding_.point_m;
 }
 
 void WeightCheck::close_piece(Press& press) const {
@@ -151,10 +199,13 @@ void WeightCheck::close_piece(Press& press) const {
   if (!is_the_weight || (press.steadiest && deviation >= press.deviation)) return;
   press.steadiest = weighed;
   press.deviation = deviation;
+  press.width_m = piece.sum_width_m / frames;
 }
 
 void WeightCheck::count(const Press& press, WeightFinding& finding) {
   if (press.steadiest) {
+    const bool is_first = finding.presses.empty();
+    finding.narrowest_m = is_first ? press.width_m : std::min(finding.narrowest_m, press.width_m);
     finding.presses.push_back(*press.steadiest);
   } else if (press.other_n) {
     ++finding.others;

@@ -14,7 +14,7 @@ constexpr double kPriorRadiusPitches = 0.75;  // fingers and heels of hands on a
 constexpr float kPriorSigma = 0.6F;
 constexpr float kMismatchOfTaxel = 0.003F;  // deviation of a real patch's shape from the model's
 constexpr float kMismatchOfPeak = 0.0005F;
-constexpr float kMismatchUnderCover = 0.01F;  // of a taxel: no cover is quite a Gaussian
+constexpr float kMismatchUnderCover = 0.015F;  // of a taxel: no cover is quite a Gaussian
 constexpr float kPlainMisfit = 2.0F;        // chi squared per degree of freedom, up to which noise explains a misfit
 constexpr float kMostShareOfOther = 0.35F;  // of a peak, that a contact without a valley before it can have
 

@@ -142,6 +142,26 @@ TEST(CoverFit, knows_the_cover_by_the_corners_where_the_drivers_are_not_known) {
   EXPECT_NEAR(fit.cover->spread_m, 0.006, 0.0006);
 }
 
+TEST(CoverFit, says_that_there_is_none_where_it_is_asked_for_one) {
+  const ArrayDescription array = sheet({});
+  ArrayDescription described = array;
+  described.cover = Cover{};
+  const CoverFit fit = Presses(array, 6).fit(described);
+  EXPECT_FALSE(fit.cover);
+  EXPECT_NE(fit.sentence.find("no cover"), std::string::npos);
+}
+
+TEST(FeltLoads, for_learning_forget_what_is_too_faint_to_be_known) {
+  const ArrayDescription array = sheet(Cover{0.005, {}});
+  const std::vector<Load> felt = well_felt_loads(
+      array, std::vector<Load>{{7, LoadKind::force, {4, 4, 4, 4}, 10.0}, {8, LoadKind::force, {2, 2, 2, 2}, 1.0}});
+  std::size_t known = 0;
+  std::size_t forgotten = 0;
+  for (const Load& load : felt) ++(load.frame == 7 && !std::isnan(load.value) ? known : forgotten);
+  EXPECT_EQ(known, 5U);  // the corners feel less than any weight that stood above a taxel
+  EXPECT_GT(forgotten, 0U);
+}
+
 TEST(FeltLoads, of_a_weight_on_one_taxel_are_the_forces_on_all_that_feel_it) {
   const ArrayDescription array = sheet(Cover{0.005, {}});
   const std::vector<Load> felt = felt_loads(array, std::vector<Load>{{7, LoadKind::force, {4, 4, 4, 4}, 10.0}});

@@ -24,6 +24,7 @@ constexpr double kSigma = 0.01;  // of the force of a taxel, relative
 class Scale {
  public:
   Scale() : check_(support::hand_made_model(kLines, kLines), kWeight) {}
+  explicit Scale(const touch::pipeline::Model& model) : check_(model, kWeight) {}
 
   Scale& rest(double seconds = 1.0) { return hold(0.0, seconds); }
 
@@ -73,6 +74,22 @@ TEST(WeightCheck, an_object_that_reads_what_it_weighs_is_well) {
   EXPECT_FALSE(finding.has_aged());
   EXPECT_EQ(describe(finding),
             "weight  5 N, put on once\nreads   4.94 N (4.94 N)\nwell: reads 1.2 % low, within 3 %\n");
+}
+
+TEST(WeightCheck, what_is_narrower_than_a_point_was_shows_a_cover_that_spreads_less) {
+  touch::pipeline::Model model = support::hand_made_model(kLines, kLines);
+  model.array.cover = Cover{0.010, {}};
+  const WeightFinding finding = Scale(model).rest().hold(kWeight, 3.0).rest().finding();
+  EXPECT_TRUE(finding.has_lost_cover());
+  EXPECT_NE(describe(finding).find("recalibrate: the cover has changed, it spreads less"), std::string::npos);
+}
+
+TEST(WeightCheck, what_is_as_wide_as_a_point_was_says_nothing_of_the_cover) {
+  touch::pipeline::Model model = support::hand_made_model(kLines, kLines);
+  model.array.cover = Cover{0.0035, {}};
+  const WeightFinding finding = Scale(model).rest().hold(kWeight, 3.0).rest().finding();
+  EXPECT_FALSE(finding.has_lost_cover());
+  EXPECT_EQ(describe(finding).find("cover"), std::string::npos);
 }
 
 TEST(WeightCheck, a_gain_that_has_changed_by_a_tenth_is_found_by_one_press) {

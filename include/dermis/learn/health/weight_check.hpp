@@ -29,10 +29,14 @@ struct WeightFinding {
   std::size_t unsteady = 0;  ///< Presses that were too short or not steady.
   double ratio = 1.0;        ///< Reading over weight; geometric mean of the presses.
   double sigma = 0.0;        ///< Standard deviation of its logarithm, that from touch to touch included.
+  double point_m = 0.0;      ///< Standard deviation of the forces of a point on the model's cover [m]; 0: no cover.
+  double narrowest_m = 0.0;  ///< The least of the presses, across them [m].
 
   /// A larger change of the gain counts: three standard deviations, and 3 % at least.
   [[nodiscard]] double limit() const noexcept;
   [[nodiscard]] bool has_aged() const noexcept;
+  /// Nothing looks narrower than a point on the cover: it spreads less than when it was calibrated.
+  [[nodiscard]] bool has_lost_cover() const noexcept;
 };
 
 /// Lines of text: the weight, then "well: reads 1.2 % low, within 4 %" or "recalibrate: gains have changed by about 9 %
@@ -60,19 +64,24 @@ class WeightCheck {
     double sum_n = 0.0;
     double sum_square = 0.0;
     double sum_sigma_n = 0.0;
+    double sum_width_m = 0.0;  // of the strongest contact, across it
   };
   struct Press {
     Nanos onset{};
     std::optional<Piece> piece;
     std::optional<WeighedPress> steadiest;  ///< The steadiest piece that may be the weight.
     double deviation = 0.0;                 ///< Of `steadiest`, relative.
+    double width_m = 0.0;                   ///< The same.
     std::optional<double> other_n;          ///< A still reading of less than half or more than twice the weight.
   };
 
   void hold(Nanos time);
   void close_piece(Press& press) const;
+  [[nodiscard]] double width_m() const;
   static void count(const Press& press, WeightFinding& finding);
 
+  PlaneVector middle_;  ///< Of the array [m].
+  PlaneVector room_;    ///< About the middle, in which no cover reaches the rim [m]; 0 or less: none.
   touch::contacts::ContactTracker tracker_;
   ContactReport report_;
   std::optional<Press> press_;  ///< That lasts.

@@ -41,7 +41,8 @@ class CoverSpread;
 
 /// A simulated array as a source of frames: scene -> cover -> rubber -> readout circuit -> ADC. The piece of rubber
 /// depends only on RubberOptions::seed, so the same array can go through several scenes. `seed` drives contacts,
-/// supply, temperature and all noise. Not thread-safe: one reader.
+/// supply, temperature and all noise. Not thread-safe: one reader. Many members: each stage between a scene and its
+/// frame.
 class Simulator final : public FrameSource {
  public:
   /// `frames`: number of frames of the scenes "multitouch", "contacts", "idle" and "touches". Fails as Scene::create

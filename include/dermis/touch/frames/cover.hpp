@@ -26,7 +26,7 @@ struct CoverShare {
 struct Cover {
   /// Standard deviation of the Gaussian, along rows and columns alike [m]; NaN: calibration is to find the cover.
   double spread_m = std::numeric_limits<double>::quiet_NaN();
-  std::vector<CoverShare> shares;  ///< Of one quadrant, one of them {0, 0}; those that are not named are 0.
+  std::vector<CoverShare> shares;  ///< One quadrant of them, with {0, 0}; those that are not named are 0.
 
   [[nodiscard]] bool is_unknown() const noexcept;
 };
@@ -40,7 +40,7 @@ class CoverKernel {
   /// Most rows and columns to which it spreads.
   [[nodiscard]] std::size_t row_reach() const noexcept { return quadrant_rows_ - 1; }
   [[nodiscard]] std::size_t col_reach() const noexcept { return quadrant_cols_ - 1; }
-  /// Of a force so many rows and columns away.
+  /// The share of a force so many rows and columns away.
   [[nodiscard]] double share(std::size_t rows, std::size_t cols) const noexcept {
     return rows < quadrant_rows_ && cols < quadrant_cols_ ? shares_[rows * quadrant_cols_ + cols] : 0.0;
   }

@@ -11,10 +11,10 @@
 
 namespace dermis::touch::pipeline {
 
-/// What stands on the cover of an array, by what its taxels feel. Many surface forces explain felt ones within their
-/// noise. So each is the felt one and a deviation in proportion to it, whose size follows from the frame (Bayes,
-/// evidence); none is below 0. Taxels that feel nothing carry nothing. Takes pressed^3 operations; where more than 1024
-/// taxels are pressed, forces stay as they are felt. Not thread-safe.
+/// Finds the forces on the cover of an array by those that its taxels feel. Many surface forces explain felt ones
+/// within their noise. So each is the felt one and a deviation in proportion to it, whose size follows from the frame
+/// (Bayes, evidence); none is below 0. Taxels that feel nothing carry nothing. Takes pressed^3 operations; where more
+/// than 1024 taxels are pressed, forces stay as they are felt. Not thread-safe.
 class SurfaceForces {
  public:
   /// The cover of `array` is known.

@@ -23,12 +23,13 @@ namespace {
 
 constexpr std::size_t kLeastLines = 3;
 constexpr std::size_t kLeastPairs = 8;
-constexpr double kSigmas = 5.0;       // what must not be chance
-constexpr double kOverFar = 4.0;      // of what taxels far away show
-constexpr double kLeastShare = 3e-4;  // across a corner, of the centre's
-constexpr double kMostScatter = 0.6;  // of pairs of taxels
-constexpr double kAlike = 1.08;       // spreads along rows and columns, one over the other
-constexpr double kLeastCorner = 0.4;  // of the product of both neighbours
+constexpr double kSigmas = 5.0;              // what must not be chance
+constexpr double kOverFar = 4.0;             // of what taxels far away show
+constexpr double kLeastShare = 3e-4;         // across a corner, of the centre's
+constexpr double kQuestionableShare = 0.01;  // the same
+constexpr double kMostScatter = 0.6;         // of pairs of taxels
+constexpr double kAlike = 1.08;              // spreads along rows and columns, one over the other
+constexpr double kLeastCorner = 0.4;         // of the product of both neighbours
 constexpr std::size_t kMostReach = 12;
 constexpr double kKeptSigmas = 3.0;
 constexpr double kLeastKept = 2e-4;       // of the centre's share
@@ -164,7 +165,7 @@ class Evidence {
     return sum;
   }
 
-  /// What lies beyond the rings that stand out, were each the same share of the one before.
+  /// The shares beyond the rings that stand out, were each ring the same share of the one before.
   static double beyond_last(const std::vector<double>& rings) {
     constexpr double kMostRatio = 0.5;
     if (rings.size() < 2) return 0.0;
@@ -239,6 +240,21 @@ std::string sentence(ArrayDescription array, const Cover& cover) {
       shares, percent(1, 1), key);
 }
 
+/// Asked for in vain, or raised by too few presses; else nothing is said.
+std::string question(const ArrayDescription& array, const Evidence& evidence, const SinglePresses& single) {
+  const bool is_asked = array.cover.has_value();
+  if (evidence.has_pairs()) {
+    return is_asked ? "no cover: presses do not raise the taxels across the corners (cover)" : std::string{};
+  }
+  if (!is_asked && !(evidence.corner().share > kQuestionableShare)) return {};
+  const std::size_t taxel = single.presses.front().taxel;
+  const std::size_t beside = taxel % array.cols + 1 < array.cols ? taxel + 1 : taxel - 1;
+  return fmt::format(
+      "whether a cover spreads presses is not told by so few: press {} and {} each alone with three known "
+      "weights, and the taxels around them, or press between {} and {}",
+      array.taxel_name(taxel), array.taxel_name(beside), array.taxel_name(taxel), array.taxel_name(beside));
+}
+
 }  // namespace
 
 CoverFit fit_cover(const ArrayDescription& array, std::span<const RawFrame> frames, std::span<const Load> loads,
@@ -251,7 +267,7 @@ CoverFit fit_cover(const ArrayDescription& array, std::span<const RawFrame> fram
   const TaxelCurves curves(*single);
   if (!curves.any()) return {};
   const Evidence evidence(known, *single, curves);
-  if (!evidence.shows_cover()) return {};
+  if (!evidence.shows_cover()) return {.cover = {}, .sentence = question(array, evidence, *single)};
   CoverFit fit;
   if (is_guessed) {
     fit.is_guessed = true;

@@ -12,7 +12,7 @@
 
 namespace dermis::learn::calibration {
 
-/// What presses of single taxels tell of a cover.
+/// A cover as presses of single taxels tell it.
 struct CoverFit {
   std::optional<Cover> cover;
   double error = 0.0;       ///< Relative, of all felt forces in common.
@@ -22,9 +22,9 @@ struct CoverFit {
 
 /// A cover raises the taxels around a press, on both lines of it and across the corners, the less the farther they are.
 /// No circuit of crossings does that. A taxel that a press raises feels the force under which it, pressed alone,
-/// conducts as much. Those forces over the one on the cover, as medians of all pairs of taxels so far apart, are the
-/// shares of the cover over that at its centre; together they are 1. `array`: a circuit that is unknown, or in part, is
-/// guessed, and the lines of a press then do not count.
+/// conducts as much. That force over the one on the cover is the share at this distance over that at the centre. Shares
+/// are medians over all pairs of taxels, and 1 together. `array`: a circuit that is unknown, or in part, is guessed,
+/// and the lines of a press then do not count.
 [[nodiscard]] CoverFit fit_cover(const ArrayDescription& array, std::span<const RawFrame> frames,
                                  std::span<const Load> loads, Nanos settle_time);
 

@@ -26,7 +26,7 @@ double deviation(std::vector<double> values, double level) {
   return kSigmasOfDeviation * quantile(std::move(values), 0.5);
 }
 
-/// The middle of the directions. Of two that differ by more than chance the lesser: what was pressed just before has
+/// The middle of the directions, or the lesser of two that differ by more than chance: what was pressed just before has
 /// not recovered yet.
 double middle(std::vector<double> shares, double error) {
   std::sort(shares.begin(), shares.end());
@@ -49,7 +49,7 @@ CoverShares::CoverShares(const ArrayDescription& array, const SinglePresses& sin
 double CoverShares::of_pair(const Place& pressed, std::size_t beside) const {
   double rise = 0.0;
   for (std::size_t k = pressed.first; k < pressed.last; ++k) {
-    rise += single_.presses[k].siemens[beside] - single_.unloaded[beside];
+    rise += curves_.at_middle(single_.presses[k].rise[beside], single_.presses[k].temperature);
   }
   if (!(rise > 0.0)) return 0.0;
   double low = std::log(kLeastShare);

@@ -15,7 +15,7 @@ namespace dermis::learn::calibration {
 struct RelativeShare {
   double share = 0.0;
   double error = 0.0;     ///< Standard error.
-  double least = 0.0;     ///< Of the directions (left or right, up or down).
+  double least = 0.0;     ///< In one of the directions (left or right, up or down).
   double scatter = 0.0;   ///< Relative deviation of a typical pair of taxels.
   std::size_t pairs = 0;  ///< Of taxels.
 };
@@ -25,7 +25,7 @@ class CoverShares {
  public:
   CoverShares(const ArrayDescription& array, const SinglePresses& single, const TaxelCurves& curves);
 
-  /// Of taxels `rows` and `cols` away, not both 0.
+  /// The share of taxels `rows` and `cols` away, not both 0.
   [[nodiscard]] RelativeShare at(std::size_t rows, std::size_t cols) const;
 
  private:

@@ -59,7 +59,7 @@ class FeltFrame {
   }
 
  private:
-  /// What the taxels feel of some of the loads.
+  /// Spreads some of the loads into `felt_`.
   template <typename Predicate>
   void spread(std::span<const Load> loads, Predicate counts) {
     std::fill(surface_.begin(), surface_.end(), 0.0);

@@ -75,7 +75,7 @@ class Surroundings {
     for (const SinglePress& press : single_.presses) {
       add(press, misfit, near);
       for (std::size_t taxel = 0; taxel < array_.taxel_count(); ++taxel) {
-        if (is_far(press.taxel, taxel)) far.add(press.siemens[taxel]);
+        if (is_far(press.taxel, taxel)) far.add(press.held[taxel]);
       }
     }
     const double usual = far.count > 0.0 ? far.held / far.count * near.count : 0.0;
@@ -88,8 +88,8 @@ class Surroundings {
     double held = 0.0;
     double count = 0.0;
 
-    void add(double siemens) {
-      held += siemens == 0.0 ? 1.0 : 0.0;
+    void add(bool is_held) {
+      held += is_held ? 1.0 : 0.0;
       count += 1.0;
     }
   };
@@ -114,9 +114,9 @@ class Surroundings {
         if (rows + cols == 0 || rows + cols > 2 || array_.is_absent(taxel)) continue;
         const double of_line = rows == 0 ? of_row : cols == 0 ? of_col : 0.0;
         const double covered = curves_.any() ? curves_.siemens(taxel, share(rows, cols) * press.newtons) : 0.0;
-        const double rise = press.siemens[taxel] - single_.unloaded[taxel] - of_line - covered;
-        const double of_press = press.siemens[press.taxel] - single_.unloaded[press.taxel];
-        near.add(press.siemens[taxel]);
+        const double rise = press.rise[taxel] - of_line - covered;
+        const double of_press = press.rise[press.taxel];
+        near.add(press.held[taxel]);
         misfit.add(rise / std::hypot(single_.sigma[taxel], kLeastRelativeSigma * of_press, 0.03 * covered));
       }
     }
@@ -134,7 +134,7 @@ class Surroundings {
     double count = 0.0;
     for (std::size_t taxel = 0; taxel < array_.taxel_count(); ++taxel) {
       if (array_.is_absent(taxel) || !is_far(taxel / array_.cols, taxel % array_.cols)) continue;
-      sum += press.siemens[taxel] - single_.unloaded[taxel];
+      sum += press.rise[taxel];
       count += 1.0;
     }
     return count > 0.0 ? sum / count : 0.0;

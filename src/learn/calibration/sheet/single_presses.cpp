@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "learn/calibration/sheet/single_presses.hpp"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -20,7 +22,6 @@ namespace {
 constexpr double kMostWork = 2e6;      // frames x taxels
 constexpr double kMostSlowWork = 2e5;  // the same of floating lines
 constexpr std::size_t kMostIdle = 60;  // frames
-constexpr std::size_t kLeastIdle = 1;  // frames, of which each is the mean of many
 constexpr std::size_t kLeastBase = 8;  // frames, for the unloaded conductance of a taxel beside presses
 constexpr std::size_t kFar = 4;        // lines from a press
 constexpr double kSigmasOfDeviation = 1.4826;
@@ -43,18 +44,52 @@ bool is_far(const ArrayDescription& array, std::size_t a, std::size_t b) {
   return rows > 0 && cols > 0 && (rows >= kFar || cols >= kFar);
 }
 
-/// The unloaded conductance of a taxel and the scatter about it, by frames far from presses, else by unloaded ones.
-void find_unloaded(const ArrayDescription& array, std::span<const double> idle, SinglePresses& single) {
-  for (std::size_t taxel = 0; taxel < array.taxel_count(); ++taxel) {
-    std::vector<double> far;
-    for (const SinglePress& press : single.presses) {
-      if (is_far(array, taxel, press.taxel)) far.push_back(press.siemens[taxel]);
+/// A taxel in a frame.
+struct Unpressed {
+  double temperature = 0.0;
+  double siemens = 0.0;
+};
+
+/// A parabola of temperature, or a median where there is none.
+class UnloadedCurve {
+ public:
+  explicit UnloadedCurve(const std::vector<Unpressed>& points) {
+    const bool varies = std::any_of(points.begin(), points.end(), [&](const Unpressed& point) {
+      return point.temperature != points.front().temperature;
+    });
+    std::vector<double> values;
+    for (const Unpressed& point : points) values.push_back(point.siemens);
+    curve_[0] = quantile(std::move(values), 0.5);
+    if (!varies || points.size() < kLeastBase) return;
+    Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    for (const auto& [t, siemens] : points) {
+      const Eigen::Vector3d basis(1.0, t, t * t);
+      matrix += basis * basis.transpose();
+      right += siemens * basis;
     }
-    for (std::size_t k = taxel; k < idle.size(); k += array.taxel_count()) far.push_back(idle[k]);
-    const double level = quantile(far, 0.5);
-    for (double& value : far) value = std::abs(value - level);
-    single.unloaded.push_back(level);
-    single.sigma.push_back(kSigmasOfDeviation * quantile(std::move(far), 0.5));
+    curve_ = matrix.ldlt().solve(right);
+  }
+
+  [[nodiscard]] double at(double t) const { return curve_[0] + t * (curve_[1] + t * curve_[2]); }
+
+ private:
+  Eigen::Vector3d curve_ = Eigen::Vector3d::Zero();
+};
+
+/// Takes the unloaded conductances out, and keeps the scatter about them.
+void take_out_unloaded(const ArrayDescription& array, const std::vector<SinglePress>& idle, SinglePresses& single) {
+  for (std::size_t taxel = 0; taxel < array.taxel_count(); ++taxel) {
+    std::vector<Unpressed> points;
+    for (const SinglePress& press : single.presses) {
+      if (is_far(array, taxel, press.taxel)) points.push_back({press.temperature, press.rise[taxel]});
+    }
+    for (const SinglePress& frame : idle) points.push_back({frame.temperature, frame.rise[taxel]});
+    const UnloadedCurve curve(points);
+    std::vector<double> deviations;
+    for (const auto& [temperature, siemens] : points) deviations.push_back(std::abs(siemens - curve.at(temperature)));
+    single.sigma.push_back(kSigmasOfDeviation * quantile(std::move(deviations), 0.5));
+    for (SinglePress& press : single.presses) press.rise[taxel] -= curve.at(press.temperature);
   }
 }
 
@@ -128,18 +163,17 @@ std::optional<SinglePresses> LabelledPresses::invert(const ArrayDescription& arr
   const Result<InvertedFrames> inverted = invert_frames(array, chosen);
   if (!inverted) return std::nullopt;
   SinglePresses single;
-  std::vector<double> idle;
+  std::vector<SinglePress> idle;
   for (std::size_t k = 0; k < labelled_.size(); ++k) {
     if (!(*inverted)[k]) continue;
+    const auto& [frame, taxel, newtons] = labelled_[k];
     const std::vector<double>& siemens = (*inverted)[k]->siemens;
-    if (labelled_[k].newtons > 0.0) {
-      single.presses.push_back({labelled_[k].taxel, labelled_[k].newtons, siemens});
-    } else {
-      idle.insert(idle.end(), siemens.begin(), siemens.end());
-    }
+    SinglePress press{taxel, newtons, frame->temperature, siemens, std::vector<bool>(siemens.size())};
+    std::transform(siemens.begin(), siemens.end(), press.held.begin(), [](double value) { return value == 0.0; });
+    (newtons > 0.0 ? single.presses : idle).push_back(std::move(press));
   }
-  if (idle.size() < kLeastIdle * array.taxel_count() || single.presses.size() < kLeastBase) return std::nullopt;
-  find_unloaded(array, idle, single);
+  if (idle.empty() || single.presses.size() < kLeastBase) return std::nullopt;
+  take_out_unloaded(array, idle, single);
   return single;
 }
 

@@ -19,14 +19,15 @@ namespace dermis::learn::calibration {
 struct SinglePress {
   std::size_t taxel = 0;
   double newtons = 0.0;
-  std::vector<double> siemens;  ///< [taxels], the crosstalk of the described circuit removed
+  double temperature = 0.0;  ///< In [-1, 1] over the recording; 0 where it is not an input.
+  std::vector<double> rise;  ///< Conductances above the unloaded ones [taxels] [S].
+  std::vector<bool> held;    ///< At 0 S, or the taxel would conduct less than nothing [taxels].
 };
 
 /// What presses of single taxels show of a sheet.
 struct SinglePresses {
-  std::vector<SinglePress> presses;  ///< By taxel, then as recorded.
-  std::vector<double> unloaded;      ///< [taxels] [S], by frames in which nothing presses on their lines and near them.
-  std::vector<double> sigma;         ///< [taxels] [S], of one frame.
+  std::vector<SinglePress> presses;  ///< By taxel, the heaviest first.
+  std::vector<double> sigma;         ///< Of a rise in one frame [taxels] [S].
 };
 
 /// The frames of a recording in which one taxel alone is labelled, or nothing presses. Saturated presses are left out,
@@ -37,8 +38,9 @@ class LabelledPresses {
   static std::optional<LabelledPresses> create(const ArrayDescription& array, std::span<const RawFrame> frames,
                                                std::span<const Load> loads, Nanos settle_time, double work);
 
-  /// Empty: too few frames for a word on the sheet, or a circuit that is not known or cannot give them. A film over the
-  /// lines feels what the cover of `array` hands on.
+  /// Unloaded conductances are those of frames in which nothing presses on the lines of a taxel and near it, by the
+  /// circuit of `array`. A film over the lines feels what its cover hands on. Empty: too few frames for a word on the
+  /// sheet, or a circuit that is not known or cannot give them.
   [[nodiscard]] std::optional<SinglePresses> invert(const ArrayDescription& array) const;
 
  private:

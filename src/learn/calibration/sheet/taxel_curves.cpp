@@ -24,6 +24,12 @@ struct Bin {
   double log_newtons = 0.0;  // sums
   double log_siemens = 0.0;
   double count = 0.0;
+
+  void add(double newtons, double siemens) {
+    log_newtons += newtons;
+    log_siemens += siemens;
+    count += 1.0;
+  }
 };
 
 /// Value at x of the line through both points.
@@ -43,49 +49,82 @@ double between(const Points& points, double x) {
 
 }  // namespace
 
-TaxelCurves::TaxelCurves(const SinglePresses& single) : taxel_(single.unloaded.size()) {
-  std::vector<std::map<double, std::pair<double, double>>> sums(taxel_.size());  // by force: sum, count
-  for (const auto& [taxel, newtons, siemens] : single.presses) {
-    auto& [sum, count] = sums[taxel][newtons];
-    sum += siemens[taxel] - single.unloaded[taxel];
-    count += 1.0;
+TaxelCurves::TaxelCurves(const SinglePresses& single) : taxel_(single.sigma.size()) {
+  Points measured;
+  for (const auto& [taxel, newtons, temperature, rise] : single.presses) {
+    if (!(rise[taxel] > kLeastSigmas * single.sigma[taxel])) continue;
+    measured.push_back({std::log(newtons), std::log(rise[taxel]), temperature, taxel});
+  }
+  std::vector<double> level(taxel_.size());
+  for (int round = 0; round < kRounds; ++round) {
+    fit_sheet(measured, level);
+    if (!any()) return;
+    fit_temperature(measured, level);
+    fit_levels(measured, level);
+  }
+  std::vector<std::map<double, Bin>> by_force(taxel_.size());
+  for (const Point& point : measured) {
+    by_force[point.taxel][point.log_newtons].add(point.log_newtons, above_sheet(point));
   }
   for (std::size_t taxel = 0; taxel < taxel_.size(); ++taxel) {
-    for (const auto& [newtons, sum] : sums[taxel]) {
-      const double rise = sum.first / sum.second;
-      if (rise > kLeastSigmas * single.sigma[taxel]) taxel_[taxel].push_back({std::log(newtons), std::log(rise)});
+    for (const auto& [force, bin] : by_force[taxel]) {
+      taxel_[taxel].push_back({force, bin.log_siemens / bin.count, 0.0, taxel});
     }
-  }
-  fit_sheet(taxel_);
-  if (!any()) return;
-  for (Points& points : taxel_) {
-    for (auto& [log_newtons, log_siemens] : points) log_siemens -= of_sheet(log_newtons);
   }
 }
 
+double TaxelCurves::above_sheet(const Point& point) const {
+  return point.log_siemens - temperature_factor(point.temperature) - of_sheet(point.log_newtons);
+}
+
+double TaxelCurves::temperature_factor(double t) const {
+  return t * (per_temperature_ + t * per_square_);
+}
+
+double TaxelCurves::at_middle(double siemens, double temperature) const {
+  return siemens * std::exp(-temperature_factor(temperature));
+}
+
 /// Means in bins of the force, the level of each taxel taken out.
-void TaxelCurves::fit_sheet(const std::vector<Points>& measured) {
-  std::vector<double> level(measured.size());
-  for (int round = 0; round < kRounds; ++round) {
-    std::map<int, Bin> bins;
-    for (std::size_t taxel = 0; taxel < measured.size(); ++taxel) {
-      for (const auto& [log_newtons, log_siemens] : measured[taxel]) {
-        Bin& bin = bins[static_cast<int>(std::floor(kBinsPerUnit * log_newtons))];
-        bin.log_newtons += log_newtons;
-        bin.log_siemens += log_siemens - level[taxel];
-        bin.count += 1.0;
-      }
-    }
-    sheet_.clear();
-    for (const auto& [place, bin] : bins) sheet_.push_back({bin.log_newtons / bin.count, bin.log_siemens / bin.count});
-    if (!any()) return;
-    for (std::size_t taxel = 0; taxel < measured.size(); ++taxel) {
-      std::vector<double> above;
-      for (const auto& [log_newtons, log_siemens] : measured[taxel]) {
-        above.push_back(log_siemens - of_sheet(log_newtons));
-      }
-      if (!above.empty()) level[taxel] = quantile(std::move(above), 0.5);
-    }
+void TaxelCurves::fit_sheet(const Points& measured, const std::vector<double>& level) {
+  std::map<int, Bin> bins;
+  for (const Point& point : measured) {
+    const double siemens = point.log_siemens - temperature_factor(point.temperature) - level[point.taxel];
+    bins[static_cast<int>(std::floor(kBinsPerUnit * point.log_newtons))].add(point.log_newtons, siemens);
+  }
+  sheet_.clear();
+  for (const auto& [place, bin] : bins) {
+    sheet_.push_back({bin.log_newtons / bin.count, bin.log_siemens / bin.count, 0.0, 0});
+  }
+}
+
+/// A parabola through 0 at the middle of the temperatures, by least squares.
+void TaxelCurves::fit_temperature(const Points& measured, const std::vector<double>& level) {
+  double tt = 0.0;
+  double ttt = 0.0;
+  double tttt = 0.0;
+  double ty = 0.0;
+  double tty = 0.0;
+  for (const Point& point : measured) {
+    const double t = point.temperature;
+    const double y = above_sheet(point) + temperature_factor(t) - level[point.taxel];
+    tt += t * t;
+    ttt += t * t * t;
+    tttt += t * t * t * t;
+    ty += t * y;
+    tty += t * t * y;
+  }
+  const double determinant = tt * tttt - ttt * ttt;
+  if (!(determinant > 1e-9 * tt * tttt)) return;
+  per_temperature_ = (tttt * ty - ttt * tty) / determinant;
+  per_square_ = (tt * tty - ttt * ty) / determinant;
+}
+
+void TaxelCurves::fit_levels(const Points& measured, std::vector<double>& level) const {
+  std::vector<std::vector<double>> above(level.size());
+  for (const Point& point : measured) above[point.taxel].push_back(above_sheet(point));
+  for (std::size_t taxel = 0; taxel < level.size(); ++taxel) {
+    if (!above[taxel].empty()) level[taxel] = quantile(std::move(above[taxel]), 0.5);
   }
 }
 

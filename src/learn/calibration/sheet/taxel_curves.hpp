@@ -17,22 +17,32 @@ class TaxelCurves {
 
   /// Enough presses for a curve.
   [[nodiscard]] bool any() const noexcept { return sheet_.size() > 1; }
-  /// Above the unloaded conductance, under `newtons` >= 0 [S].
+  /// Above the unloaded conductance, under `newtons` >= 0 at the middle of the temperatures [S].
   [[nodiscard]] double siemens(std::size_t taxel, double newtons) const;
+  /// A rise at this temperature as it would be at the middle of all [S].
+  [[nodiscard]] double at_middle(double siemens, double temperature) const;
 
  private:
   struct Point {
     double log_newtons = 0.0;
     double log_siemens = 0.0;  // of a taxel: above the sheet's
+    double temperature = 0.0;
+    std::size_t taxel = 0;
   };
   using Points = std::vector<Point>;
 
-  void fit_sheet(const std::vector<Points>& measured);
+  void fit_sheet(const Points& measured, const std::vector<double>& level);
+  void fit_temperature(const Points& measured, const std::vector<double>& level);
+  void fit_levels(const Points& measured, std::vector<double>& level) const;
+  [[nodiscard]] double above_sheet(const Point& point) const;
+  [[nodiscard]] double temperature_factor(double t) const;
   [[nodiscard]] double of_sheet(double log_newtons) const;
   [[nodiscard]] double slope_at(std::size_t point) const;
   [[nodiscard]] double end_slope(std::size_t end) const;
 
-  Points sheet_;               // by force
+  Points sheet_;                  // by force
+  double per_temperature_ = 0.0;  // of the logarithm of a rise
+  double per_square_ = 0.0;
   std::vector<Points> taxel_;  // [taxels], by force
 };
 
