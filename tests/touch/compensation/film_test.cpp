@@ -119,7 +119,8 @@ TEST_P(FilmOverLines, is_inverted_to_the_conductances_that_were_there_where_its_
 
 TEST_P(FilmOverLines, follows_the_loads_that_the_conductances_tell) {
   Random random(8);
-  auto inversion = make_crosstalk_inversion(array_, {.references = {typical_, unloaded_, loads_}});
+  auto inversion =
+      make_crosstalk_inversion(array_, {.tolerance_ratio = {}, .references = {typical_, unloaded_, loads_}});
   ASSERT_TRUE(inversion);
   for (int frame = 0; frame < 20; ++frame) {
     const std::vector<double> newtons = random_newtons(array_.taxel_count(), random);
@@ -152,7 +153,8 @@ TEST_P(FilmOverLines, keeps_a_taxel_without_a_reading_and_solves_the_others) {
 }
 
 TEST_P(FilmOverLines, of_rest_is_found_without_an_allocation) {
-  auto inversion = make_crosstalk_inversion(array_, {.references = {typical_, unloaded_, loads_}});
+  auto inversion =
+      make_crosstalk_inversion(array_, {.tolerance_ratio = {}, .references = {typical_, unloaded_, loads_}});
   ASSERT_TRUE(inversion);
   const std::vector<double> siemens(array_.taxel_count(), kUnloadedSiemens);
   film_.set(*array_.readout.film, std::vector<double>(siemens.size()));
@@ -172,11 +174,10 @@ INSTANTIATE_TEST_SUITE_P(
                     FilmCase{12, 5, 100.0, 100.0, {5e3, 1e3, 20.0}}, FilmCase{1, 6, 30.0, 220.0, {5e3, 1e3, 20.0}},
                     FilmCase{6, 1, 30.0, 220.0, {5e3, 1e3, 20.0}}, FilmCase{32, 32, 10.0, 100.0, {50e3, 2e3, 20.0}}));
 
-INSTANTIATE_TEST_SUITE_P(
-    virtual_ground, FilmOverLines,
-    testing::Values(FilmCase{10, 10, 30.0, 150.0, {50e3, 2e3, 20.0}, Circuit::transimpedance},
-                    FilmCase{10, 10, 30.0, 150.0, {5e3, 5e3, 20.0}, Circuit::transimpedance},
-                    FilmCase{7, 12, 100.0, 150.0, {5e3, 1e3, 20.0}, Circuit::transimpedance}));
+INSTANTIATE_TEST_SUITE_P(virtual_ground, FilmOverLines,
+                         testing::Values(FilmCase{10, 10, 30.0, 150.0, {50e3, 2e3, 20.0}, Circuit::transimpedance},
+                                         FilmCase{10, 10, 30.0, 150.0, {5e3, 5e3, 20.0}, Circuit::transimpedance},
+                                         FilmCase{7, 12, 100.0, 150.0, {5e3, 1e3, 20.0}, Circuit::transimpedance}));
 
 }  // namespace
 }  // namespace dermis::touch::compensation
