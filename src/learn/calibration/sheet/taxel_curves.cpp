@@ -51,7 +51,7 @@ double between(const Points& points, double x) {
 
 TaxelCurves::TaxelCurves(const SinglePresses& single) : taxel_(single.sigma.size()) {
   Points measured;
-  for (const auto& [taxel, newtons, temperature, rise] : single.presses) {
+  for (const auto& [taxel, newtons, temperature, rise, held] : single.presses) {
     if (!(rise[taxel] > kLeastSigmas * single.sigma[taxel])) continue;
     measured.push_back({std::log(newtons), std::log(rise[taxel]), temperature, taxel});
   }
