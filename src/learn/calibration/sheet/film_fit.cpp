@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "dermis/touch/frames/quantile.hpp"
 #include "learn/calibration/circuit_fit/line_parameters.hpp"
 #include "learn/calibration/sheet/cover_shares.hpp"
 #include "learn/calibration/sheet/single_presses.hpp"
@@ -23,13 +24,16 @@ namespace {
 constexpr std::size_t kLeastLines = 3;
 constexpr std::size_t kFar = 3;               // lines from a press: what it raises there is no film
 constexpr double kOutlier = 5.0;              // sigmas
-constexpr double kLeastRelativeSigma = 1e-3;  // of a taxel beside a press, in the conductance of the press
-constexpr double kMostWork = 1e5;             // frames x taxels of a trial
-constexpr double kMostSlowWork = 5e4;         // the same of floating lines
+constexpr double kLeastRelativeSigma = 3e-4;  // of a taxel beside a press, in the conductance of the press
+constexpr double kCoverError = 0.01;          // of what a cover hands on
+constexpr double kAllWork = 1e7;              // times taxels
+constexpr double kWorkOfCurves = 50.0;        // over that of a trial
+constexpr double kMostWork = 2e5;             // frames x taxels of a trial
+constexpr double kMostSlowWork = 4e4;         // the same of floating lines
 constexpr double kCoarseShare = 0.2;          // of them for the first steps
-constexpr double kSuspicious = 1.0;           // mean square
+constexpr double kSuspicious = 20.0;          // squares that films which hardly conduct explain, where there is one
 constexpr double kEvidence = 60.0;            // squares that a film must explain
-constexpr double kLeastExplained = 0.3;       // of the squares beyond noise
+constexpr double kLeastExplained = 0.1;       // of all squares
 constexpr double kLeastCorner = 0.4;          // share across a corner of a cover, over the square of the one beside
 constexpr double kLeastOhm = 100.0;
 constexpr double kMostOhm = 10e6;
@@ -58,8 +62,8 @@ std::size_t apart(std::size_t a, std::size_t b) {
 /// What the taxels around presses show with one film undone.
 class Surroundings {
  public:
-  Surroundings(const ArrayDescription& array, const SinglePresses& single)
-      : array_(array), single_(single), curves_(single) {
+  Surroundings(const ArrayDescription& array, const SinglePresses& single, const TaxelCurves& curves)
+      : array_(array), single_(single), curves_(curves), usual_sigma_(quantile(single.sigma, 0.5)) {
     if (!curves_.any()) return;
     const CoverShares shares(array, single, curves_);
     corner_ = shares.at(1, 1).share;
@@ -117,7 +121,8 @@ class Surroundings {
         const double rise = press.rise[taxel] - of_line - covered;
         const double of_press = press.rise[press.taxel];
         near.add(press.held[taxel]);
-        misfit.add(rise / std::hypot(single_.sigma[taxel], kLeastRelativeSigma * of_press, 0.03 * covered));
+        misfit.add(rise / std::hypot(std::max(single_.sigma[taxel], usual_sigma_), kLeastRelativeSigma * of_press,
+                                     kCoverError * covered));
       }
     }
   }
@@ -142,7 +147,8 @@ class Surroundings {
 
   const ArrayDescription& array_;
   const SinglePresses& single_;
-  TaxelCurves curves_;
+  const TaxelCurves& curves_;
+  double usual_sigma_;  // at least: readings in whole counts may scatter by none
   double corner_ = 0.0;
   double beside_ = 0.0;
   double second_ = 0.0;
@@ -151,14 +157,30 @@ class Surroundings {
 /// Films over one recording.
 class FilmSearch {
  public:
-  FilmSearch(ArrayDescription array, const LabelledPresses& presses) : array_(std::move(array)), presses_(presses) {}
+  /// `curves`: of the taxels, whatever the film is, which hardly bends them.
+  FilmSearch(ArrayDescription array, LabelledPresses presses, const TaxelCurves& curves)
+      : array_(std::move(array)), presses_(std::move(presses)), curves_(curves) {}
 
   /// Empty: the circuit cannot be so.
   [[nodiscard]] std::optional<Misfit> misfit(const std::optional<Film>& film) {
     array_.readout.film = film;
     const std::optional<SinglePresses> single = presses_.invert(array_);
     if (!single) return std::nullopt;
-    return Surroundings(array_, *single).misfit();
+    return Surroundings(array_, *single, curves_).misfit();
+  }
+
+  /// Infinite: the circuit cannot be so.
+  [[nodiscard]] double squares(const Film& film) {
+    const bool is_possible =
+        film.loaded_ohm <= film.unloaded_ohm && film.loaded_ohm >= kLeastOhm && film.unloaded_ohm <= kMostOhm;
+    const std::optional<Misfit> found = is_possible ? misfit(film) : std::nullopt;
+    return found ? found->squares : std::numeric_limits<double>::infinity();
+  }
+
+  /// A film that conducts little already explains something.
+  [[nodiscard]] bool is_suspicious(double without) {
+    return without - std::min(squares({200e3, 200e3, kForces.front()}), squares({2e6, 20e3, kForces.front()})) >
+           kSuspicious;
   }
 
   /// The film of least misfit, from coarse steps of both resistances to fine ones.
@@ -179,13 +201,6 @@ class FilmSearch {
     Film film;
     double squares = 0.0;
   };
-
-  [[nodiscard]] double squares(const Film& film) {
-    const bool is_possible =
-        film.loaded_ohm <= film.unloaded_ohm && film.loaded_ohm >= kLeastOhm && film.unloaded_ohm <= kMostOhm;
-    const std::optional<Misfit> found = is_possible ? misfit(film) : std::nullopt;
-    return found ? found->squares : std::numeric_limits<double>::infinity();
-  }
 
   [[nodiscard]] Candidate improved(const Film& start, double first_factor, double last_factor) {
     Candidate best{start, squares(start)};
@@ -212,7 +227,8 @@ class FilmSearch {
   }
 
   ArrayDescription array_;
-  const LabelledPresses& presses_;
+  LabelledPresses presses_;
+  const TaxelCurves& curves_;
 };
 
 std::string ohm_text(double ohm) {
@@ -228,10 +244,8 @@ std::string sentence(const Film& film) {
       ohm_text(film.unloaded_ohm), loaded);
 }
 
-bool explains(const Misfit& with, const Misfit& without) {
-  const double excess = without.squares - without.count;
-  const double explained = without.squares - with.squares;
-  return explained > kEvidence && explained > kLeastExplained * excess;
+bool explains(double with, double without) {
+  return without - with > std::max(kEvidence, kLeastExplained * without);
 }
 
 }  // namespace
@@ -239,19 +253,18 @@ bool explains(const Misfit& with, const Misfit& without) {
 FilmFit fit_film(const ArrayDescription& array, std::span<const RawFrame> frames, std::span<const Load> loads,
                  Nanos settle_time) {
   if (array.rows < kLeastLines || array.cols < kLeastLines) return {};
-  const double work = is_inverted_slowly(array) ? kMostSlowWork : kMostWork;
-  const auto presses = LabelledPresses::create(array, frames, loads, settle_time, work);
+  const auto presses = LabelledPresses::create(array, frames, loads, settle_time, kAllWork);
   if (!presses) return {};
-  FilmSearch search(array, *presses);
+  const double work = is_inverted_slowly(array) ? kMostSlowWork : kMostWork;
+  const std::optional<SinglePresses> single = presses->some(kWorkOfCurves * work).invert(array);
+  if (!single) return {};
+  const TaxelCurves curves(*single);
+  FilmSearch search(array, presses->some(work), curves);
   const std::optional<Misfit> without = search.misfit(std::nullopt);
-  if (!without || !(without->squares > kSuspicious * without->count)) return {};
-  const auto few = LabelledPresses::create(array, frames, loads, settle_time, kCoarseShare * work);
-  const std::optional<Film> film = search.best(FilmSearch(array, *few).coarse());
-  const std::optional<Misfit> with = film ? search.misfit(film) : std::nullopt;
-  if (std::getenv("FILM_DEBUG"))
-    fmt::print(stderr, "film: without {:.1f}/{} with {:.1f} un {} lo {} F {}\n", without->squares, without->count,
-               with ? with->squares : -1.0, film->unloaded_ohm, film->loaded_ohm, film->loaded_newtons);
-  if (!with || !explains(*with, *without)) return {};
+  if (!without || !search.is_suspicious(without->squares)) return {};
+  FilmSearch coarse(array, presses->some(kCoarseShare * work), curves);
+  const std::optional<Film> film = search.best(coarse.coarse());
+  if (!film || !explains(search.squares(*film), without->squares)) return {};
   return {film, sentence(*film)};
 }
 

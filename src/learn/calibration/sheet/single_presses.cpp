@@ -137,9 +137,24 @@ std::optional<LabelledPresses> LabelledPresses::create(const ArrayDescription& a
   Result<CircuitFrames> circuit = circuit_frames(array, frames, loads, settle_time);
   if (!circuit) return std::nullopt;
   LabelledPresses presses;
-  presses.circuit_ = *std::move(circuit);
-  presses.labelled_ = labelled_frames(array, presses.circuit_, LoadsOfFrames(loads, frames.size()));
+  presses.circuit_ = std::make_shared<const CircuitFrames>(*std::move(circuit));
+  presses.labelled_ = labelled_frames(array, *presses.circuit_, LoadsOfFrames(loads, frames.size()));
   thin_out(presses.labelled_, static_cast<std::size_t>(work / static_cast<double>(array.taxel_count())));
+  return presses;
+}
+
+LabelledPresses LabelledPresses::some(double work) const {
+  constexpr double kGolden = 0.618033988749895;  // its multiples are spread evenly
+  if (labelled_.empty()) return *this;
+  const auto taxels = static_cast<double>(labelled_.front().frame->ratio.size());
+  const double share = work / (taxels * static_cast<double>(labelled_.size()));
+  LabelledPresses presses;
+  presses.circuit_ = circuit_;
+  for (std::size_t k = 0; k < labelled_.size(); ++k) {
+    const double place = kGolden * static_cast<double>(k);
+    const bool is_idle = labelled_[k].newtons == 0.0;
+    if (is_idle || place - std::floor(place) < share) presses.labelled_.push_back(labelled_[k]);
+  }
   return presses;
 }
 

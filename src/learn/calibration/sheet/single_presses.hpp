@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -38,6 +39,9 @@ class LabelledPresses {
   static std::optional<LabelledPresses> create(const ArrayDescription& array, std::span<const RawFrame> frames,
                                                std::span<const Load> loads, Nanos settle_time, double work);
 
+  /// So many of them, whatever their places and forces are, beside all in which nothing presses.
+  [[nodiscard]] LabelledPresses some(double work) const;
+
   /// Unloaded conductances are those of frames in which nothing presses on the lines of a taxel and near it, by the
   /// circuit of `array`. A film over the lines feels what its cover hands on. Empty: too few frames for a word on the
   /// sheet, or a circuit that is not known or cannot give them.
@@ -54,7 +58,7 @@ class LabelledPresses {
                                                const LoadsOfFrames& loads_of);
   static void thin_out(std::vector<Labelled>& labelled, std::size_t most);
 
-  CircuitFrames circuit_;
+  std::shared_ptr<const CircuitFrames> circuit_;
   std::vector<Labelled> labelled_;  // refers to circuit_
 };
 
