@@ -10,7 +10,7 @@
 #include <cmath>
 #include <vector>
 
-#include "bytes/files/cover_toml.hpp"
+#include "bytes/files/sheet_toml.hpp"
 #include "dermis/bytes/files/atomic_file.hpp"
 #include "dermis/bytes/files/config_table.hpp"
 #include "dermis/bytes/files/taxel_text.hpp"
@@ -214,23 +214,6 @@ void read_adc_errors(ConfigFile& file, Readout& readout) {
   read_curve(file, readout);
 }
 
-/// One resistance, [unloaded, loaded], or "fit".
-void read_film(ConfigFile& file, Readout& readout) {
-  std::vector<double> ohms;
-  if (file.is_text("readout.film", "fit")) {
-    ohms.assign(2, kFitOhm);
-  } else if (file.contains("readout.film")) {
-    file.fail("readout.film", "must be \"fit\"; a film that is known has film_ohm");
-  }
-  file.number_per_line("readout.film_ohm", 2, {"fit", kFitOhm}, ohms);
-  Film film;
-  file.number("readout.film_force_n", film.loaded_newtons);
-  if (ohms.size() != 2) return;
-  film.unloaded_ohm = ohms[0];
-  film.loaded_ohm = ohms[1];
-  readout.film = film;
-}
-
 void read_readout(ConfigFile& file, ArrayDescription& array) {
   Readout& readout = array.readout;
   read_circuit(file, readout);
@@ -244,7 +227,7 @@ void read_readout(ConfigFile& file, ArrayDescription& array) {
   file.number("readout.amplifier_gain", readout.amplifier_gain);
   file.number_per_line("readout.row_segment_ohm", array.rows, readout.row_segment_ohm);
   file.number_per_line("readout.column_segment_ohm", array.cols, readout.column_segment_ohm);
-  read_film(file, readout);
+  read_film(file, readout.film);
   file.integer("readout.adc_bits", readout.adc_bits);
   file.number("readout.adc_noise_counts", readout.adc_noise_counts);
   file.number_per_line("readout.drive_error_ohm", array.driven_lines(), readout.drive_error_ohm);
@@ -340,9 +323,9 @@ std::string circuit_toml(const Readout& readout) {
   if (readout.amplifier_gain) text += fmt::format("amplifier_gain = {}\n", *readout.amplifier_gain);
   text += per_line_toml("row_segment_ohm", readout.row_segment_ohm);
   text += per_line_toml("column_segment_ohm", readout.column_segment_ohm);
-  if (!readout.film) return text;
-  text += per_line_toml("film_ohm", {readout.film->unloaded_ohm, readout.film->loaded_ohm});
-  return text + fmt::format("film_force_n = {}\n", readout.film->loaded_newtons);
+  return text + film_toml(readout.film);
+});
+return text + fmt::format("film_force_n = {}\n", readout.film->loaded_newtons);
 }
 
 std::string fit_or_number_toml(std::string_view key, const std::optional<double>& value) {

@@ -8,7 +8,7 @@
 namespace dermis::learn::simulation {
 namespace {
 
-/// Of a Gaussian over cells of this pitch.
+/// Shares of a Gaussian over cells of this pitch.
 std::vector<double> shares_along(double spread_m, double pitch_m, std::size_t lines) {
   std::vector<double> shares(lines);
   for (std::size_t k = 0; k < lines; ++k) {

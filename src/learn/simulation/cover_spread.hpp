@@ -9,7 +9,7 @@
 
 namespace dermis::learn::simulation {
 
-/// Spreads forces on the cover of an array (array.cover) over its taxels. What falls beyond the rim is lost.
+/// Spreads forces on the cover of an array (array.cover) over its taxels. Forces beyond the rim are lost.
 class CoverSpread {
  public:
   /// The cover is known, or there is none.

@@ -15,10 +15,10 @@ using Table = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMa
 /// come first, then the sensed lines; symmetric, the diagonal has no meaning.
 using TerminalNetwork = Table;
 
-/// What a film conducts between neighbouring taxels [S]; empty tables: there is none.
+/// A film between neighbouring taxels [S]; empty tables: there is none.
 struct FilmTables {
-  Table along_sensed;  ///< Of driven lines i and i + 1 [driven - 1, sensed].
-  Table along_driven;  ///< Of sensed lines j and j + 1 [driven, sensed - 1].
+  Table along_sensed;  ///< Between driven lines i and i + 1 [driven - 1, sensed].
+  Table along_driven;  ///< Between sensed lines j and j + 1 [driven, sensed - 1].
 };
 
 /// `newtons`: on the taxels [driven, sensed].

@@ -13,10 +13,9 @@
 
 namespace dermis::touch::compensation {
 
-/// A film over the lines (Readout::film), as the loads on its taxels make it. Loads follow from the conductances of
-/// the taxels and the law of the sheet: all taxels have one curve, from what each conducts above its unloaded
-/// conductance, over what it conducts under one same force. Both laws are polygons. Allocates nothing but when it is
-/// made.
+/// A film over the lines (Readout::film), as the loads on its taxels make it. Loads follow from the conductances of the
+/// taxels and the law of the sheet. By that law all taxels have one curve, each on the scale of its own conductance
+/// under one same force. Both laws are polygons. Allocates nothing but when it is made.
 class FilmFollower {
  public:
   FilmFollower(const ArrayDescription& array, const ReferenceConductances& references);

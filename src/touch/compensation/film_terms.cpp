@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kLeastShare = 1e-6;  // of the supply that a column leaves
 
-/// What a film conducts from a line to both neighbours; `between` [lines - 1].
+/// A film from a line to both neighbours; `between` [lines - 1].
 double film_of_line(const std::vector<double>& between, std::size_t line) {
   return (line > 0 ? between[line - 1] : 0.0) + (line < between.size() ? between[line] : 0.0);
 }

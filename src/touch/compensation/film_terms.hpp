@@ -10,8 +10,8 @@
 
 namespace dermis::touch::compensation {
 
-/// A film over the lines in the equations of GroundedRows, all columns loaded. With Lr and Lc, what it conducts from
-/// row to row and from column to column as a Laplacian, and the column matrix C = diag(1/RL + G^T 1) + Lc,
+/// A film over the lines in the equations of GroundedRows, all columns loaded. Lr and Lc are the Laplacians of what it
+/// conducts from row to row and from column to column. With the column matrix C = diag(1/RL + G^T 1) + Lc,
 ///
 ///   S = A + Lr - G C^-1 G^T,   y = D S^-1 G C^-1 diag(1/RL),   P = diag(RL) C
 ///   (a) a_i = 1 + Rd_i (sum_j G_ij + Lr_ii)
@@ -47,8 +47,8 @@ void put_film_into_lines(GroundedRowsState& state) noexcept;
 /// After `returned` of full columns: (b) and (c), and f in `returned`. Gives the certificate.
 [[nodiscard]] double assess_with_film(GroundedRowsState& state) noexcept;
 
-/// `measured` becomes the current that enters each column from the rows, y (I + diag(RL) Lc), for the estimate. What it
-/// was is in `currents` then.
+/// `measured` becomes the current that enters each column from the rows, y (I + diag(RL) Lc), for the estimate. It
+/// stands in `currents` then.
 void exchange_film_currents(GroundedRowsState& state) noexcept;
 
 }  // namespace dermis::touch::compensation

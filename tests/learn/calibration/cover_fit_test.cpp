@@ -13,63 +13,17 @@
 #include "dermis/touch/frames/random.hpp"
 #include "learn/calibration/sheet/felt_loads.hpp"
 #include "support/reference_array.hpp"
+#include "support/sheet_presses.hpp"
 
 namespace dermis::learn::calibration {
 namespace {
 
 constexpr std::size_t kLines = 8;
 
-/// Single presses of 0.4 to 40 N on each taxel of a sheet, labelled as they stand on its cover.
-struct Presses {
-  std::vector<RawFrame> frames;
-  std::vector<Load> loads;
-
-  Presses(const ArrayDescription& array, std::uint64_t seed) : random_(seed), adc_(array.readout, 0.8), array_(array) {
-    for (std::size_t taxel = 0; taxel < kLines * kLines; ++taxel)
-      ohm_.push_back(900.0 * std::exp(0.15 * random_.normal()));
-    for (int k = 0; k < 20; ++k) {
-      loads.push_back({frames.size(), LoadKind::force, all_taxels(array), 0.0});
-      press(0, 0.0);
-    }
-    for (std::size_t taxel = 0; taxel < kLines * kLines; ++taxel) {
-      for (const double newtons : {0.4, 1.0, 2.5, 6.0, 15.0, 40.0}) {
-        const std::size_t row = taxel / kLines;
-        const std::size_t col = taxel % kLines;
-        loads.push_back({frames.size(), LoadKind::force, {row, col, row, col}, newtons});
-        press(taxel, newtons);
-      }
-    }
-  }
-
-  [[nodiscard]] CoverFit fit(const ArrayDescription& described) const {
-    return fit_cover(described, frames, loads, Nanos{0});
-  }
-
- private:
-  void press(std::size_t taxel, double newtons) {
-    std::vector<double> surface(kLines * kLines);
-    surface[taxel] = newtons;
-    std::vector<double> felt(surface.size());
-    CoverKernel(array_).spread(std::span<const double>(surface), std::span<double>(felt));
-    std::vector<double> siemens(surface.size(), 1.0 / 300e3);
-    for (std::size_t k = 0; k < felt.size(); ++k) {
-      if (felt[k] > 1e-6)
-        siemens[k] += std::exp(0.004 * random_.normal()) / (60.0 + ohm_[k] * std::pow(10.0 / felt[k], 0.9));
-    }
-    RawFrame frame;
-    frame.time = std::chrono::milliseconds(500 * frames.size());
-    frame.counts.resize(siemens.size());
-    std::vector<double> ratio(siemens.size());
-    simulation::ReadoutCircuit::create(array_)->ratios(siemens, ratio);
-    adc_.convert(ratio, 5.0, random_, frame.counts);
-    frames.push_back(std::move(frame));
-  }
-
-  Random random_;
-  simulation::Adc adc_;
-  ArrayDescription array_;
-  std::vector<double> ohm_;
-};
+CoverFit fit_presses(const ArrayDescription& truth, std::uint64_t seed, const ArrayDescription& described) {
+  const support::SheetPresses presses(truth, seed);
+  return fit_cover(described, presses.frames, presses.loads, Nanos{0});
+}
 
 ArrayDescription sheet(std::optional<Cover> cover) {
   ArrayDescription array = support::reference_array(kLines, kLines);
@@ -86,7 +40,7 @@ ArrayDescription without_cover(ArrayDescription array) {
 TEST(CoverFit, finds_by_how_much_a_cover_spreads) {
   for (const double spread_m : {0.004, 0.006, 0.010}) {
     const ArrayDescription array = sheet(Cover{spread_m, {}});
-    const CoverFit fit = Presses(array, 3).fit(without_cover(array));
+    const CoverFit fit = fit_presses(array, 3, without_cover(array));
     ASSERT_TRUE(fit.cover) << spread_m;
     ASSERT_TRUE(fit.cover->shares.empty()) << spread_m;
     EXPECT_NEAR(fit.cover->spread_m, spread_m, 0.02 * spread_m);
@@ -106,7 +60,7 @@ TEST(CoverFit, finds_the_shares_of_a_cover_that_is_no_gaussian) {
   }
   for (CoverShare& share : shares) share.share /= sum;
   const ArrayDescription array = sheet(Cover{0.0, shares});
-  const CoverFit fit = Presses(array, 4).fit(without_cover(array));
+  const CoverFit fit = fit_presses(array, 4, without_cover(array));
   ASSERT_TRUE(fit.cover);
   ArrayDescription found = array;
   found.cover = fit.cover;
@@ -125,9 +79,9 @@ TEST(CoverFit, finds_none_where_there_is_none) {
       ArrayDescription array = sheet({});
       array.readout.circuit = circuit;
       ArrayDescription described = array;
-      EXPECT_FALSE(Presses(array, seed).fit(described).cover);
+      EXPECT_FALSE(fit_presses(array, seed, described).cover);
       described.readout.drive_ohm.assign(kLines, 60.0);  // and not for wrong drivers
-      EXPECT_FALSE(Presses(array, seed).fit(described).cover);
+      EXPECT_FALSE(fit_presses(array, seed, described).cover);
     }
   }
 }
@@ -136,7 +90,7 @@ TEST(CoverFit, knows_the_cover_by_the_corners_where_the_drivers_are_not_known) {
   const ArrayDescription array = sheet(Cover{0.006, {}});
   ArrayDescription described = without_cover(array);
   described.readout.drive_ohm.assign(kLines, kFitOhm);
-  const CoverFit fit = Presses(array, 5).fit(described);
+  const CoverFit fit = fit_presses(array, 5, described);
   ASSERT_TRUE(fit.cover);
   EXPECT_TRUE(fit.is_guessed);
   EXPECT_NEAR(fit.cover->spread_m, 0.006, 0.0006);
@@ -146,7 +100,7 @@ TEST(CoverFit, says_that_there_is_none_where_it_is_asked_for_one) {
   const ArrayDescription array = sheet({});
   ArrayDescription described = array;
   described.cover = Cover{};
-  const CoverFit fit = Presses(array, 6).fit(described);
+  const CoverFit fit = fit_presses(array, 6, described);
   EXPECT_FALSE(fit.cover);
   EXPECT_NE(fit.sentence.find("no cover"), std::string::npos);
 }

@@ -26,12 +26,12 @@ struct Film {
   [[nodiscard]] double rise(double newtons, double other_newtons) const noexcept;
 };
 
-/// What a film conducts from each row to the next [rows - 1] and from each column to the next [cols - 1] [S].
+/// A film as it conducts from each row to the next [rows - 1] and from each column to the next [cols - 1] [S].
 struct FilmConductances {
   FilmConductances(std::size_t rows, std::size_t cols)
       : between_rows(rows > 0 ? rows - 1 : 0), between_cols(cols > 0 ? cols - 1 : 0) {}
 
-  /// Of taxels under these forces [rows, cols]; less than 0 and NaN are 0. Allocates nothing.
+  /// The taxels are under these forces [rows, cols]; less than 0 and NaN are 0. Allocates nothing.
   void set(const Film& film, std::span<const double> newtons) noexcept;
   void set(const Film& film, std::span<const float> newtons) noexcept;
 
@@ -41,7 +41,7 @@ struct FilmConductances {
 
 /// A point of the law of a sheet's taxels: all have one curve, each on its own scale.
 struct LoadPoint {
-  double share = 0.0;    ///< Of what a taxel conducts under one same force, both above its unloaded conductance.
+  double share = 0.0;    ///< In the conductance under one same force, both above the unloaded one.
   double newtons = 0.0;  ///< Under which it conducts this.
 };
 

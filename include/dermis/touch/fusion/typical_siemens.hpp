@@ -16,8 +16,8 @@ namespace dermis::touch::fusion {
 /// one.
 [[nodiscard]] std::vector<double> typical_siemens(const ForceNetworks& networks);
 
-/// The one law of a sheet: the median force of all taxels where each conducts a share of its `typical` conductance, both
-/// above the unloaded one, at the temperature of the unloaded law. Both members rise.
+/// The one law of a sheet: the median force of all taxels where each conducts a share of its `typical` conductance.
+/// Both are above the unloaded conductance, at the temperature of the unloaded law. Both members rise.
 [[nodiscard]] std::vector<LoadPoint> load_points(const ForceNetworks& networks, std::span<const double> typical);
 
 }  // namespace dermis::touch::fusion

@@ -10,13 +10,13 @@
 
 namespace dermis::learn::calibration {
 
-/// What the taxels feel of loads on the cover of `array`, which is known; without a cover the loads themselves. Loads
-/// of single taxels, and pressures, become a force for each taxel that feels them. A force over several taxels becomes
-/// one over all that may feel it.
+/// The loads that taxels feel of those on the cover of `array`, which is known; without a cover the loads themselves.
+/// Loads of single taxels, and pressures, become a force for each taxel that feels them. A force over several taxels
+/// becomes one over all that may feel it.
 [[nodiscard]] std::vector<Load> felt_loads(const ArrayDescription& array, std::span<const Load> loads);
 
-/// The same for learning: a force is not known (NaN) where it is fainter than any that stood above its taxel, or a
-/// small share of its frame's, of which little is known.
+/// The same for learning. A force is not known (NaN) where it is fainter than any that stood above its taxel, or a
+/// small share of its frame's.
 [[nodiscard]] std::vector<Load> well_felt_loads(const ArrayDescription& array, std::span<const Load> loads);
 
 /// The same with all loads of a frame in one, over all taxels that may feel them.

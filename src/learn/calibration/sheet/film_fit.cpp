@@ -59,7 +59,7 @@ std::size_t apart(std::size_t a, std::size_t b) {
   return a > b ? a - b : b - a;
 }
 
-/// What the taxels around presses show with one film undone.
+/// The taxels around presses with one film undone.
 class Surroundings {
  public:
   Surroundings(const ArrayDescription& array, const SinglePresses& single, const TaxelCurves& curves)

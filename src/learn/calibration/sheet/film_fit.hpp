@@ -12,14 +12,14 @@
 
 namespace dermis::learn::calibration {
 
-/// What presses of single taxels tell of a film over the lines.
+/// A film over the lines, as presses of single taxels tell it.
 struct FilmFit {
   std::optional<Film> film;
   std::string sentence;  ///< May be empty.
 };
 
-/// A film raises the taxels beside a press in its row or its column, as the circuit has it, but hardly those across the
-/// corners; what raises a whole line is none. It is the one with which the taxels beside presses conduct as if nothing
+/// A film raises the taxels beside a press in its row or its column, as the circuit has it. It hardly raises those
+/// across the corners, and not a whole line. With the film that is found, taxels beside presses conduct as if nothing
 /// pressed, or as a cover has it that raises both lines alike. `array`: its circuit is known, but perhaps for the film.
 [[nodiscard]] FilmFit fit_film(const ArrayDescription& array, std::span<const RawFrame> frames,
                                std::span<const Load> loads, Nanos settle_time);

@@ -25,10 +25,10 @@ struct SinglePress {
   std::vector<bool> held;    ///< At 0 S, or the taxel would conduct less than nothing [taxels].
 };
 
-/// What presses of single taxels show of a sheet.
+/// A sheet as presses of single taxels show it.
 struct SinglePresses {
   std::vector<SinglePress> presses;  ///< By taxel, the heaviest first.
-  std::vector<double> sigma;         ///< Of a rise in one frame [taxels] [S].
+  std::vector<double> sigma;         ///< A rise scatters by it from frame to frame [taxels] [S].
 };
 
 /// The frames of a recording in which one taxel alone is labelled, or nothing presses. Saturated presses are left out,

@@ -92,12 +92,12 @@ std::vector<std::size_t> connect_film(const ScannedLines& lines, const LineNodes
   return counts;
 }
 
-/// All that two lines have together. More than the unloaded film is where the taxels beside it conduct: taxel k of the
-/// first line is taxels[k * along], its neighbour stands `beside` after it.
+/// All that two lines have together. The rest above the unloaded film is where the taxels beside it conduct. Taxel k of
+/// the first line is taxels[k * along], its neighbour stands `beside` after it.
 void spread_film(double together, double unloaded, const double* taxels, std::size_t along, std::size_t beside,
                  std::span<double> edges) noexcept {
   const auto count = static_cast<double>(edges.size());
-  const double rise = edges.size() > 1 ? std::max(together - count * unloaded, 0.0) : 0.0;
+  const double rise = edges.size() > 1 ? std::max(together - unloaded, 0.0) : 0.0;
   double sum = 0.0;
   for (std::size_t k = 0; k < edges.size(); ++k) sum += taxels[k * along] + taxels[k * along + beside];
   for (std::size_t k = 0; k < edges.size(); ++k) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "bytes/files/cover_toml.hpp"
+#include "bytes/files/sheet_toml.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -42,6 +42,29 @@ std::string cover_toml(const std::optional<Cover>& known) {
   std::vector<std::string> shares;
   for (const auto& [rows, cols, share] : cover.shares) shares.push_back(fmt::format("[{}, {}, {}]", rows, cols, share));
   return fmt::format("cover_shares = [{}]\n", fmt::join(shares, ", "));
+}
+
+void read_film(ConfigFile& file, std::optional<Film>& found) {
+  std::vector<double> ohms;
+  if (file.is_text("readout.film", "fit")) {
+    ohms.assign(2, kFitOhm);
+  } else if (file.contains("readout.film")) {
+    file.fail("readout.film", "must be \"fit\"; a film that is known has film_ohm");
+  }
+  file.number_per_line("readout.film_ohm", 2, {"fit", kFitOhm}, ohms);
+  Film film;
+  file.number("readout.film_force_n", film.loaded_newtons);
+  if (ohms.size() != 2) return;
+  film.unloaded_ohm = ohms[0];
+  film.loaded_ohm = ohms[1];
+  found = film;
+}
+
+std::string film_toml(const std::optional<Film>& film) {
+  if (!film) return {};
+  if (film->is_unknown()) return "film = \"fit\"\n";
+  return fmt::format("film_ohm = [{}, {}]\nfilm_force_n = {}\n", film->unloaded_ohm, film->loaded_ohm,
+                     film->loaded_newtons);
 }
 
 }  // namespace dermis::bytes::files

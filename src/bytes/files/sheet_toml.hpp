@@ -7,6 +7,7 @@
 
 #include "dermis/bytes/files/config_table.hpp"
 #include "dermis/touch/frames/cover.hpp"
+#include "dermis/touch/frames/film.hpp"
 
 namespace dermis::bytes::files {
 
@@ -15,5 +16,11 @@ void read_cover(ConfigFile& file, std::optional<Cover>& cover);
 
 /// Their lines; empty without a cover.
 [[nodiscard]] std::string cover_toml(const std::optional<Cover>& cover);
+
+/// The keys of a film over the lines: one resistance, [unloaded, loaded], or "fit".
+void read_film(ConfigFile& file, std::optional<Film>& film);
+
+/// Their lines; empty without a film.
+[[nodiscard]] std::string film_toml(const std::optional<Film>& film);
 
 }  // namespace dermis::bytes::files
