@@ -324,8 +324,6 @@ std::string circuit_toml(const Readout& readout) {
   text += per_line_toml("row_segment_ohm", readout.row_segment_ohm);
   text += per_line_toml("column_segment_ohm", readout.column_segment_ohm);
   return text + film_toml(readout.film);
-});
-return text + fmt::format("film_force_n = {}\n", readout.film->loaded_newtons);
 }
 
 std::string fit_or_number_toml(std::string_view key, const std::optional<double>& value) {
