@@ -401,7 +401,7 @@ class Memory(SmallArray):
 
     def test_the_film_is_that_of_the_option(self):
         seen = set()
-        for options in ((), ("--film", 5000), ("--film", "5000,5000,20"), ("--film", "50000,2000,20")):
+        for options in ((), ("--film", 300), ("--film", "300,300,20"), ("--film", "50000,300,2")):
             frames, _ = self.simulated("film" + str(len(seen)) + str(len(options)), "touches", "--frames", 60, *options)
             seen.add(str(frames))
         self.assertEqual(len(seen), 3)  # one resistance is a film that loads do not change

@@ -79,8 +79,8 @@ GroundedRows::GroundedRows(const ArrayDescription& array, double tolerance_ratio
     driver_error_.emplace(array, std::vector<double>(state_.column_ohm.begin(), state_.column_ohm.begin() + cols));
   }
   if (readout.film) {
-    film_ = std::make_unique<GroundedRowsFilm>(FilmFollower(array, options.references), state_.rows, state_.stride);
-    state_.film = film_.get();
+    state_.film =
+        std::make_shared<GroundedRowsFilm>(FilmFollower(array, options.references), state_.rows, state_.stride);
   }
   if (is_absent(readout.amplifier_offset_v)) return;
   sources_.ratio.resize(state_.stride);
@@ -125,7 +125,7 @@ bool GroundedRows::set_shorted(std::span<const std::size_t> taxels) noexcept {
   joined_.pairs.clear();
   state_.drive_ohm = joined_.drive_ohm;
   const bool can =
-      sources_.ratio.empty() && !film_ && std::all_of(taxels.begin(), taxels.end(), [&](std::size_t taxel) {
+      sources_.ratio.empty() && !state_.film && std::all_of(taxels.begin(), taxels.end(), [&](std::size_t taxel) {
         return add_shorted(taxel / state_.cols, taxel % state_.cols);
       });
   if (can) return true;
@@ -156,7 +156,7 @@ bool GroundedRows::add_shorted(std::size_t row, std::size_t col) noexcept {
 }
 
 void GroundedRows::hold_film(const FilmConductances& film) noexcept {
-  if (film_) film_->follower.hold(film);
+  if (state_.film) state_.film->follower.hold(film);
 }
 
 void GroundedRows::forget() noexcept {

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -119,7 +118,6 @@ class GroundedRows final : public CrosstalkInversion {
   double tolerance_;
   StepBudget budget_;  // in steps without mixing
   GroundedRowsState state_;
-  std::unique_ptr<GroundedRowsFilm> film_;
   JoinedRows joined_;
   std::vector<double> reading_siemens_;  // y of a ratio of 1 [stride]
   std::vector<double> offset_siemens_;   // y of a ratio of 0 [stride]

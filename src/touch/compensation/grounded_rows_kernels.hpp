@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -78,7 +79,7 @@ struct GroundedRowsState {
   std::vector<double> column_part;   // w [stride]
   std::vector<double> column_scale;  // From Z to the next G [stride]
 
-  GroundedRowsFilm* film = nullptr;  // the terms of a film over the lines (film_terms.hpp); null: there is none
+  std::shared_ptr<GroundedRowsFilm> film;  // the terms of a film over the lines (film_terms.hpp); null: there is none
 };
 
 /// `estimate` of the readings: exact for ideal drivers, and for columns at 0 V.

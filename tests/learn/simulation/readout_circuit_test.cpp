@@ -708,15 +708,15 @@ class SpiceNetlist {
 
   /// Its own reading of the law: from the taxel to those before it.
   void add_film(std::size_t i, std::size_t j, const std::vector<double>& newtons) {
-    const auto ohm = [&](std::size_t a, std::size_t b) {
+    const auto ohm = [&](std::size_t a, std::size_t b, std::size_t pairs) {
       const Film& film = *readout_.film;
       const double load = std::min((newtons[a] + newtons[b]) / 2.0, film.loaded_newtons) / film.loaded_newtons;
       const double change = 1.0 / film.loaded_ohm - 1.0 / film.unloaded_ohm;
-      return 1.0 / (1.0 / film.unloaded_ohm + change * std::pow(load, 0.9));
+      return 1.0 / (1.0 / film.unloaded_ohm / static_cast<double>(pairs) + change * std::pow(load, 0.9));
     };
     const std::size_t own = array_.index(i, j);
-    if (i > 0) resistor("rx", i, j, row_node(i - 1, j), row_node(i, j), ohm(own - array_.cols, own));
-    if (j > 0) resistor("ry", i, j, col_node(i, j - 1), col_node(i, j), ohm(own - 1, own));
+    if (i > 0) resistor("rx", i, j, row_node(i - 1, j), row_node(i, j), ohm(own - array_.cols, own, array_.cols));
+    if (j > 0) resistor("ry", i, j, col_node(i, j - 1), col_node(i, j), ohm(own - 1, own, array_.rows));
   }
 
   void add_driver(std::size_t line) {

@@ -31,6 +31,7 @@ constexpr double kWorkOfCurves = 50.0;        // over that of a trial
 constexpr double kMostWork = 2e5;             // frames x taxels of a trial
 constexpr double kMostSlowWork = 4e4;         // the same of floating lines
 constexpr double kCoarseShare = 0.2;          // of them for the first steps
+constexpr double kMoreThanNoise = 2.0;        // mean square
 constexpr double kSuspicious = 20.0;          // squares that films which hardly conduct explain, where there is one
 constexpr double kEvidence = 60.0;            // squares that a film must explain
 constexpr double kLeastExplained = 0.1;       // of all squares
@@ -177,10 +178,11 @@ class FilmSearch {
     return found ? found->squares : std::numeric_limits<double>::infinity();
   }
 
-  /// A film that conducts little already explains something.
-  [[nodiscard]] bool is_suspicious(double without) {
-    return without - std::min(squares({200e3, 200e3, kForces.front()}), squares({2e6, 20e3, kForces.front()})) >
-           kSuspicious;
+  /// More than noise is left, or a film that conducts little already explains some of it.
+  [[nodiscard]] bool is_suspicious(const Misfit& without) {
+    if (without.squares > kMoreThanNoise * without.count) return true;
+    const double weak = std::min(squares({200e3, 200e3, kForces.front()}), squares({2e6, 20e3, kForces.front()}));
+    return without.squares - weak > kSuspicious;
   }
 
   /// The film of least misfit, from coarse steps of both resistances to fine ones.
@@ -261,7 +263,7 @@ FilmFit fit_film(const ArrayDescription& array, std::span<const RawFrame> frames
   const TaxelCurves curves(*single);
   FilmSearch search(array, presses->some(work), curves);
   const std::optional<Misfit> without = search.misfit(std::nullopt);
-  if (!without || !search.is_suspicious(without->squares)) return {};
+  if (!without || !search.is_suspicious(*without)) return {};
   FilmSearch coarse(array, presses->some(kCoarseShare * work), curves);
   const std::optional<Film> film = search.best(coarse.coarse());
   if (!film || !explains(search.squares(*film), without->squares)) return {};
