@@ -12,18 +12,17 @@ namespace dermis::touch::compensation {
 namespace {
 
 /// Shares of the loaded force, at which the polygon of the film meets its law.
-constexpr std::array kFilmCorners{0.0, 0.004, 0.015, 0.04, 0.08, 0.14, 0.22, 0.33, 0.47, 0.63, 0.81, 1.0};
+constexpr std::array kFilmCorners{0.0, 0.01, 0.03, 0.08, 0.18, 0.35, 0.6, 1.0};
 
 template <std::size_t Corners>
-DERMIS_PROCESSOR_CLONES void add_corners(const std::array<double, Corners>& x,
-                                         const std::array<double, Corners>& change, const double* __restrict from,
-                                         double* __restrict to, std::size_t count) {
+DERMIS_PROCESSOR_CLONES void add_corners(const std::array<float, Corners>& x, const std::array<float, Corners>& change,
+                                         const float* __restrict from, float* __restrict to, std::size_t count) {
 #pragma omp simd
   for (std::size_t k = 0; k < count; ++k) {
-    double sum = 0.0;
+    float sum = 0.0F;
     for (std::size_t corner = 0; corner < Corners; ++corner) {
-      const double beyond = from[k] - x[corner];
-      sum += change[corner] * (beyond > 0.0 ? beyond : 0.0);
+      const float beyond = from[k] - x[corner];
+      sum += change[corner] * (beyond > 0.0F ? beyond : 0.0F);
     }
     to[k] = sum;
   }
@@ -35,7 +34,7 @@ FilmFollower::FilmFollower(const ArrayDescription& array, const ReferenceConduct
     : film_(array.readout.film), rows_(array.rows), cols_(array.cols), conductances_(array.rows, array.cols) {
   if (!film_) return;
   for (auto* values : {&newtons_, &pairs_, &rises_}) values->resize(array.taxel_count());
-  conductances_.set(*film_, newtons_);
+  conductances_.set(*film_, std::span<const float>(newtons_));
   if (film_->is_constant() || references.loads.empty()) return;
   std::vector<double> shares{0.0};
   std::vector<double> loads{0.0};
@@ -68,8 +67,8 @@ FilmFollower::Polygon FilmFollower::polygon_of(const std::vector<double>& x, con
   double last = 0.0;
   for (std::size_t k = 0; k + 1 < std::min(x.size(), Polygon::kCorners + 1); ++k) {
     const double slope = (y[k + 1] - y[k]) / (x[k + 1] - x[k]);
-    polygon.x[k] = x[k];
-    polygon.change[k] = slope - last;
+    polygon.x[k] = static_cast<float>(x[k]);
+    polygon.change[k] = static_cast<float>(slope - last);
     last = slope;
   }
   return polygon;
@@ -87,7 +86,7 @@ bool FilmFollower::follow(std::span<const double> siemens, std::size_t stride) n
   for (std::size_t row = 0; row < rows_; ++row) {
     for (std::size_t col = 0; col < cols_; ++col) {
       const std::size_t taxel = row * cols_ + col;
-      pairs_[taxel] = (siemens[row * stride + col] - unloaded_[taxel]) * scale_[taxel];
+      pairs_[taxel] = static_cast<float>((siemens[row * stride + col] - unloaded_[taxel]) * scale_[taxel]);
     }
   }
   loads_.apply(pairs_.data(), newtons_.data(), pairs_.size());
@@ -95,24 +94,25 @@ bool FilmFollower::follow(std::span<const double> siemens, std::size_t stride) n
   std::fill(conductances_.between_cols.begin(), conductances_.between_cols.end(), unloaded);
   find_rises(newtons_.data(), newtons_.data() + 1, newtons_.size() - 1);
   for (std::size_t row = 0; row < rows_; ++row) {
-    for (std::size_t col = 0; col + 1 < cols_; ++col) conductances_.between_cols[col] += rises_[row * cols_ + col];
+    for (std::size_t col = 0; col + 1 < cols_; ++col)
+      conductances_.between_cols[col] += static_cast<double>(rises_[row * cols_ + col]);
   }
   find_rises(newtons_.data(), newtons_.data() + cols_, newtons_.size() - cols_);
   for (std::size_t row = 0; row + 1 < rows_; ++row) {
     double sum = unloaded;
-    for (std::size_t col = 0; col < cols_; ++col) sum += rises_[row * cols_ + col];
+    for (std::size_t col = 0; col < cols_; ++col) sum += static_cast<double>(rises_[row * cols_ + col]);
     conductances_.between_rows[row] = sum;
   }
   return true;
 }
 
 /// `rises_` of pairs of taxels.
-void FilmFollower::find_rises(const double* own, const double* other, std::size_t count) noexcept {
+void FilmFollower::find_rises(const float* own, const float* other, std::size_t count) noexcept {
   for (std::size_t k = 0; k < count; ++k) pairs_[k] = own[k] + other[k];
   rise_.apply(pairs_.data(), rises_.data(), count);
 }
 
-void FilmFollower::Polygon::apply(const double* from, double* to, std::size_t count) const noexcept {
+void FilmFollower::Polygon::apply(const float* from, float* to, std::size_t count) const noexcept {
   add_corners(x, change, from, to, count);
 }
 

@@ -15,7 +15,7 @@ namespace dermis::touch::compensation {
 
 /// A film over the lines (Readout::film), as the loads on its taxels make it. Loads follow from the conductances of the
 /// taxels and the law of the sheet. By that law all taxels have one curve, each on the scale of its own conductance
-/// under one same force. Both laws are polygons. Allocates nothing but when it is made.
+/// under one same force. Both laws are polygons, in single precision. Allocates nothing but when it is made.
 class FilmFollower {
  public:
   FilmFollower(const ArrayDescription& array, const ReferenceConductances& references);
@@ -35,15 +35,15 @@ class FilmFollower {
  private:
   /// y = sum over the corners of change max(0, x - corner).
   struct Polygon {
-    static constexpr std::size_t kCorners = 16;
+    static constexpr std::size_t kCorners = 8;
 
-    std::array<double, kCorners> x{};
-    std::array<double, kCorners> change{};  // of the slope; 0 behind the last corner
-    void apply(const double* from, double* to, std::size_t count) const noexcept;
+    std::array<float, kCorners> x{};
+    std::array<float, kCorners> change{};  // of the slope; 0 behind the last corner
+    void apply(const float* from, float* to, std::size_t count) const noexcept;
   };
 
   [[nodiscard]] static Polygon polygon_of(const std::vector<double>& x, const std::vector<double>& y);
-  void find_rises(const double* own, const double* other, std::size_t count) noexcept;
+  void find_rises(const float* own, const float* other, std::size_t count) noexcept;
   std::optional<Film> film_;
   std::size_t rows_;
   std::size_t cols_;
@@ -52,9 +52,9 @@ class FilmFollower {
   Polygon rise_;                  // newtons, of two taxels together -> film above the unloaded one
   std::vector<double> unloaded_;  // [taxels] [S]
   std::vector<double> scale_;     // [taxels] 1/S
-  std::vector<double> newtons_;   // [taxels]
-  std::vector<double> pairs_;     // shares of the taxels, then newtons of two [taxels]
-  std::vector<double> rises_;     // of the film between two [taxels]
+  std::vector<float> newtons_;    // [taxels]
+  std::vector<float> pairs_;      // shares of the taxels, then newtons of two [taxels]
+  std::vector<float> rises_;      // of the film between two [taxels]
   FilmConductances conductances_;
 };
 

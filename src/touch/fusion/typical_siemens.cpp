@@ -101,9 +101,9 @@ std::vector<double> typical_siemens(const ForceNetworks& networks) {
 }
 
 std::vector<LoadPoint> load_points(const ForceNetworks& networks, std::span<const double> typical) {
-  constexpr double kFirst = 1.0 / 32.0;
-  constexpr double kLast = 32.0;
-  constexpr double kStep = 1.6;
+  constexpr double kFirst = 1.0 / 16.0;
+  constexpr double kLast = 20.0;
+  constexpr double kStep = 2.2;
   std::vector<LoadPoint> points;
   PressedArray array(networks);
   for (double share = kFirst; share < kLast; share *= kStep) {
