@@ -31,6 +31,8 @@ constexpr double kWorkOfCurves = 50.0;        // over that of a trial
 constexpr double kMostWork = 2e5;             // frames x taxels of a trial
 constexpr double kMostSlowWork = 4e4;         // the same of floating lines
 constexpr double kCoarseShare = 0.2;          // of them for the first steps
+constexpr double kMostLeft = 4.0;             // mean square
+constexpr double kInvertible = 0.98;          // of the presses
 constexpr double kMoreThanNoise = 2.0;        // mean square
 constexpr double kSuspicious = 20.0;          // squares that films which hardly conduct explain, where there is one
 constexpr double kEvidence = 60.0;            // squares that a film must explain
@@ -167,6 +169,9 @@ class FilmSearch {
     array_.readout.film = film;
     const std::optional<SinglePresses> single = presses_.invert(array_);
     if (!single) return std::nullopt;
+    most_presses_ = std::max(most_presses_, single->presses.size());
+    if (kInvertible * static_cast<double>(most_presses_) > static_cast<double>(single->presses.size()))
+      return std::nullopt;
     return Surroundings(array_, *single, curves_).misfit();
   }
 
@@ -186,7 +191,11 @@ class FilmSearch {
   }
 
   /// The film of least misfit, from coarse steps of both resistances to fine ones.
-  [[nodiscard]] Film coarse() { return improved({50e3, 10e3, kForces.front()}, kFirstFactor, kNearFactor).film; }
+  [[nodiscard]] Film coarse() {
+    const Candidate weak = improved({50e3, 10e3, kForces.front()}, kFirstFactor, kNearFactor);
+    const Candidate strong = improved({10e3, 2e3, kForces.front()}, kFirstFactor, kNearFactor);
+    return strong.squares < weak.squares ? strong.film : weak.film;
+  }
   [[nodiscard]] std::optional<Film> best(const Film& start) {
     Candidate best = improved(start, kNearFactor, kLastFactor);
     for (std::size_t k = 1; k < kForces.size(); ++k) {
@@ -231,6 +240,7 @@ class FilmSearch {
   ArrayDescription array_;
   LabelledPresses presses_;
   const TaxelCurves& curves_;
+  std::size_t most_presses_ = 0;  // that the circuit can give with any film
 };
 
 std::string ohm_text(double ohm) {
@@ -246,8 +256,10 @@ std::string sentence(const Film& film) {
       ohm_text(film.unloaded_ohm), loaded);
 }
 
-bool explains(double with, double without) {
-  return without - with > std::max(kEvidence, kLeastExplained * without);
+/// Much is explained, and little more than noise is left.
+bool explains(double with, const Misfit& without) {
+  return without.squares - with > std::max(kEvidence, kLeastExplained * without.squares) &&
+         with < kMostLeft * without.count;
 }
 
 }  // namespace
@@ -266,7 +278,7 @@ FilmFit fit_film(const ArrayDescription& array, std::span<const RawFrame> frames
   if (!without || !search.is_suspicious(*without)) return {};
   FilmSearch coarse(array, presses->some(kCoarseShare * work), curves);
   const std::optional<Film> film = search.best(coarse.coarse());
-  if (!film || !explains(search.squares(*film), without->squares)) return {};
+  if (!film || !explains(search.squares(*film), *without)) return {};
   return {film, sentence(*film)};
 }
 
