@@ -74,19 +74,23 @@ class Surroundings {
     second_ = std::min({shares.at(0, 2).share, shares.at(2, 0).share, corner_});
   }
 
-  /// Taxels that would have to conduct less than nothing count where there are more of them than far from presses.
-  [[nodiscard]] Misfit misfit() const {
-    Misfit misfit;
-    Held near;
+  /// Share of the taxels far from presses that would have to conduct less than nothing, by noise.
+  [[nodiscard]] double held_far() const {
     Held far;
     for (const SinglePress& press : single_.presses) {
-      add(press, misfit, near);
       for (std::size_t taxel = 0; taxel < array_.taxel_count(); ++taxel) {
         if (is_far(press.taxel, taxel)) far.add(press.held[taxel]);
       }
     }
-    const double usual = far.count > 0.0 ? far.held / far.count * near.count : 0.0;
-    misfit.squares += kOutlier * kOutlier * std::max(near.held - usual, 0.0);
+    return far.count > 0.0 ? far.held / far.count : 0.0;
+  }
+
+  /// Taxels beside presses that would have to conduct less than nothing count where there are more than this share.
+  [[nodiscard]] Misfit misfit(double usually_held) const {
+    Misfit misfit;
+    Held near;
+    for (const SinglePress& press : single_.presses) add(press, misfit, near);
+    misfit.squares += kOutlier * kOutlier * std::max(near.held - usually_held * near.count, 0.0);
     return misfit;
   }
 
@@ -172,7 +176,9 @@ class FilmSearch {
     most_presses_ = std::max(most_presses_, single->presses.size());
     if (kInvertible * static_cast<double>(most_presses_) > static_cast<double>(single->presses.size()))
       return std::nullopt;
-    return Surroundings(array_, *single, curves_).misfit();
+    const Surroundings surroundings(array_, *single, curves_);
+    if (!film) usually_held_ = surroundings.held_far();
+    return surroundings.misfit(usually_held_);
   }
 
   /// Infinite: the circuit cannot be so.
@@ -241,6 +247,7 @@ class FilmSearch {
   LabelledPresses presses_;
   const TaxelCurves& curves_;
   std::size_t most_presses_ = 0;  // that the circuit can give with any film
+  double usually_held_ = 0.0;     // by the circuit without a film, which is to be tried first
 };
 
 std::string ohm_text(double ohm) {
@@ -277,6 +284,7 @@ FilmFit fit_film(const ArrayDescription& array, std::span<const RawFrame> frames
   const std::optional<Misfit> without = search.misfit(std::nullopt);
   if (!without || !search.is_suspicious(*without)) return {};
   FilmSearch coarse(array, presses->some(kCoarseShare * work), curves);
+  if (!coarse.misfit(std::nullopt)) return {};
   const std::optional<Film> film = search.best(coarse.coarse());
   if (!film || !explains(search.squares(*film), *without)) return {};
   return {film, sentence(*film)};
