@@ -88,8 +88,7 @@ void PressFinder::filter(std::span<const float> counts) {
 void PressFinder::find_changes() {
   for (std::size_t i = 0; i < change_.size(); ++i) change_[i] = recent_.filtered[i] - rest_.level[i];
   if (change_.size() < kTogether) return;
-  scratch_ = change_;
-  const float together = upper_median(scratch_);
+  const float together = upper_median(change_);
   for (float& change : change_) change -= together;
 }
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "dermis/learn/arrangement/press_finder.hpp"
 #include "dermis/touch/frames/quantile.hpp"
@@ -59,9 +60,8 @@ double typical_change(const std::vector<Rest>& rests, const Rest& usual) {
   std::vector<double> most(rests.size());
   for (std::size_t k = 0; k < rests.size(); ++k)
     for (std::size_t i = 0; i < usual.level.size(); ++i) most[k] = std::max(most[k], difference(rests[k], usual, i));
-  const auto strong = most.begin() + static_cast<std::ptrdiff_t>(kStrong * static_cast<double>(most.size() - 1));
-  std::nth_element(most.begin(), strong, most.end());
-  return *strong;
+  const auto strong = static_cast<std::size_t>(kStrong * static_cast<double>(most.size() - 1));
+  return ranked(std::move(most), strong);
 }
 
 /// As the recording begins; a channel that is pressed then has what is usual in the first seconds.

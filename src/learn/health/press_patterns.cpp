@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "dermis/touch/frames/quantile.hpp"
+
 namespace dermis::learn::health {
 namespace {
 
@@ -47,9 +49,7 @@ void PressPatterns::find_rest() {
   std::vector<float> readings(first_frames_.size());
   for (std::size_t taxel = 0; taxel < change_.size(); ++taxel) {
     for (std::size_t frame = 0; frame < readings.size(); ++frame) readings[frame] = first_frames_[frame][taxel];
-    const auto middle = readings.begin() + static_cast<std::ptrdiff_t>(readings.size() / 2);
-    std::nth_element(readings.begin(), middle, readings.end());
-    rest_.push_back(*middle);
+    rest_.push_back(upper_median(readings));
   }
 }
 

@@ -79,7 +79,6 @@ class PressFinder {
   Rest rest_;
   Recent recent_;
   std::vector<float> change_;
-  std::vector<float> scratch_;
   Held held_;
   std::vector<double> changes_;  // by the presses so far
   double typical_ = 0.0;         // their median
