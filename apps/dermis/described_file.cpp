@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "dermis/bytes/devices/device_source.hpp"
+#include "dermis/bytes/layouts/layout.hpp"
 #include "dermis/live/buses/bus_address.hpp"
 #include "dermis/live/fleet/stream_address.hpp"
 #include "dermis/live/sources/open_source.hpp"

@@ -67,7 +67,8 @@ class Sheet {
       const std::size_t col = random_.below(array_.cols);
       const double force = random_.log_uniform(1.0, 60.0);
       for (std::size_t taxel = 0; taxel < newtons.size(); ++taxel) {
-        const double down = static_cast<double>(taxel / array_.cols) - static_cast<double>(row);
+        const std::size_t taxel_row = taxel / array_.cols;
+        const double down = static_cast<double>(taxel_row) - static_cast<double>(row);
         const double right = static_cast<double>(taxel % array_.cols) - static_cast<double>(col);
         const double here = force * std::exp(-0.3 * (down * down + right * right));
         if (here > 0.05) newtons[taxel] = std::min(newtons[taxel] + here, 60.0);

@@ -60,8 +60,9 @@ TEST(SurfaceForces, are_as_sure_as_they_say) {
     const double col = random.uniform(2.0, 7.0);
     const double size = random.uniform(0.6, 2.0);
     for (std::size_t k = 0; k < 100; ++k) {
+      const std::size_t taxel_row = k / 10;
       const double square =
-          std::pow(static_cast<double>(k / 10) - row, 2) + std::pow(static_cast<double>(k % 10) - col, 2);
+          std::pow(static_cast<double>(taxel_row) - row, 2) + std::pow(static_cast<double>(k % 10) - col, 2);
       surface[k] = square < 9.0 ? 10.0 * std::exp(-0.5 * square / (size * size)) : 0.0;
     }
     const ForceFrame& sharp = surfaces.process(felt_frame(array, surface, seed));
