@@ -17,12 +17,14 @@
 
 namespace dermis::support {
 
-/// Presses of 0.4 to 40 N on each taxel alone of a sheet, with its cover and its film, labelled as they stand on it.
+/// Presses of each weight, 0.4 to 40 N, on each taxel alone of a sheet, with its cover and its film, labelled as they
+/// stand on it.
 struct SheetPresses {
   std::vector<RawFrame> frames;
   std::vector<Load> loads;
 
-  SheetPresses(const ArrayDescription& array, std::uint64_t seed)
+  SheetPresses(const ArrayDescription& array, std::uint64_t seed,
+               const std::vector<double>& weights = {0.4, 1.0, 2.5, 6.0, 15.0, 40.0})
       : random_(seed), adc_(array.readout, 0.8), array_(array) {
     for (std::size_t taxel = 0; taxel < array_.taxel_count(); ++taxel)
       ohm_.push_back(900.0 * std::exp(0.15 * random_.normal()));
@@ -31,7 +33,7 @@ struct SheetPresses {
       press(0, 0.0);
     }
     for (std::size_t taxel = 0; taxel < array_.taxel_count(); ++taxel) {
-      for (const double newtons : {0.4, 1.0, 2.5, 6.0, 15.0, 40.0}) {
+      for (const double newtons : weights) {
         const std::size_t row = taxel / array_.cols;
         const std::size_t col = taxel % array_.cols;
         loads.push_back({frames.size(), LoadKind::force, {row, col, row, col}, newtons});

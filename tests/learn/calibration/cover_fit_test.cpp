@@ -96,6 +96,40 @@ TEST(CoverFit, knows_the_cover_by_the_corners_where_the_drivers_are_not_known) {
   EXPECT_NEAR(fit.cover->spread_m, 0.006, 0.0006);
 }
 
+TEST(CoverFit, knows_it_roughly_by_one_weight_and_asks_for_more) {
+  const ArrayDescription array = sheet(Cover{0.006, {}});
+  const ArrayDescription described = without_cover(array);
+  const support::SheetPresses presses(array, 7, {5.0});
+  const CoverFit fit = fit_cover(described, presses.frames, presses.loads, Nanos{0});
+  ASSERT_TRUE(fit.cover);
+  EXPECT_NE(fit.sentence.find("press some taxels with three"), std::string::npos);
+  ArrayDescription found = array;
+  found.cover = fit.cover;
+  EXPECT_NEAR(CoverKernel(found).share(0, 0), CoverKernel(array).share(0, 0), fit.error);
+  const support::SheetPresses bare(described, 8, {5.0});
+  EXPECT_FALSE(fit_cover(described, bare.frames, bare.loads, Nanos{0}).cover);
+}
+
+TEST(CoverFit, knows_it_by_the_presses_of_two_taxels) {
+  const ArrayDescription array = sheet(Cover{0.006, {}});
+  const ArrayDescription described = without_cover(array);
+  const support::SheetPresses all(array, 9);
+  std::vector<Load> loads;
+  for (const Load& load : all.loads) {
+    const std::size_t col = load.where.first_col;
+    if (load.value == 0.0 || (load.where.first_row == 3 && (col == 3 || col == 4))) loads.push_back(load);
+  }
+  const CoverFit fit = fit_cover(described, all.frames, loads, Nanos{0});
+  ASSERT_TRUE(fit.cover);
+  ArrayDescription found = array;
+  found.cover = fit.cover;
+  const CoverKernel truth(array);
+  const CoverKernel kernel(found);
+  EXPECT_NEAR(kernel.share(0, 1), truth.share(0, 1), 0.02);
+  EXPECT_NEAR(kernel.share(1, 0), truth.share(1, 0), 0.02);
+  EXPECT_NEAR(kernel.share(1, 1), truth.share(1, 1), 0.02);
+}
+
 TEST(CoverFit, says_that_there_is_none_where_it_is_asked_for_one) {
   const ArrayDescription array = sheet({});
   ArrayDescription described = array;

@@ -35,6 +35,7 @@ constexpr double kKeptSigmas = 3.0;
 constexpr double kLeastKept = 2e-4;       // of the centre's share
 constexpr double kErrorOfShares = 0.005;  // that their noise does not show
 constexpr double kGaussianError = 0.012;  // of all shares together
+constexpr double kErrorOfLines = 0.1;     // of all shares together, where curves are straight lines
 constexpr double kGuessedDriveOhm = 30.0;
 constexpr double kGuessedLoadOhm = 1000.0;
 
@@ -156,7 +157,8 @@ class Evidence {
       for (const auto& [rows, cols] : {std::pair{ring, k}, std::pair{k, ring}}) {
         if (k == ring && any_at(found, rows, cols)) continue;
         const RelativeShare share = shares_.at(rows, cols);
-        if (!stands_out(share) || share.share > most_at(found, rows, cols)) continue;
+        const std::size_t pairs = k == 0 ? kLeastPairs / 2 : kLeastPairs;  // along lines there are half as many
+        if (share.pairs < pairs || !stands_out(share) || share.share > most_at(found, rows, cols)) continue;
         found.push_back({rows, cols, share.share});
         sum.shares += times(rows, cols) * share.share;
         sum.variance += std::pow(times(rows, cols) * share.error, 2);
@@ -174,7 +176,7 @@ class Evidence {
   }
 
   [[nodiscard]] bool stands_out(const RelativeShare& share) const {
-    return share.pairs >= kLeastPairs && share.share > std::max({kKeptSigmas * share.error, 2.0 * far_, kLeastKept});
+    return share.share > std::max({kKeptSigmas * share.error, 2.0 * far_, kLeastKept});
   }
 
   /// The least of the shares of taxels that are nearer.
@@ -275,9 +277,11 @@ CoverFit fit_cover(const ArrayDescription& array, std::span<const RawFrame> fram
   } else if (evidence.lines_agree()) {
     FoundCover found = evidence.by_all();
     fit.cover = std::move(found.cover);
-    fit.error = found.error;
+    fit.error = curves.are_straight() ? std::max(found.error, kErrorOfLines) : found.error;
   }
-  if (fit.cover) fit.sentence = sentence(array, *fit.cover);
+  if (!fit.cover) return fit;
+  fit.sentence = sentence(array, *fit.cover);
+  if (curves.are_straight()) fit.sentence += "; one weight tells that roughly: press some taxels with three";
   return fit;
 }
 

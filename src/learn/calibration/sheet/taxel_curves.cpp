@@ -151,6 +151,7 @@ double TaxelCurves::of_sheet(double log_newtons) const {
 
 /// That of the first or last points, which are far enough from each other not to follow noise.
 double TaxelCurves::end_slope(std::size_t end) const {
+  if (are_straight()) return 1.0;
   const Point& at = sheet_[end];
   std::size_t inner = end == 0 ? 1 : end - 1;
   const std::size_t step = end == 0 ? 1 : std::numeric_limits<std::size_t>::max();  // -1

@@ -15,8 +15,10 @@ class TaxelCurves {
  public:
   explicit TaxelCurves(const SinglePresses& single);
 
-  /// Enough presses for a curve.
-  [[nodiscard]] bool any() const noexcept { return sheet_.size() > 1; }
+  /// Presses tell at least straight lines.
+  [[nodiscard]] bool any() const noexcept { return !sheet_.empty(); }
+  /// All presses are about as heavy: the curves are straight lines from nothing.
+  [[nodiscard]] bool are_straight() const noexcept { return sheet_.size() == 1; }
   /// Above the unloaded conductance, under `newtons` >= 0 at the middle of the temperatures [S].
   [[nodiscard]] double siemens(std::size_t taxel, double newtons) const;
   /// A rise at this temperature as it would be at the middle of all [S].
