@@ -402,7 +402,7 @@ class Memory(SmallArray):
     def test_the_film_is_that_of_the_option(self):
         seen = set()
         for options in ((), ("--film", 300), ("--film", "300,300,20"), ("--film", "50000,300,2")):
-            frames, _ = self.simulated("film" + str(len(seen)) + str(len(options)), "touches", "--frames", 60, *options)
+            frames, _ = self.simulated("film" + str(options[-1:]), "touches", "--frames", 600, *options)
             seen.add(str(frames))
         self.assertEqual(len(seen), 3)  # one resistance is a film that loads do not change
 
