@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "touch/compensation/backed_inversion.hpp"
 #include "touch/compensation/fault_inversion.hpp"
 #include "touch/compensation/grounded_rows.hpp"
 #include "touch/compensation/newton_inversion.hpp"
@@ -93,11 +94,13 @@ bool is_invalid(TaxelStatus taxel) {
   return taxel == TaxelStatus::invalid;
 }
 
-/// With a film over its lines.
-bool fits_grounded_rows(const Readout& readout) {
-  if (has_resistive_lines(readout) || readout.idle_rows == IdleRows::floating) return false;
-  if (readout.circuit == Circuit::transimpedance) return is_absent(readout.amplifier_offset_v);
-  return readout.circuit == Circuit::divider && readout.idle_columns == IdleColumns::loaded;
+/// Where one line at a time is loaded under a film, few frames are beyond the quick inversion: unloaded sheets whose
+/// film conducts more than their taxels, and taxels far below the resistance of their drivers.
+Inversion backed(Inversion quick, const ArrayDescription& array, double tolerance, const InversionOptions& options) {
+  Inversion thorough = newton(array, tolerance, options);
+  if (!thorough) return thorough.error();
+  return std::unique_ptr<CrosstalkInversion>(
+      std::make_unique<BackedInversion>(std::move(*quick), std::move(*thorough), array.taxel_count()));
 }
 
 Inversion sagging_supply(const ArrayDescription& array, double tolerance, const InversionOptions& options) {
@@ -122,15 +125,18 @@ Inversion make_crosstalk_inversion(const ArrayDescription& described, const Inve
   const double tolerance = options.tolerance_ratio.value_or(kToleranceCounts / readout.full_scale_counts());
   if (readout.circuit == Circuit::none) return inversion<Proportional>();
   if (readout.supply_ohm.value_or(0.0) > 0.0) return sagging_supply(array, tolerance, options);
-  if (readout.film && !fits_grounded_rows(readout)) return newton(array, tolerance, options);
-  if (readout.film) return inversion<GroundedRows>(array, tolerance, options);
   if (has_resistive_lines(readout)) return newton(array, tolerance, options);
-  if (readout.circuit == Circuit::flexitac) return flexitac(array, tolerance, options);
-  if (readout.circuit == Circuit::transimpedance && has_ideal_amplifiers(readout)) {
+  if (readout.circuit == Circuit::flexitac) {
+    Inversion quick = flexitac(array, tolerance, options);
+    return readout.film ? backed(std::move(quick), array, tolerance, options) : std::move(quick);
+  }
+  if (readout.circuit == Circuit::transimpedance && has_ideal_amplifiers(readout) && !readout.film) {
     return inversion<VirtualGround>(array, options.counts_driver_errors);
   }
   if (readout.idle_rows == IdleRows::floating) return newton(array, tolerance, options);
-  return inversion<GroundedRows>(array, tolerance, options);
+  Inversion quick = inversion<GroundedRows>(array, tolerance, options);
+  const bool is_backed = readout.film && readout.idle_columns == IdleColumns::floating;
+  return is_backed ? backed(std::move(quick), array, tolerance, options) : std::move(quick);
 }
 
 Result<Compensator> Compensator::create(const ArrayDescription& described, const ReferenceConductances& references) {

@@ -15,7 +15,7 @@ DriverError::DriverError(const ArrayDescription& array, std::vector<double> colu
     : rows_(array.rows),
       cols_(array.cols),
       one_loaded_(array.readout.idle_columns == IdleColumns::floating),
-      has_potential_(!is_absent(column_ohm)),
+      has_potential_(!is_absent(column_ohm) || array.readout.film),
       drive_ohm_(array.readout.drive_ohm),
       drive_error_ohm_(array.readout.drive_error_ohm),
       correlation_(array.readout.drive_error_correlation),
@@ -31,9 +31,9 @@ DriverError::DriverError(const ArrayDescription& array, std::vector<double> colu
       square_(cols_) {}
 
 void DriverError::add(const std::vector<double>& siemens, const std::vector<double>& current, std::size_t stride,
-                      std::span<double> sigma_siemens) noexcept {
+                      std::span<const double> between_rows, std::span<double> sigma_siemens) noexcept {
   find_columns(siemens.data(), current.data(), stride);
-  find_lifts(siemens.data(), stride);
+  find_lifts(siemens.data(), stride, between_rows);
   for (std::size_t row = 0; row < rows_; ++row) {
     std::fill(common_.begin(), common_.end(), 0.0);
     std::fill(square_.begin(), square_.end(), 0.0);
@@ -79,7 +79,7 @@ void DriverError::find_columns(const double* siemens, const double* current, std
   }
 }
 
-void DriverError::find_lifts(const double* siemens, std::size_t stride) noexcept {
+void DriverError::find_lifts(const double* siemens, std::size_t stride, std::span<const double> between_rows) noexcept {
   std::fill(lift_.begin(), lift_.end(), 0.0);
   if (has_potential_) {
     for (std::size_t row = 0; row < rows_; ++row) {
@@ -91,6 +91,10 @@ void DriverError::find_lifts(const double* siemens, std::size_t stride) noexcept
   }
   for (std::size_t row = 0; row < rows_; ++row) {
     for (std::size_t col = 0; col < cols_; ++col) lift_[row * rows_ + row] += siemens[row * stride + col];
+  }
+  for (std::size_t row = 0; row < between_rows.size(); ++row) {
+    for (const std::size_t line : {row, row + 1}) lift_[line * rows_ + line] += between_rows[row];
+    for (const std::size_t line : {row, row + 1}) lift_[line * rows_ + (2 * row + 1 - line)] -= between_rows[row];
   }
   std::fill(column_gain_.begin(), column_gain_.end(), one_loaded_ ? 1.0 : 0.0);
   for (std::size_t k = 0; k < lift_.size() && !one_loaded_; ++k) column_gain_[k % rows_] += lift_[k];

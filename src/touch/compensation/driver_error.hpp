@@ -31,19 +31,20 @@ class DriverError {
   DriverError(const ArrayDescription& array, std::vector<double> column_ohm);
 
   /// Adds it to the standard deviations of the taxels [rows, cols]. The conductances and y [S], `stride` apart from
-  /// row to row. About 8 rows^2 cols multiplications; rows cols with ideal columns. Allocates nothing.
+  /// row to row. `between_rows`: of a film [rows - 1], or empty; its rows are in L, its columns nowhere. About 8 rows^2
+  /// cols multiplications; rows cols with ideal columns. Allocates nothing.
   void add(const std::vector<double>& siemens, const std::vector<double>& current, std::size_t stride,
-           std::span<double> sigma_siemens) noexcept;
+           std::span<const double> between_rows, std::span<double> sigma_siemens) noexcept;
 
  private:
   void find_columns(const double* siemens, const double* current, std::size_t stride) noexcept;
-  void find_lifts(const double* siemens, std::size_t stride) noexcept;
+  void find_lifts(const double* siemens, std::size_t stride, std::span<const double> between_rows) noexcept;
   void add_driver(std::size_t row, std::size_t driver, const double* siemens) noexcept;
 
   std::size_t rows_;
   std::size_t cols_;
   bool one_loaded_;
-  bool has_potential_;  // a column is not at 0 V
+  bool has_potential_;  // a column is not at 0 V, or a film joins the rows
   std::vector<double> drive_ohm_;
   std::vector<double> drive_error_ohm_;
   double correlation_;

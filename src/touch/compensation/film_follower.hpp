@@ -13,9 +13,12 @@
 
 namespace dermis::touch::compensation {
 
+/// Of numbers on the way to a solution.
+enum class Precision { single, full };
+
 /// A film over the lines (Readout::film), as the loads on its taxels make it. Loads follow from the conductances of the
 /// taxels and the law of the sheet. By that law all taxels have one curve, each on the scale of its own conductance
-/// under one same force. Both laws are polygons, in single precision. Allocates nothing but when it is made.
+/// under one same force. Both laws are polygons. Allocates nothing but when it is made.
 class FilmFollower {
  public:
   FilmFollower(const ArrayDescription& array, const ReferenceConductances& references);
@@ -26,9 +29,12 @@ class FilmFollower {
   /// The film of these loads from now on.
   void hold(const FilmConductances& film) noexcept;
 
+  /// The film of an unloaded sheet until it follows again.
+  void forget() noexcept;
+
   /// The film of these conductances [rows, stride]; true where they tell it anew.
-  bool follow(std::span<const double> siemens, std::size_t stride) noexcept;
-  bool follow(std::span<const double> siemens) noexcept { return follow(siemens, cols_); }
+  bool follow(std::span<const double> siemens, std::size_t stride, Precision precision) noexcept;
+  bool follow(std::span<const double> siemens) noexcept { return follow(siemens, cols_, Precision::full); }
 
   [[nodiscard]] const FilmConductances& film() const noexcept { return conductances_; }
 
@@ -37,13 +43,23 @@ class FilmFollower {
   struct Polygon {
     static constexpr std::size_t kCorners = 8;
 
-    std::array<float, kCorners> x{};
-    std::array<float, kCorners> change{};  // of the slope; 0 behind the last corner
-    void apply(const float* from, float* to, std::size_t count) const noexcept;
+    std::array<double, kCorners> x{};
+    std::array<double, kCorners> change{};  // of the slope; 0 behind the last corner
+  };
+
+  /// Of all taxels [taxels].
+  template <typename Real>
+  struct Loads {
+    std::vector<Real> newtons;
+    std::vector<Real> pairs;  // shares of the taxels, then newtons of two
+    std::vector<Real> rises;  // of the film between two
   };
 
   [[nodiscard]] static Polygon polygon_of(const std::vector<double>& x, const std::vector<double>& y);
-  void find_rises(const float* own, const float* other, std::size_t count) noexcept;
+  template <typename Real>
+  void find_loads(std::span<const double> siemens, std::size_t stride, Loads<Real>& loads) noexcept;
+  template <typename Real>
+  void find_rises(std::size_t distance, Loads<Real>& loads) noexcept;
   std::optional<Film> film_;
   std::size_t rows_;
   std::size_t cols_;
@@ -52,9 +68,8 @@ class FilmFollower {
   Polygon rise_;                  // newtons, of two taxels together -> film above the unloaded one
   std::vector<double> unloaded_;  // [taxels] [S]
   std::vector<double> scale_;     // [taxels] 1/S
-  std::vector<float> newtons_;    // [taxels]
-  std::vector<float> pairs_;      // shares of the taxels, then newtons of two [taxels]
-  std::vector<float> rises_;      // of the film between two [taxels]
+  Loads<float> single_;
+  Loads<double> full_;
   FilmConductances conductances_;
 };
 

@@ -20,6 +20,7 @@ constexpr double kLeastSteps = 200.0;  // of a frame where steps are bounded
 constexpr double kMixedWork = 8.0;     // of a mixed step beside a plain one
 constexpr int kPlainSteps = 24;
 constexpr double kShrinks = 0.95;  // of the certificate in a step; what shrinks less is left to the mixing
+constexpr int kFilmSteps = 4;      // under a film, whose first change may lead uphill
 constexpr int kMixedSteps = 400;
 constexpr int kDampedSteps = 200;
 constexpr int kStepsWithoutGain = 60;
@@ -28,8 +29,6 @@ constexpr double kRough = 1e-4;     // certificate, above which single precision
 constexpr double kRounded = 1e-12;  // certificate; what is left of it is rounding
 constexpr std::size_t kMixingDepth = 8;
 constexpr double kLeastSiemens = 1e-12;  // held at 0 below
-constexpr double kSourceShare = 1e-3;    // of the tolerance, to which the sources' column voltages are found
-constexpr int kSourcePasses = 200;
 constexpr double kMostLogStep = 2.0;
 constexpr double kMostLogResidual = 2.302585092994046;  // ln 10
 
@@ -42,8 +41,13 @@ DERMIS_PROCESSOR_CLONES bool any_is_missing(std::span<const double> ratio) {
 
 }  // namespace
 
-GroundedRows::Sources::Sources(std::size_t stride)
-    : siemens(stride), column_ratio(stride), column_return(stride), column_sum(stride) {}
+GroundedRows::Sources::Sources(std::size_t rows, std::size_t stride)
+    : siemens(stride),
+      column_ratio(stride),
+      last_ratio(stride),
+      column_return(stride),
+      column_sum(stride),
+      line_ratio(rows) {}
 
 GroundedRows::Mixing::Mixing(std::size_t size)
     : anderson(size, kMixingDepth), log_siemens(size), last_log_siemens(size), log_step(size) {}
@@ -54,7 +58,7 @@ GroundedRows::GroundedRows(const ArrayDescription& array, double tolerance_ratio
       state_(array.rows, array.cols, array.readout.idle_columns),
       reading_siemens_(state_.stride),
       offset_siemens_(state_.stride),
-      sources_(state_.stride),
+      sources_(state_.rows, state_.stride),
       last_estimate_(state_.siemens.size()),
       best_siemens_(state_.siemens.size()),
       best_explained_(state_.siemens.size()),
@@ -79,8 +83,7 @@ GroundedRows::GroundedRows(const ArrayDescription& array, double tolerance_ratio
     driver_error_.emplace(array, std::vector<double>(state_.column_ohm.begin(), state_.column_ohm.begin() + cols));
   }
   if (readout.film) {
-    state_.film =
-        std::make_shared<GroundedRowsFilm>(FilmFollower(array, options.references), state_.rows, state_.stride);
+    state_.film = std::make_shared<GroundedRowsFilm>(FilmFollower(array, options.references), state_);
   }
   if (is_absent(readout.amplifier_offset_v)) return;
   sources_.ratio.resize(state_.stride);
@@ -95,6 +98,7 @@ InversionResult GroundedRows::invert(std::span<const double> ratio, std::span<do
   std::swap(state_.estimate, last_estimate_);
   load(ratio, siemens);
   estimate_from_readings(state_);
+  if (state_.film) state_.film->precision = first_precision_;
   if (has_last_) {
     start_warm(state_, last_estimate_);
   } else {
@@ -167,6 +171,7 @@ void GroundedRows::forget() noexcept {
 void GroundedRows::start_anew() noexcept {
   has_last_ = false;
   first_precision_ = Precision::full;
+  if (state_.film) state_.film->follower.forget();
   std::fill(sources_.siemens.begin(), sources_.siemens.end(), 0.0);
   std::fill(sources_.column_ratio.begin(), sources_.column_ratio.end(), 0.0);
 }
@@ -224,65 +229,20 @@ double GroundedRows::certify(Precision precision) noexcept {
   return settled ? certificate : std::numeric_limits<double>::infinity();
 }
 
-/// Puts into y what the sources drive into the array at the present G, all rows grounded. Eliminating the rows as in
-/// (b) leaves v = diag(w) (e + RL G^T diag(Rd / a) G v) for the columns, a contraction. Whether it settled.
-bool GroundedRows::follow_sources() noexcept {
-  int pass = 0;
-  double change = std::numeric_limits<double>::infinity();
-  double last_change = change;
-  do {
-    last_change = change;
-    change = 0.0;
-    find_row_currents();
-    for (std::size_t col = 0; col < state_.cols; ++col) {
-      const double ratio =
-          (sources_.ratio[col] + state_.column_ohm[col] * sources_.column_return[col]) * state_.column_part[col];
-      change = std::max(change, std::abs(ratio - sources_.column_ratio[col]));
-      sources_.column_ratio[col] = ratio;
-    }
-  } while (change > kSourceShare * tolerance_ && change < last_change && ++pass < kSourcePasses);
-  find_row_currents();
-  for (std::size_t col = 0; col < state_.cols; ++col) {
-    const double current = sources_.column_ratio[col] * sources_.column_sum[col] - sources_.column_return[col];
-    for (std::size_t row = 0; row < state_.rows; ++row) {
-      const std::size_t k = row * state_.stride + col;
-      const bool held = state_.explained[k] > state_.measured[k];
-      state_.measured[k] += current - sources_.siemens[col];
-      state_.explained[k] = held ? std::max(state_.explained[k], state_.measured[k]) : state_.measured[k];
-      state_.dropped[k] = state_.drive_ohm[row] * state_.explained[k];
-    }
-    sources_.siemens[col] = current;
-  }
-  return pass < kSourcePasses;
-}
-
-/// G^T diag(Rd / a) G v and G^T 1.
-void GroundedRows::find_row_currents() noexcept {
-  std::fill(sources_.column_return.begin(), sources_.column_return.end(), 0.0);
-  std::fill(sources_.column_sum.begin(), sources_.column_sum.end(), 0.0);
-  for (std::size_t row = 0; row < state_.rows; ++row) {
-    const double* const siemens = &state_.siemens[row * state_.stride];
-    double current = 0.0;
-    for (std::size_t col = 0; col < state_.cols; ++col) current += siemens[col] * sources_.column_ratio[col];
-    const double line_ratio = current * state_.drive_ohm[row] / state_.line_gain[row];
-    for (std::size_t col = 0; col < state_.cols; ++col) {
-      sources_.column_return[col] += siemens[col] * line_ratio;
-      sources_.column_sum[col] += siemens[col];
-    }
-  }
-}
-
 /// Certificate of the iterate that it ends with.
 double GroundedRows::iterate() noexcept {
   double last = std::numeric_limits<double>::infinity();
   Precision precision = first_precision_;
+  if (state_.film) state_.film->has_last_step = false;
   for (int step = 0;; ++step) {
     const double certificate = certify(precision);
     const Precision next_precision = certificate > kRough ? Precision::single : Precision::full;
     if (step == 0) first_precision_ = next_precision;
     if (certificate <= tolerance_ && precision == Precision::full) return certificate;
-    if (step > 0 && !(certificate < last)) break;
-    if (step == kPlainSteps || certificate > kShrinks * last || !budget_.take(1.0)) {
+    const bool is_start = state_.film && step < kFilmSteps;
+    if (step > 0 && !(certificate < last) && !is_start) break;
+    const bool shrinks = certificate <= kShrinks * last || is_start;
+    if (step == kPlainSteps || !shrinks || !budget_.take(1.0)) {
       keep();
       return certificate;
     }
@@ -290,7 +250,8 @@ double GroundedRows::iterate() noexcept {
     precision = next_precision;
     std::swap(state_.siemens, best_siemens_);  // advance() writes both anew
     std::swap(state_.explained, best_explained_);
-    advance(state_);
+    if (state_.film) state_.film->precision = precision;
+    advance(state_, best_siemens_);
   }
   state_.siemens = best_siemens_;
   state_.explained = best_explained_;
@@ -308,6 +269,7 @@ double GroundedRows::iterate_with_mixing(double best, int damped_steps) noexcept
     mixing_.log_siemens[k] = std::log(std::max(state_.estimate[k], kLeastSiemens));
   }
   mixing_.anderson.forget();
+  if (state_.film) state_.film->precision = Precision::full;
   int without_gain = 0;
   for (int step = 0; step < damped_steps + kMixedSteps && best > tolerance_ && budget_.take(kMixedWork); ++step) {
     take_step();
@@ -378,7 +340,10 @@ void GroundedRows::choose_step() noexcept {
 void GroundedRows::propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept {
   for (std::size_t col = 0; col < state_.cols; ++col) sigma_column_[col] = sigma_ratio * reading_siemens_[col];
   spread_noise(state_, sigma_column_, sigma_siemens);
-  if (driver_error_) driver_error_->add(state_.siemens, state_.explained, state_.stride, sigma_siemens);
+  if (!driver_error_) return;
+  std::span<const double> between_rows;
+  if (state_.film) between_rows = state_.film->follower.film().between_rows;
+  driver_error_->add(state_.siemens, state_.explained, state_.stride, between_rows, sigma_siemens);
 }
 
 }  // namespace dermis::touch::compensation

@@ -56,8 +56,7 @@ namespace dermis::touch::compensation {
 /// arrays can give the same readings. The result is the one that is reached from G = 0 as all readings grow.
 class GroundedRows final : public CrosstalkInversion {
  public:
-  /// `array` is a divider or transimpedance with grounded idle rows. With a film, all its columns are loaded and its
-  /// amplifiers have no offset.
+  /// `array` is a divider or transimpedance with grounded idle rows.
   GroundedRows(const ArrayDescription& array, double tolerance_ratio, const InversionOptions& options);
   [[nodiscard]] InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept override;
   [[nodiscard]] bool set_shorted(std::span<const std::size_t> taxels) noexcept override;
@@ -70,13 +69,15 @@ class GroundedRows final : public CrosstalkInversion {
  private:
   /// The effect of the amplifiers' offsets [stride].
   struct Sources {
-    explicit Sources(std::size_t stride);
+    Sources(std::size_t rows, std::size_t stride);
 
     std::vector<double> ratio;          // e over the supply; empty: none
     std::vector<double> siemens;        // what e drives into the array, over the supply
     std::vector<double> column_ratio;   // column voltages then, over the supply
+    std::vector<double> last_ratio;     // the same of the pass before
     std::vector<double> column_return;  // currents from the rows into the columns then
     std::vector<double> column_sum;     // G^T 1
+    std::vector<double> line_ratio;     // row voltages, over the supply [rows]
   };
 
   /// Rows that touch one column are one row; its readings stand in the first.
@@ -109,6 +110,8 @@ class GroundedRows final : public CrosstalkInversion {
   [[nodiscard]] double certify(Precision precision) noexcept;
   [[nodiscard]] bool follow_sources() noexcept;
   void find_row_currents() noexcept;
+  void find_column_ratios() noexcept;
+  [[nodiscard]] double current_into_film(std::size_t col) const noexcept;
   double iterate() noexcept;
   double iterate_with_mixing(double best, int damped_steps) noexcept;
   void choose_step() noexcept;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "dermis/touch/frames/processor_clones.hpp"
+#include "touch/compensation/film_columns.hpp"
 #include "touch/compensation/film_terms.hpp"
 #include "touch/compensation/matrix_product.hpp"
 #include "touch/compensation/shorted_crossings.hpp"
@@ -309,13 +310,14 @@ DERMIS_PROCESSOR_CLONES void convert(const std::vector<float>& from, std::vector
   for (std::size_t k = 0; k < to.size(); ++k) to[k] = static_cast<double>(from[k]);
 }
 
-/// G diag(eta) G^T Rd y' from its factors.
+/// G diag(eta) G^T Rd y' from its factors; under a film it has C^-1 in the place of diag(eta).
 template <typename Factors, typename Real>
 void multiply_factors(const GroundedRowsState& state, const Factors& factors, std::vector<Real>& coupling,
                       std::vector<Real>& returned) {
   const auto [rows, cols, stride] = std::tuple(state.rows, state.cols, state.stride);
-  multiply(StridedMatrix<Real>{factors.shunted.data(), 1, stride}, factors.dropped.data(), cols, rows, stride,
-           coupling.data());
+  const std::vector<Real>& left = state.film != nullptr ? factors.siemens : factors.shunted;
+  multiply(StridedMatrix<Real>{left.data(), 1, stride}, factors.dropped.data(), cols, rows, stride, coupling.data());
+  if (state.film != nullptr) divide_by_columns(state, coupling);
   multiply(StridedMatrix<Real>{factors.siemens.data(), stride, 1}, coupling.data(), rows, cols, stride,
            returned.data());
 }
@@ -374,9 +376,11 @@ void estimate_from_readings(GroundedRowsState& state) noexcept {
     state.kept_siemens[col] += siemens;
     state.measured[row * state.stride + col] = 0.0;
   }
-  if (state.film != nullptr) exchange_film_currents(state);
-  HWY_DYNAMIC_DISPATCH(estimate_kernel)(GroundedRowsView(state));
-  if (state.film != nullptr) std::swap(state.measured, state.film->currents);
+  if (state.film != nullptr) {
+    estimate_with_film(state);
+  } else {
+    HWY_DYNAMIC_DISPATCH(estimate_kernel)(GroundedRowsView(state));
+  }
   if (!state.shorted.empty()) estimate_with_shorted(state);
   for (const auto& [row, col, siemens] : state.kept) {
     const std::size_t k = row * state.stride + col;
@@ -419,12 +423,14 @@ double assess(GroundedRowsState& state, Precision precision) noexcept {
   return certificate;
 }
 
-void advance(GroundedRowsState& state) noexcept {
+void advance(GroundedRowsState& state, const std::vector<double>& from) noexcept {
   HWY_DYNAMIC_DISPATCH(advance_kernel)(GroundedRowsView(state));
+  if (state.film != nullptr) hasten_with_film(state, from);
   refresh(state);
 }
 
 void spread_noise(GroundedRowsState& state, const std::vector<double>& sigma, std::span<double> out) noexcept {
+  if (state.film != nullptr) shunt_with_film(state);
   HWY_DYNAMIC_DISPATCH(noise_kernel)(GroundedRowsView(state), sigma.data(), out.data());
 }
 

@@ -8,11 +8,9 @@
 #include <vector>
 
 #include "dermis/touch/frames/array_description.hpp"
+#include "touch/compensation/film_follower.hpp"
 
 namespace dermis::touch::compensation {
-
-/// Of the sums of currents that flow from row to row.
-enum class Precision { single, full };
 
 struct GroundedRowsFilm;
 
@@ -95,8 +93,8 @@ void start_warm(GroundedRowsState& state, const std::vector<double>& last_estima
 /// kept taxels become what these draw. In single precision the certificate is right to about 1e-5.
 [[nodiscard]] double assess(GroundedRowsState& state, Precision precision) noexcept;
 
-/// Equations (d) and (e): the next G and y'.
-void advance(GroundedRowsState& state) noexcept;
+/// Equations (d) and (e): the next G and y' after G was `from`.
+void advance(GroundedRowsState& state, const std::vector<double>& from) noexcept;
 
 /// Standard deviation of G [rows, cols] from that of y, `sigma` [stride]; see GroundedRows::propagate_noise.
 void spread_noise(GroundedRowsState& state, const std::vector<double>& sigma, std::span<double> out) noexcept;

@@ -61,7 +61,7 @@ void VirtualGround::propagate_noise(double sigma_ratio, std::span<double> sigma_
     sigma_siemens[taxel] = sigma_ratio * line_gain_[row] * std::sqrt(variance);
     current_[taxel] = siemens_[taxel] / line_gain_[row];
   }
-  if (driver_error_) driver_error_->add(siemens_, current_, cols, sigma_siemens);
+  if (driver_error_) driver_error_->add(siemens_, current_, cols, {}, sigma_siemens);
 }
 
 }  // namespace dermis::touch::compensation
