@@ -134,19 +134,15 @@ Status Preparation::find_circuit() {
 /// A film feels what a cover hands on, and looks like one where lines float: it comes first.
 void Preparation::find_film() {
   if (known_.readout.film || known_.readout.circuit == Circuit::none) return;
-  constexpr int kRounds = 2;
   const bool is_cover_told = described_.cover && !described_.cover->is_unknown();
-  FilmFit film;
-  for (int round = 0; round < kRounds; ++round) {
-    ArrayDescription array = known_;
-    array.readout.film.reset();
-    if (round == 0 && !is_cover_told) array.cover.reset();
-    film = fit_film(array, frames_, surface_, settle_time_);
-    known_.readout.film = film.film;
-    if (!film.film || is_cover_told) break;
+  ArrayDescription array = known_;
+  if (!is_cover_told) array.cover.reset();
+  const FilmFit film = fit_film(array, frames_, surface_, settle_time_);
+  known_.readout.film = film.film;
+  if (film.film && !is_cover_told) {
+    known_.cover = film.cover;
     cover_ = fit_cover(known_, frames_, surface_, settle_time_);
     take_cover(cover_.cover);
-    if (!known_.cover) break;
   }
   if (!film.sentence.empty()) remarks_.push_back(film.sentence);
   if (!film.film && asks_for_film_) remarks_.emplace_back("no film conducts between the lines, as far as presses tell");
