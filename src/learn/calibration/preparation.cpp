@@ -144,8 +144,10 @@ void Preparation::find_film() {
     cover_ = fit_cover(known_, frames_, surface_, settle_time_);
     take_cover(cover_.cover);
   }
-  if (!film.sentence.empty()) remarks_.push_back(film.sentence);
-  if (!film.film && asks_for_film_) remarks_.emplace_back("no film conducts between the lines, as far as presses tell");
+  if (film.film || asks_for_film_) {
+    constexpr const char* kNone = "no film conducts between the lines, as far as presses tell";
+    remarks_.push_back(film.sentence.empty() ? kNone : film.sentence);
+  }
 }
 
 Trainable Preparation::trainable() const {

@@ -87,6 +87,7 @@ TEST(FilmFit, finds_none_in_a_sheet_with_a_cover) {
 TEST(FilmFit, needs_presses_of_single_taxels) {
   const FilmFit found = fit_film(sheet(std::nullopt), {}, {}, Nanos{0});
   EXPECT_FALSE(found.film);
+  EXPECT_NE(found.sentence.find("press between r4c4 and r4c5"), std::string::npos) << found.sentence;
 }
 
 }  // namespace

@@ -180,7 +180,7 @@ class FilmSearch {
     double squares = 0.0;
   };
 
-  /// Of least misfit, from a net of both resistances over coarse steps to finer ones.
+  /// The one of least misfit, from a net of both resistances over coarse steps to finer ones.
   [[nodiscard]] Candidate coarse() {
     std::vector<Candidate> starts;
     for (const double unloaded : {100e3, 50e3, 25e3, 12e3, 6e3, 3e3}) {
@@ -247,7 +247,7 @@ class FilmSearch {
   PredictedPresses presses_;
 };
 
-/// What is left around presses by the inversion.
+/// Films by what the inversion leaves around presses.
 class FilmJudge {
  public:
   FilmJudge(const ArrayDescription& array, LabelledPresses presses, const TaxelCurves& curves)
@@ -304,6 +304,16 @@ std::string sentence(const Film& film) {
       ohm_text(film.unloaded_ohm), loaded);
 }
 
+/// The middle of a sheet, where a film conducts to both sides.
+std::string question(const ArrayDescription& array) {
+  const std::string one = array.taxel_name(array.index(array.rows / 2, array.cols / 2));
+  const std::string next = array.taxel_name(array.index(array.rows / 2, array.cols / 2 + 1));
+  return fmt::format(
+      "whether your sheet is one film is not told by so few presses of single taxels: press {} and {} each alone with "
+      "three known weights and nothing before, or press between {} and {}",
+      one, next, one, next);
+}
+
 /// Much is explained, and little more than noise is left.
 bool explains(double with, const Misfit& without, bool has_cover) {
   const double least = has_cover ? kLeastExplainedUnderCover : kLeastExplained;
@@ -316,11 +326,11 @@ FilmFit fit_film(const ArrayDescription& array, std::span<const RawFrame> frames
                  Nanos settle_time) {
   if (array.rows < kLeastLines || array.cols < kLeastLines) return {};
   const auto presses = LabelledPresses::create(array, frames, loads, settle_time, kAllWork);
-  if (!presses) return {};
+  if (!presses) return {.film = {}, .cover = {}, .sentence = question(array)};
   const double work = is_inverted_slowly(array) ? kMostSlowWork : kMostWork;
   const double most = std::max(kPredictedWork, kFewestPresses * static_cast<double>(array.taxel_count()));
   const std::optional<SinglePresses> single = presses->some(kWorkOfCurves * work).invert(array);
-  if (!single) return {};
+  if (!single) return {.film = {}, .cover = {}, .sentence = question(array)};
   const TaxelCurves curves(*single);
   FilmJudge judge(array, presses->some(work), curves);
   std::optional<Misfit> without = judge.misfit(std::nullopt, array.cover, curves);

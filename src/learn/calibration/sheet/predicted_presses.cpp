@@ -42,7 +42,7 @@ std::vector<double> told(const touch::compensation::CircuitModel& model, const s
   return siemens;
 }
 
-/// Of the taxel whose reading is `ratio`, beside all others: a reading is (a + b x) / (1 + c x) of its own conductance.
+/// The conductance x of a taxel by its reading, all others as in `siemens`. Any reading is (a + b x) / (1 + c x).
 double pressed_siemens(touch::compensation::CircuitModel& model, std::size_t taxel, double ratio,
                        std::vector<double> siemens, std::vector<double>& slopes) {
   siemens[taxel] = 0.0;

@@ -15,7 +15,7 @@
 namespace dermis::learn::calibration {
 
 /// Presses of single taxels under films that are tried, without an inversion. The circuit reads what is expected: idle
-/// taxels, the pressed one as its own reading tells it, those around it as the cover has it. What was read beside that
+/// taxels, the pressed one as its own reading tells it, those around it as the cover has it. Any other reading
 /// becomes a conductance of its own taxel. It is right where the film is, and never fails where it is not.
 class PredictedPresses {
  public:

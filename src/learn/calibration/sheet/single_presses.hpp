@@ -58,7 +58,7 @@ class LabelledPresses {
   /// sheet, or a circuit that is not known or cannot give them.
   [[nodiscard]] std::optional<SinglePresses> invert(const ArrayDescription& array) const;
 
-  /// Of which labelled() are part.
+  /// They have labelled() among them.
   [[nodiscard]] const std::shared_ptr<const CircuitFrames>& frames() const noexcept { return circuit_; }
   [[nodiscard]] std::span<const LabelledFrame> labelled() const noexcept { return labelled_; }
 
