@@ -118,8 +118,13 @@ void Preparation::find_cover() {
   take_cover(cover_.cover);
 }
 
+/// A film under floating lines that explains what is read also confirms their circuit.
 Status Preparation::find_circuit() {
-  if (!known_.has_unknown_circuit() && !has_floating_lines(described_.readout)) return Done{};
+  if (!known_.has_unknown_circuit()) {
+    if (!has_floating_lines(described_.readout)) return Done{};
+    find_film();
+    if (known_.readout.film) return Done{};
+  }
   Result<CircuitFit> fit = fit_circuit(known_, frames_, loads_, settle_time_);
   if (!fit) return fit.error();
   known_ = fit->array;
@@ -144,10 +149,8 @@ void Preparation::find_film() {
     cover_ = fit_cover(known_, frames_, surface_, settle_time_);
     take_cover(cover_.cover);
   }
-  if (film.film || asks_for_film_) {
-    constexpr const char* kNone = "no film conducts between the lines, as far as presses tell";
-    remarks_.push_back(film.sentence.empty() ? kNone : film.sentence);
-  }
+  if (film.film) remarks_.push_back(film.sentence);
+  lacking_film_ = film.film ? "" : film.sentence;
 }
 
 Trainable Preparation::trainable() const {
@@ -162,7 +165,11 @@ void Preparation::judge_instrument() {
   known_ = instrument_.array;
 }
 
+/// Not where a film that was found confirms it: under films other circuits with floating lines take long to try.
 void Preparation::doubt_circuit() {
+  const bool is_confirmed = has_floating_lines(described_.readout) && known_.readout.film &&
+                            (!described_.readout.film || described_.readout.film->is_unknown());
+  if (is_confirmed) return;
   if (described_.readout.circuit != Circuit::automatic) calibration::doubt_circuit(trainable(), instrument_);
 }
 
@@ -184,6 +191,10 @@ Result<SampleDatabase> Preparation::invert(const std::function<void(double)>& pr
   database->circuit_fit = std::move(circuit_);
   database->cover_error = cover_.error;
   if (!cover_.sentence.empty()) remarks_.push_back(cover_.sentence);
+  if (asks_for_film_ && !known_.readout.film) {
+    constexpr const char* kNone = "no film conducts between the lines, as far as presses tell";
+    remarks_.push_back(lacking_film_.empty() ? kNone : lacking_film_);
+  }
   std::move(remarks_.begin(), remarks_.end(), std::back_inserter(database->remarks));
   return database;
 }

@@ -57,6 +57,7 @@ class Preparation {
   std::vector<std::string> remarks_;
   bool asks_for_instrument_ = false;
   bool asks_for_film_ = false;
+  std::string lacking_film_;  // what to press for a word on a film; may be empty
   CoverFit cover_;
   std::optional<CircuitFit> circuit_;
   InstrumentFit instrument_;
