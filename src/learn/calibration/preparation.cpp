@@ -100,8 +100,9 @@ void Preparation::find_settling() {
   append(remarks_, settling.statements);
   asks_for_instrument_ = calibration::asks_for_instrument(settling.array.readout);
   known_ = without_unknown_instrument(std::move(settling.array));
-  asks_for_film_ = known_.readout.film && known_.readout.film->is_unknown();
-  if (asks_for_film_) known_.readout.film.reset();
+  if (!known_.readout.film || !known_.readout.film->is_unknown()) return;
+  lacking_film_ = "";
+  known_.readout.film.reset();
 }
 
 void Preparation::take_cover(const std::optional<Cover>& cover) {
@@ -150,7 +151,7 @@ void Preparation::find_film() {
     take_cover(cover_.cover);
   }
   if (film.film) remarks_.push_back(film.sentence);
-  lacking_film_ = film.film ? "" : film.sentence;
+  if (lacking_film_) lacking_film_ = film.sentence;
 }
 
 Trainable Preparation::trainable() const {
@@ -191,9 +192,9 @@ Result<SampleDatabase> Preparation::invert(const std::function<void(double)>& pr
   database->circuit_fit = std::move(circuit_);
   database->cover_error = cover_.error;
   if (!cover_.sentence.empty()) remarks_.push_back(cover_.sentence);
-  if (asks_for_film_ && !known_.readout.film) {
+  if (lacking_film_ && !known_.readout.film) {
     constexpr const char* kNone = "no film conducts between the lines, as far as presses tell";
-    remarks_.push_back(lacking_film_.empty() ? kNone : lacking_film_);
+    remarks_.push_back(lacking_film_->empty() ? kNone : *lacking_film_);
   }
   std::move(remarks_.begin(), remarks_.end(), std::back_inserter(database->remarks));
   return database;
