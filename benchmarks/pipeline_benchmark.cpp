@@ -81,7 +81,7 @@ void frame_of_a_material_with_memory(benchmark::State& state) {
 
 /// Circuits that hold a film over their lines.
 struct FilmCircuit {
-  const char* name;
+  const char* name = nullptr;
   Circuit circuit = Circuit::divider;
   IdleRows idle_rows = IdleRows::grounded;
   IdleColumns idle_columns = IdleColumns::loaded;
@@ -99,7 +99,7 @@ constexpr FilmCircuit kFilmCircuits[] = {
 };
 
 struct NamedFilm {
-  const char* name;
+  const char* name = nullptr;
   std::optional<Film> film;
 };
 
@@ -187,7 +187,7 @@ void memory_alone(benchmark::State& state) {
 
 /// Frames that no array gives, made of a good one.
 struct BadInput {
-  const char* name;
+  const char* name = nullptr;
   void (*spoil)(RawFrame& frame, std::size_t number, Random& random);
 };
 

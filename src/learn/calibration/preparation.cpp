@@ -100,8 +100,9 @@ void Preparation::find_settling() {
   append(remarks_, settling.statements);
   asks_for_instrument_ = calibration::asks_for_instrument(settling.array.readout);
   known_ = without_unknown_instrument(std::move(settling.array));
-  asks_for_film_ = known_.readout.film && known_.readout.film->is_unknown();
-  if (asks_for_film_) known_.readout.film.reset();
+  if (!known_.readout.film || !known_.readout.film->is_unknown()) return;
+  lacking_film_ = "";
+  known_.readout.film.reset();
 }
 
 void Preparation::take_cover(const std::optional<Cover>& cover) {
@@ -118,8 +119,13 @@ void Preparation::find_cover() {
   take_cover(cover_.cover);
 }
 
+/// A film under floating lines that explains what is read also confirms their circuit.
 Status Preparation::find_circuit() {
-  if (!known_.has_unknown_circuit() && !has_floating_lines(described_.readout)) return Done{};
+  if (!known_.has_unknown_circuit()) {
+    if (!has_floating_lines(described_.readout)) return Done{};
+    find_film();
+    if (known_.readout.film) return Done{};
+  }
   Result<CircuitFit> fit = fit_circuit(known_, frames_, loads_, settle_time_);
   if (!fit) return fit.error();
   known_ = fit->array;
@@ -134,22 +140,18 @@ Status Preparation::find_circuit() {
 /// A film feels what a cover hands on, and looks like one where lines float: it comes first.
 void Preparation::find_film() {
   if (known_.readout.film || known_.readout.circuit == Circuit::none) return;
-  constexpr int kRounds = 2;
   const bool is_cover_told = described_.cover && !described_.cover->is_unknown();
-  FilmFit film;
-  for (int round = 0; round < kRounds; ++round) {
-    ArrayDescription array = known_;
-    array.readout.film.reset();
-    if (round == 0 && !is_cover_told) array.cover.reset();
-    film = fit_film(array, frames_, surface_, settle_time_);
-    known_.readout.film = film.film;
-    if (!film.film || is_cover_told) break;
+  ArrayDescription array = known_;
+  if (!is_cover_told) array.cover.reset();
+  const FilmFit film = fit_film(array, frames_, surface_, settle_time_);
+  known_.readout.film = film.film;
+  if (film.film && !is_cover_told) {
+    known_.cover = film.cover;
     cover_ = fit_cover(known_, frames_, surface_, settle_time_);
     take_cover(cover_.cover);
-    if (!known_.cover) break;
   }
-  if (!film.sentence.empty()) remarks_.push_back(film.sentence);
-  if (!film.film && asks_for_film_) remarks_.emplace_back("no film conducts between the lines, as far as presses tell");
+  if (film.film) remarks_.push_back(film.sentence);
+  if (lacking_film_) lacking_film_ = film.sentence;
 }
 
 Trainable Preparation::trainable() const {
@@ -164,7 +166,11 @@ void Preparation::judge_instrument() {
   known_ = instrument_.array;
 }
 
+/// Not where a film that was found confirms it: under films other circuits with floating lines take long to try.
 void Preparation::doubt_circuit() {
+  const bool is_confirmed = has_floating_lines(described_.readout) && known_.readout.film &&
+                            (!described_.readout.film || described_.readout.film->is_unknown());
+  if (is_confirmed) return;
   if (described_.readout.circuit != Circuit::automatic) calibration::doubt_circuit(trainable(), instrument_);
 }
 
@@ -186,6 +192,10 @@ Result<SampleDatabase> Preparation::invert(const std::function<void(double)>& pr
   database->circuit_fit = std::move(circuit_);
   database->cover_error = cover_.error;
   if (!cover_.sentence.empty()) remarks_.push_back(cover_.sentence);
+  if (lacking_film_ && !known_.readout.film) {
+    constexpr const char* kNone = "no film conducts between the lines, as far as presses tell";
+    remarks_.push_back(lacking_film_->empty() ? kNone : *lacking_film_);
+  }
   std::move(remarks_.begin(), remarks_.end(), std::back_inserter(database->remarks));
   return database;
 }

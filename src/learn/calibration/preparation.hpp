@@ -56,7 +56,7 @@ class Preparation {
   std::vector<Load> chosen_;  // of the frames that become samples
   std::vector<std::string> remarks_;
   bool asks_for_instrument_ = false;
-  bool asks_for_film_ = false;
+  std::optional<std::string> lacking_film_;  // what to press for a word on the film that is asked for
   CoverFit cover_;
   std::optional<CircuitFit> circuit_;
   InstrumentFit instrument_;

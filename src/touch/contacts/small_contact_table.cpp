@@ -14,7 +14,7 @@ namespace {
 constexpr float kRelativeNoise = 0.01F;  // of a pressed taxel
 constexpr float kHertzWeight = 0.7F;
 constexpr std::size_t kPlaces = 44;  // a side
-constexpr std::size_t kRadii = 24;
+constexpr std::size_t kRadii = 32;
 constexpr double kMostAway = 0.58;      // of a patch from its strongest taxel [pitch]
 constexpr float kLeastShare = 1e-4F;    // of a patch on its strongest taxel
 constexpr float kMostShare = 1.2F;      // of any taxel against the strongest, noise included
@@ -88,7 +88,7 @@ SmallContactTable::SmallContactTable(const TaxelSpacing& spacing, const PatchRes
 void SmallContactTable::add_samples(const TaxelSpacing& spacing, const PatchResponses& responses) {
   const double pitch = std::sqrt(spacing.col_pitch * spacing.row_pitch);
   for (std::size_t r = 0; r < kRadii; ++r) {
-    const double radius = 0.25 * pitch * std::pow(8.0, static_cast<double>(r) / (kRadii - 1));
+    const double radius = 0.1 * pitch * std::pow(20.0, static_cast<double>(r) / (kRadii - 1));
     const bool is_hertz = r % 2 == 0;
     Sample sample;
     sample.log_radius = static_cast<float>(std::log(radius));

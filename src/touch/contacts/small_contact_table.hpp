@@ -42,7 +42,7 @@ struct SmallContactPlace {
 
 /// Up to four taxels do not determine place, radius and force of a patch. Many patches fit them alike, and the most
 /// likely one may be at the end of the possible range. So this gives the mean and the variance over all round patches
-/// that would show the same, Hertz and flat ones, tabulated for an array. All radii from a quarter to two pitches count
+/// that would show the same, Hertz and flat ones, tabulated for an array. All radii from a tenth of a pitch to two count
 /// alike.
 class SmallContactTable {
  public:

@@ -74,13 +74,6 @@ double spread_m(double share_beside, double pitch_m) {
   return pitch_m * solve(beside, share_beside, kMostPitches);
 }
 
-double spread_m_by_corner(double share, const ArrayDescription& array) {
-  const auto corner = [&](double metres) {
-    return beside(metres / array.row_pitch_m) * beside(metres / array.col_pitch_m);
-  };
-  return solve(corner, share, kMostPitches * std::min(array.row_pitch_m, array.col_pitch_m));
-}
-
 double times(std::size_t rows, std::size_t cols) {
   return (rows > 0 ? 2.0 : 1.0) * (cols > 0 ? 2.0 : 1.0);
 }
@@ -121,7 +114,7 @@ class Evidence {
     return ratio < alike && ratio > 1.0 / alike && corner_.share > kLeastCorner * down * right;
   }
 
-  [[nodiscard]] Cover by_corner() const { return {spread_m_by_corner(corner_.share, array_), {}}; }
+  [[nodiscard]] Cover by_corner() const { return {spread_by_corner(corner_.share, array_), {}}; }
 
   /// All shares that stand out; a Gaussian where it explains them.
   [[nodiscard]] FoundCover by_all() const {
@@ -207,7 +200,7 @@ class Evidence {
 
   [[nodiscard]] std::optional<double> gaussian(const std::vector<CoverShare>& shares) const {
     constexpr int kSteps = 60;
-    const double middle = spread_m_by_corner(corner_.share, array_);
+    const double middle = spread_by_corner(corner_.share, array_);
     double best = middle;
     for (int step = -kSteps; step <= kSteps; ++step) {
       const double trial = middle * std::exp(0.2 * step / kSteps);
@@ -258,6 +251,13 @@ std::string question(const ArrayDescription& array, const Evidence& evidence, co
 }
 
 }  // namespace
+
+double spread_by_corner(double share, const ArrayDescription& array) {
+  const auto corner = [&](double metres) {
+    return beside(metres / array.row_pitch_m) * beside(metres / array.col_pitch_m);
+  };
+  return solve(corner, share, kMostPitches * std::min(array.row_pitch_m, array.col_pitch_m));
+}
 
 CoverFit fit_cover(const ArrayDescription& array, std::span<const RawFrame> frames, std::span<const Load> loads,
                    Nanos settle_time) {

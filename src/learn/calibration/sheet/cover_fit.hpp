@@ -20,6 +20,9 @@ struct CoverFit {
   std::string sentence;     ///< On the cover, or on the press that would tell; may be empty.
 };
 
+/// Standard deviation of the Gaussian with this share across the corner, over the one at the centre [m].
+[[nodiscard]] double spread_by_corner(double share, const ArrayDescription& array);
+
 /// A cover raises the taxels around a press, on both lines of it and across the corners, the less the farther they are.
 /// No circuit of crossings does that. A taxel that a press raises feels the force under which it, pressed alone,
 /// conducts as much. That force over the one on the cover is the share at this distance over that at the centre. Shares

@@ -15,7 +15,8 @@ namespace dermis::learn::calibration {
 /// A film over the lines, as presses of single taxels tell it.
 struct FilmFit {
   std::optional<Film> film;
-  std::string sentence;  ///< May be empty.
+  std::optional<Cover> cover;  ///< Below which the film lies, if the array does not name one.
+  std::string sentence;        ///< On the film, or what to press where presses are too few to tell; may be empty.
 };
 
 /// A film raises the taxels beside a press in its row or its column, as the circuit has it. It hardly raises those

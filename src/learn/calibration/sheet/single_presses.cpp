@@ -77,7 +77,8 @@ class UnloadedCurve {
   Eigen::Vector3d curve_ = Eigen::Vector3d::Zero();
 };
 
-/// Takes the unloaded conductances out, and keeps the scatter about them.
+}  // namespace
+
 void take_out_unloaded(const ArrayDescription& array, const std::vector<SinglePress>& idle, SinglePresses& single) {
   for (std::size_t taxel = 0; taxel < array.taxel_count(); ++taxel) {
     std::vector<Unpressed> points;
@@ -93,12 +94,9 @@ void take_out_unloaded(const ArrayDescription& array, const std::vector<SinglePr
   }
 }
 
-}  // namespace
-
-std::vector<LabelledPresses::Labelled> LabelledPresses::labelled_frames(const ArrayDescription& array,
-                                                                        const CircuitFrames& frames,
-                                                                        const LoadsOfFrames& loads_of) {
-  std::vector<Labelled> labelled;
+std::vector<LabelledFrame> LabelledPresses::labelled_frames(const ArrayDescription& array, const CircuitFrames& frames,
+                                                            const LoadsOfFrames& loads_of) {
+  std::vector<LabelledFrame> labelled;
   std::size_t idle = 0;
   for (const CircuitFrame& frame : frames.frames) {
     const std::span<const Load> loads = loads_of[frame.first_frame];
@@ -113,8 +111,8 @@ std::vector<LabelledPresses::Labelled> LabelledPresses::labelled_frames(const Ar
 }
 
 /// At most so many, the lighter presses of each taxel left out first.
-void LabelledPresses::thin_out(std::vector<Labelled>& labelled, std::size_t most) {
-  const auto is_before = [](const Labelled& a, const Labelled& b) {
+void LabelledPresses::thin_out(std::vector<LabelledFrame>& labelled, std::size_t most) {
+  const auto is_before = [](const LabelledFrame& a, const LabelledFrame& b) {
     return a.taxel != b.taxel ? a.taxel < b.taxel : a.newtons > b.newtons;
   };
   std::stable_sort(labelled.begin(), labelled.end(), is_before);
@@ -125,7 +123,7 @@ void LabelledPresses::thin_out(std::vector<Labelled>& labelled, std::size_t most
     place_in_taxel.push_back(labelled[k].newtons == 0.0 ? 0 : goes_on ? place_in_taxel.back() + 1 : 0);
   }
   const std::size_t last = ranked(place_in_taxel, most);
-  std::vector<Labelled> kept;
+  std::vector<LabelledFrame> kept;
   for (std::size_t k = 0; k < labelled.size(); ++k) {
     if (place_in_taxel[k] <= last) kept.push_back(labelled[k]);
   }
@@ -173,7 +171,7 @@ std::optional<SinglePresses> LabelledPresses::invert(const ArrayDescription& arr
       chosen.push_back(&felt.back());
     }
   } else {
-    for (const Labelled& one : labelled_) chosen.push_back(one.frame);
+    for (const LabelledFrame& one : labelled_) chosen.push_back(one.frame);
   }
   const Result<InvertedFrames> inverted = invert_frames(array, chosen);
   if (!inverted) return std::nullopt;

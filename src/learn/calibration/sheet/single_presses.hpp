@@ -31,6 +31,17 @@ struct SinglePresses {
   std::vector<double> sigma;         ///< A rise scatters by it from frame to frame [taxels] [S].
 };
 
+/// Nothing presses, or one taxel alone.
+struct LabelledFrame {
+  const CircuitFrame* frame = nullptr;
+  std::size_t taxel = 0;
+  double newtons = 0.0;  ///< 0: nothing presses.
+};
+
+/// Takes out of the conductances in `rise` those of frames in which nothing presses, or far away, and keeps the scatter
+/// about them. `idle`: frames in which nothing presses.
+void take_out_unloaded(const ArrayDescription& array, const std::vector<SinglePress>& idle, SinglePresses& single);
+
 /// The frames of a recording in which one taxel alone is labelled, or nothing presses. Saturated presses are left out,
 /// and of very many presses those that are lighter.
 class LabelledPresses {
@@ -47,19 +58,17 @@ class LabelledPresses {
   /// sheet, or a circuit that is not known or cannot give them.
   [[nodiscard]] std::optional<SinglePresses> invert(const ArrayDescription& array) const;
 
- private:
-  struct Labelled {
-    const CircuitFrame* frame = nullptr;
-    std::size_t taxel = 0;
-    double newtons = 0.0;  // 0: nothing presses
-  };
+  /// They have labelled() among them.
+  [[nodiscard]] const std::shared_ptr<const CircuitFrames>& frames() const noexcept { return circuit_; }
+  [[nodiscard]] std::span<const LabelledFrame> labelled() const noexcept { return labelled_; }
 
-  static std::vector<Labelled> labelled_frames(const ArrayDescription& array, const CircuitFrames& frames,
-                                               const LoadsOfFrames& loads_of);
-  static void thin_out(std::vector<Labelled>& labelled, std::size_t most);
+ private:
+  static std::vector<LabelledFrame> labelled_frames(const ArrayDescription& array, const CircuitFrames& frames,
+                                                    const LoadsOfFrames& loads_of);
+  static void thin_out(std::vector<LabelledFrame>& labelled, std::size_t most);
 
   std::shared_ptr<const CircuitFrames> circuit_;
-  std::vector<Labelled> labelled_;  // refers to circuit_
+  std::vector<LabelledFrame> labelled_;  // refers to circuit_
 };
 
 /// The presses that are affordable once.

@@ -49,12 +49,24 @@ double between(const Points& points, double x) {
 
 }  // namespace
 
-TaxelCurves::TaxelCurves(const SinglePresses& single) : taxel_(single.sigma.size()) {
+TaxelCurves::Points TaxelCurves::points(const SinglePresses& single) {
   Points measured;
   for (const auto& [taxel, newtons, temperature, rise, held] : single.presses) {
     if (!(rise[taxel] > kLeastSigmas * single.sigma[taxel])) continue;
     measured.push_back({std::log(newtons), std::log(rise[taxel]), temperature, taxel});
   }
+  return measured;
+}
+
+TaxelCurves::TaxelCurves(const SinglePresses& single, const TaxelCurves& known)
+    : per_temperature_(known.per_temperature_), per_square_(known.per_square_), taxel_(known.taxel_) {
+  Points measured = points(single);
+  for (Point& point : measured) point.log_siemens -= own_at(point.taxel, point.log_newtons);
+  fit_sheet(measured, std::vector<double>(taxel_.size()));
+}
+
+TaxelCurves::TaxelCurves(const SinglePresses& single) : taxel_(single.sigma.size()) {
+  const Points measured = points(single);
   std::vector<double> level(taxel_.size());
   for (int round = 0; round < kRounds; ++round) {
     fit_sheet(measured, level);
@@ -71,6 +83,10 @@ TaxelCurves::TaxelCurves(const SinglePresses& single) : taxel_(single.sigma.size
       taxel_[taxel].push_back({force, bin.log_siemens / bin.count, 0.0, taxel});
     }
   }
+}
+
+double TaxelCurves::own_at(std::size_t taxel, double log_newtons) const {
+  return taxel_[taxel].empty() ? 0.0 : between(taxel_[taxel], log_newtons);
 }
 
 double TaxelCurves::above_sheet(const Point& point) const {
@@ -177,8 +193,7 @@ double TaxelCurves::slope_at(std::size_t point) const {
 double TaxelCurves::siemens(std::size_t taxel, double newtons) const {
   if (!(newtons > 0.0)) return 0.0;
   const double log_newtons = std::log(newtons);
-  const double own = taxel_[taxel].empty() ? 0.0 : between(taxel_[taxel], log_newtons);
-  return std::exp(of_sheet(log_newtons) + own);
+  return std::exp(of_sheet(log_newtons) + own_at(taxel, log_newtons));
 }
 
 }  // namespace dermis::learn::calibration

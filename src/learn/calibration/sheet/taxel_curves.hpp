@@ -14,6 +14,8 @@ namespace dermis::learn::calibration {
 class TaxelCurves {
  public:
   explicit TaxelCurves(const SinglePresses& single);
+  /// Only the curve of the sheet is that of `single`: the taxels deviate from it as in `known`.
+  TaxelCurves(const SinglePresses& single, const TaxelCurves& known);
 
   /// Presses tell at least straight lines.
   [[nodiscard]] bool any() const noexcept { return !sheet_.empty(); }
@@ -33,9 +35,11 @@ class TaxelCurves {
   };
   using Points = std::vector<Point>;
 
+  [[nodiscard]] static Points points(const SinglePresses& single);
   void fit_sheet(const Points& measured, const std::vector<double>& level);
   void fit_temperature(const Points& measured, const std::vector<double>& level);
   void fit_levels(const Points& measured, std::vector<double>& level) const;
+  [[nodiscard]] double own_at(std::size_t taxel, double log_newtons) const;
   [[nodiscard]] double above_sheet(const Point& point) const;
   [[nodiscard]] double temperature_factor(double t) const;
   [[nodiscard]] double of_sheet(double log_newtons) const;
