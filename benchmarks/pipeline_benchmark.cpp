@@ -188,7 +188,7 @@ void memory_alone(benchmark::State& state) {
 /// Frames that no array gives, made of a good one.
 struct BadInput {
   const char* name = nullptr;
-  void (*spoil)(RawFrame& frame, std::size_t number, Random& random);
+  void (*spoil)(RawFrame& frame, std::size_t number, Random& random) = nullptr;
 };
 
 constexpr float kFullScale = 4095.0F;
