@@ -30,8 +30,9 @@ struct CheckOptions {
 Result<WeightFinding> weigh(Operation& operation, double weight_n) {
   operation.pipeline.drift().set_options({.track = true});
   learn::health::WeightCheck check(operation.model, weight_n);
-  const Status done =
-      process_all(operation, [&](const RawFrame& /*raw*/, const ForceFrame& force) { check.add(force); });
+  const Status done = process_all(operation, [&](const RawFrame& /*raw*/, const ForceFrame& force) {
+    check.add(force, operation.pipeline.conditioned().ratio);
+  });
   if (!done) return done.error();
   return check.finding();
 }
@@ -47,7 +48,7 @@ Result<int> check(const CheckOptions& options) {
   if (!finding) return finding.error();
   if (finding->presses.empty()) return failed(options.in + ": " + learn::health::describe(*finding));
   fmt::print("{}", learn::health::describe(*finding));
-  return finding->has_aged() || finding->has_lost_cover() ? kExitAged : 0;
+  return finding->has_aged() || finding->has_lost_cover() || finding->has_changed_film() ? kExitAged : 0;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "dermis/touch/frames/cover.hpp"
+#include "learn/health/film_change.hpp"
 
 namespace dermis::learn::health {
 namespace {
@@ -20,6 +21,7 @@ constexpr std::size_t kLeastFrames = 3;
 constexpr double kMostDeviation = 0.05;  // within a piece, relative: more is a hand
 constexpr double kLeastChange = 0.03;    // of a gain: less is not worth a calibration
 constexpr double kSomethingElse = 2.0;   // times the weight, or a part of it
+constexpr double kLeft = 1.0 / 3.0;      // of the weight, once it is taken off
 constexpr double kNewtonsPerGram = 9.80665e-3;
 constexpr double kSigmas = 3.0;
 constexpr double kTooMuch = 0.1;      // of a gain: a check that is less sure is of little use
@@ -49,6 +51,19 @@ std::string cover_line(const WeightFinding& finding) {
   if (finding.narrowest_m < kMuchWider * finding.point_m) return {};
   return fmt::format("the object is {}: if it is smaller than a taxel, the cover has changed and spreads more\n",
                      widths);
+}
+
+/// Unloaded conductances that are not known are 0.
+std::vector<double> conducting(std::vector<double> siemens) {
+  for (double& one : siemens) one = one > 0.0 ? one : 0.0;
+  return siemens;
+}
+
+std::string film_line(double factor) {
+  return fmt::format(
+      "recalibrate: the film between the lines has changed: it conducts about {:.0f} % {} than when it was "
+      "calibrated\n",
+      100.0 * std::abs(factor - 1.0), factor > 1.0 ? "more" : "less");
 }
 
 bool is_near(double ratio) {
@@ -121,6 +136,7 @@ std::string describe(const WeightFinding& finding) {
   if (finding.others + finding.unsteady > 0) {
     text += fmt::format("besides {} of another weight, {} not steady\n", finding.others, finding.unsteady);
   }
+  if (finding.has_changed_film()) return text + film_line(finding.film_factor);
   text += cover_line(finding);
   const double change = finding.ratio - 1.0;
   if (finding.has_aged()) {
@@ -140,22 +156,49 @@ WeightCheck::WeightCheck(const touch::pipeline::Model& model, double weight_n)
   finding_.weight_n = weight_n;
   finding_.point_m = point_under(model.array);
   const ArrayDescription& array = model.array;
+  if (array.readout.film && !array.cover) sheet_ = {array, conducting(model.networks.unloaded.offset_siemens)};
   middle_ = {0.5 * static_cast<double>(array.cols - 1) * array.col_pitch_m,
              0.5 * static_cast<double>(array.rows - 1) * array.row_pitch_m};
   room_ = {middle_.x - kReachOfPoint * finding_.point_m, middle_.y - kReachOfPoint * finding_.point_m};
 }
 
-void WeightCheck::add(const ForceFrame& force) {
+template <typename Values>
+void WeightCheck::Sums::add(const Values& frame) {
+  values.resize(frame.size());
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] += frame[k];
+  ++frames;
+}
+
+std::vector<double> WeightCheck::Sums::mean() const {
+  std::vector<double> mean = values;
+  for (double& value : mean) value /= static_cast<double>(frames);
+  return mean;
+}
+
+void WeightCheck::add(const ForceFrame& force, std::span<const double> ratio) {
   if (has(force.status, FrameStatus::rejected)) return;
   tracker_.process(force, report_);
   const bool is_pressed = std::any_of(report_.contacts.begin(), report_.contacts.end(),
                                       [](const Contact& contact) { return contact.phase != ContactPhase::release; });
-  if (is_pressed) return hold(force.time);
+  if (is_pressed && !is_taken_off()) return hold(force, ratio);
   if (press_) count(*press_, finding_);
-  press_.reset();
+  rest(ratio);
 }
 
-void WeightCheck::hold(Nanos time) {
+/// A film that has changed may leave forces behind.
+bool WeightCheck::is_taken_off() const {
+  const bool was_there = !finding_.presses.empty() || (press_ && press_->steadiest);
+  return sheet_ && was_there && report_.total_force_n < kLeft * finding_.weight_n;
+}
+
+void WeightCheck::rest(std::span<const double> ratio) {
+  if (press_) idle_ = {};
+  press_.reset();
+  if (sheet_) idle_.add(ratio);
+}
+
+void WeightCheck::hold(const ForceFrame& force, std::span<const double> ratio) {
+  const Nanos time = force.time;
   if (!press_) {
     press_ = Press{};
     press_->onset = time;
@@ -175,6 +218,9 @@ void WeightCheck::hold(Nanos time) {
   piece->sum_square += report_.total_force_n * report_.total_force_n;
   piece->sum_sigma_n += report_.sigma_total_n;
   piece->sum_width_m += width_m();
+  if (!sheet_) return;
+  piece->ratio.add(ratio);
+  piece->newtons.add(force.newtons);
 }
 
 /// At the rim a cover loses some, and nothing can be said.
@@ -200,6 +246,8 @@ void WeightCheck::close_piece(Press& press) const {
   press.steadiest = weighed;
   press.deviation = deviation;
   press.width_m = piece.sum_width_m / frames;
+  if (idle_.frames < kLeastFrames) return;
+  press.steadiest->readings = {piece.ratio.mean(), idle_.mean(), piece.newtons.mean()};
 }
 
 void WeightCheck::count(const Press& press, WeightFinding& finding) {
@@ -219,6 +267,7 @@ WeightFinding WeightCheck::finding() const {
   WeightFinding finding = finding_;
   if (press_ && press_->steadiest) count(*press_, finding);
   weigh(finding);
+  if (sheet_) finding.film_factor = film_change(sheet_->array, sheet_->idle_siemens, finding.weight_n, finding.presses);
   return finding;
 }
 

@@ -7,9 +7,11 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "dermis/touch/compensation/circuit_model.hpp"
 #include "dermis/touch/frames/random.hpp"
 #include "support/hand_made_model.hpp"
 
@@ -64,6 +66,112 @@ class Scale {
   Nanos time_{};
   Random random_{1};
 };
+
+touch::pipeline::Model model_with_film() {
+  touch::pipeline::Model model = support::hand_made_model(kLines, kLines);
+  model.array.readout.film = Film{50e3, 2e3};
+  return model;
+}
+
+/// The same array under a film that conducts so many times as much as its model says.
+class ScaleWithFilm {
+ public:
+  explicit ScaleWithFilm(double factor)
+      : film_{50e3 / factor, 2e3 / factor},
+        circuit_(touch::compensation::CircuitModel::create(model_.array).value()),
+        check_(model_, kWeight) {}
+
+  /// An object that stands so with its parts on these taxels, for 3 s.
+  ScaleWithFilm& put_on(const std::map<std::size_t, double>& shares) {
+    add({}, 50);
+    add(shares, 150);
+    return *this;
+  }
+
+  ScaleWithFilm& leave(double newtons) {
+    left_ = newtons;
+    return *this;
+  }
+
+  WeightFinding finding() {
+    add({}, 50);
+    return check_.finding();
+  }
+
+ private:
+  void add(const std::map<std::size_t, double>& shares, int frames) {
+    ForceFrame force;
+    force.newtons.assign(kLines * kLines, 0.0F);
+    force.sigma_newtons.assign(kLines * kLines, 0.005F);
+    force.signal_to_noise.assign(kLines * kLines, 0.0F);
+    force.taxels.assign(kLines * kLines, TaxelStatus::ok);
+    std::vector<double> siemens = model_.networks.unloaded.offset_siemens;
+    if (left_ > 0.0) press(force, kLines * kLines - 1, left_);
+    for (const auto& [taxel, share] : shares) {
+      press(force, taxel, share * kWeight);
+      siemens[taxel] = support::siemens_under(model_, taxel, share * kWeight, 25.0);
+    }
+    FilmConductances conductances(kLines, kLines);
+    conductances.set(film_, std::span<const float>(force.newtons));
+    circuit_.set_film(conductances);
+    circuit_.solve(siemens);
+    for (int k = 0; k < frames; ++k) {
+      force.time = time_ += std::chrono::milliseconds(20);
+      check_.add(force, circuit_.ratio());
+    }
+  }
+
+  static void press(ForceFrame& force, std::size_t taxel, double newtons) {
+    force.newtons[taxel] = static_cast<float>(newtons);
+    force.sigma_newtons[taxel] = static_cast<float>(kSigma * newtons);
+    force.signal_to_noise[taxel] = 500.0F;
+  }
+
+  touch::pipeline::Model model_ = model_with_film();
+  Film film_;
+  touch::compensation::CircuitModel circuit_;
+  WeightCheck check_;
+  Nanos time_{};
+  double left_ = 0.0;
+};
+
+TEST(WeightCheck, a_film_that_conducts_more_or_less_than_its_model_says_is_found) {
+  for (const double factor : {0.5, 2.0}) {
+    const WeightFinding finding = ScaleWithFilm(factor).put_on({{27, 1.0}}).put_on({{45, 1.0}}).finding();
+    EXPECT_TRUE(finding.has_changed_film());
+    EXPECT_NEAR(finding.film_factor, factor, 0.05 * factor);
+    EXPECT_NE(describe(finding).find("recalibrate: the film between the lines has changed: it conducts about " +
+                                     std::string(factor > 1.0 ? "100 % more" : "50 % less")),
+              std::string::npos)
+        << describe(finding);
+  }
+}
+
+TEST(WeightCheck, a_film_that_has_not_changed_or_is_seen_once_or_at_the_rim_only_says_nothing) {
+  EXPECT_FALSE(ScaleWithFilm(1.1).put_on({{27, 1.0}}).put_on({{45, 1.0}}).finding().has_changed_film());
+  EXPECT_FALSE(ScaleWithFilm(2.0).put_on({{27, 1.0}}).finding().has_changed_film());
+  EXPECT_FALSE(ScaleWithFilm(2.0).put_on({{24, 1.0}}).put_on({{3, 1.0}}).finding().has_changed_film());
+}
+
+TEST(WeightCheck, an_object_larger_than_a_taxel_is_no_film) {
+  for (const double beside : {0.01, 0.03, 0.1, 0.15}) {
+    const double middle = 1.0 - 4.0 * beside;
+    ScaleWithFilm scale(1.0);
+    for (const std::size_t taxel : {27UL, 45UL, 18UL}) {
+      scale.put_on(
+          {{taxel, middle}, {taxel - 1, beside}, {taxel + 1, beside}, {taxel - 8, beside}, {taxel + 8, beside}});
+    }
+    EXPECT_FALSE(scale.finding().has_changed_film()) << beside;
+  }
+}
+
+TEST(WeightCheck, forces_that_a_changed_film_leaves_behind_do_not_join_presses) {
+  ScaleWithFilm scale(2.0);
+  scale.leave(0.2 * kWeight).put_on({{27, 1.0}}).put_on({{45, 1.0}}).put_on({{18, 1.0}});
+  const WeightFinding finding = scale.finding();
+  EXPECT_EQ(finding.presses.size(), 3U);
+  EXPECT_TRUE(finding.has_changed_film());
+}
 
 TEST(WeightCheck, an_object_that_reads_what_it_weighs_is_well) {
   const WeightFinding finding = Scale().rest().hold(4.94, 4.0).rest().finding();
