@@ -94,8 +94,8 @@ bool is_invalid(TaxelStatus taxel) {
   return taxel == TaxelStatus::invalid;
 }
 
-/// Where one line at a time is loaded under a film, few frames are beyond the quick inversion: unloaded sheets whose
-/// film conducts more than their taxels, and taxels far below the resistance of their drivers.
+/// Few frames of one loaded line at a time are beyond the quick inversion under a film. Those are of unloaded sheets
+/// whose film conducts more than their taxels, and of taxels far below the resistance of their drivers.
 Inversion backed(Inversion quick, const ArrayDescription& array, double tolerance, const InversionOptions& options) {
   Inversion thorough = newton(array, tolerance, options);
   if (!thorough) return thorough.error();

@@ -10,7 +10,7 @@ namespace dermis::touch::compensation {
 
 /// The columns in the equations of film_terms.hpp. These functions allocate nothing.
 
-/// What the film conducts from column to column.
+/// Follows the conductances of the film from column to column.
 void follow_film(GroundedRowsFilm& film) noexcept;
 
 /// P of the sums of the columns, its pivots, and b. Nothing is subtracted.

@@ -152,7 +152,7 @@ void FilmFollower::find_loads(std::span<const double> siemens, std::size_t strid
   }
 }
 
-/// Of the pairs of taxels that are so far from each other.
+/// Pairs of taxels that are so far from each other.
 template <typename Real>
 void FilmFollower::find_rises(std::size_t distance, Loads<Real>& loads) noexcept {
   const std::size_t count = loads.newtons.size() - distance;

@@ -13,7 +13,7 @@
 
 namespace dermis::touch::compensation {
 
-/// Of numbers on the way to a solution.
+/// The precision of numbers on the way to a solution.
 enum class Precision { single, full };
 
 /// A film over the lines (Readout::film), as the loads on its taxels make it. Loads follow from the conductances of the
@@ -47,7 +47,7 @@ class FilmFollower {
     std::array<double, kCorners> change{};  // of the slope; 0 behind the last corner
   };
 
-  /// Of all taxels [taxels].
+  /// [taxels]
   template <typename Real>
   struct Loads {
     std::vector<Real> newtons;

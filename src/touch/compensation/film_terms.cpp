@@ -112,7 +112,7 @@ DERMIS_PROCESSOR_CLONES void return_through_film(GroundedRowsState& state) {
   }
 }
 
-/// What enters a column from its neighbours in a row.
+/// Currents into a column from its neighbours in a row.
 double flow_into(const GroundedRowsFilm& film, std::size_t col, const double* current) {
   const double from_left = col > 0 ? film.to_next[col - 1] * film.unit[col - 1] * current[-1] : 0.0;
   const bool has_next = col + 1 < film.unit.size();

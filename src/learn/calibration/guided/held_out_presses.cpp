@@ -74,8 +74,7 @@ std::optional<double> median(std::vector<double> values) {
 
 /// Relative errors of a model on presses; 1 where it gives no force.
 std::vector<double> errors_of(const touch::pipeline::Model& model, const GuidedPresses& presses) {
-  Result<touch::compensation::Compensator> compensator =
-      touch::pipeline::make_compensator(model.array, model.networks);
+  Result<touch::compensation::Compensator> compensator = touch::pipeline::make_compensator(model.array, model.networks);
   if (!compensator) return {};
   touch::fusion::ForceFusion fusion(model.networks);
   ConditionedFrame conditioned;

@@ -164,8 +164,7 @@ std::vector<Load> Proof::loads_without(std::size_t half, bool all_several) const
 
 /// false: the circuit cannot be inverted.
 bool Proof::judge(const touch::pipeline::Model& model, std::size_t half, UnseenPresses& unseen) const {
-  Result<touch::compensation::Compensator> compensator =
-      touch::pipeline::make_compensator(model.array, model.networks);
+  Result<touch::compensation::Compensator> compensator = touch::pipeline::make_compensator(model.array, model.networks);
   if (!compensator) return false;
   std::map<std::size_t, std::pair<const LeftOut*, UnseenPress*>> by_frame;
   const auto add = [&](const std::vector<LeftOut>& presses, std::vector<UnseenPress>& results) {
