@@ -65,6 +65,7 @@ std::string with_queue(const bytes::devices::RecorderProgress& progress) {
 
 /// Why nothing is recorded, and what the bytes look like.
 Error without_frames(const std::string& from, const Status& recorded, std::span<const std::uint8_t> bytes) {
+  if (!recorded && recorded.error().kind == ErrorKind::failed) return recorded.error();
   Error error = recorded ? failed("'" + from + "': not a single frame came: nothing is recorded") : recorded.error();
   const std::string look = look_of_unread(bytes);
   if (look.empty()) return error;
