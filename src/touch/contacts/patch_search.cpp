@@ -15,8 +15,8 @@ constexpr float kPriorSigma = 0.6F;
 constexpr float kMismatchOfTaxel = 0.003F;  // deviation of a real patch's shape from the model's
 constexpr float kMismatchOfPeak = 0.0005F;
 constexpr float kMismatchUnderCover = 0.015F;  // of a taxel: no cover is quite a Gaussian
-constexpr float kPlainMisfit = 2.0F;        // chi squared per degree of freedom, up to which noise explains a misfit
-constexpr float kMostShareOfOther = 0.35F;  // of a peak, that a contact without a valley before it can have
+constexpr float kPlainMisfit = 2.0F;           // chi squared per degree of freedom, up to which noise explains a misfit
+constexpr float kMostShareOfOther = 0.35F;     // of a peak, that a contact without a valley before it can have
 
 /// Strength of the prior for a place anywhere on a cell of this pitch [1/radii of a taxel^2].
 double strength_on_cell(double pitch_m, double taxel_radius_m) {

@@ -42,8 +42,8 @@ struct SmallContactPlace {
 
 /// Up to four taxels do not determine place, radius and force of a patch. Many patches fit them alike, and the most
 /// likely one may be at the end of the possible range. So this gives the mean and the variance over all round patches
-/// that would show the same, Hertz and flat ones, tabulated for an array. All radii from a tenth of a pitch to two count
-/// alike.
+/// that would show the same, Hertz and flat ones, tabulated for an array. All radii from a tenth of a pitch to two
+/// count alike.
 class SmallContactTable {
  public:
   /// Tables are shared by arrays of the same spacing that a thread asks for. Thread-safe.

@@ -45,7 +45,8 @@ class LoadsOfFrames {
 /// that the sheet does not have carry nothing.
 void expand_loads(const ArrayDescription& array, std::span<const Load> loads, Sample& sample);
 
-/// The forces that a film over the lines feels: those of taxels, and totals evenly over theirs; not a number: not known.
+/// The forces that a film over the lines feels: those of taxels, and totals evenly over theirs; not a number: not
+/// known.
 [[nodiscard]] std::vector<float> film_newtons(std::vector<float> newtons, const std::vector<TotalForce>& totals);
 
 }  // namespace dermis::learn::calibration

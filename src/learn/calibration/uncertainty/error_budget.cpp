@@ -27,7 +27,7 @@ class ErrorBudget {
   static Result<ErrorBudget> create(touch::pipeline::Model model, double supply_noise) {
     model.array.readout.supply_noise = supply_noise;
     Result<touch::compensation::Compensator> compensator =
-      touch::pipeline::make_compensator(model.array, model.networks);
+        touch::pipeline::make_compensator(model.array, model.networks);
     if (!compensator) return compensator.error();
     std::fill(model.networks.relative_sigma.begin(), model.networks.relative_sigma.end(), 1e-6F);
     std::fill(model.networks.heaviest_newtons.begin(), model.networks.heaviest_newtons.end(),
