@@ -11,11 +11,13 @@
 #include <utility>
 
 #include "commands.hpp"
+#include "dermis/bytes/files/array_toml.hpp"
 #include "dermis/bytes/recordings/frame_files.hpp"
 #include "dermis/bytes/recordings/recording.hpp"
 #include "dermis/bytes/recordings/suit_recording.hpp"
 #include "dermis/live/dds/publisher.hpp"
 #include "dermis/live/fleet/frame_publisher.hpp"
+#include "dermis/live/sources/array_folder.hpp"
 #include "dermis/live/sources/source_name.hpp"
 #include "dermis/out/serve/array_setup.hpp"
 #include "dermis/out/serve/session.hpp"
@@ -91,12 +93,37 @@ Status set_up_array(ServeOptions& options) {
   options.place.from = std::move(array.from);
   options.place.model = std::move(array.model);
   options.place.suit = std::move(array.suit);
-  const std::string& wrote = options.place.suit.empty() ? options.place.model : options.place.suit;
-  if (!wrote.empty()) print_notice("wrote " + wrote);
+  const std::string& file = options.place.suit.empty() ? options.place.model : options.place.suit;
+  if (!file.empty()) print_notice((array.is_new ? "wrote " : "by ") + file);
   return Done{};
 }
 
+/// `--from mat`: the folder of an array has its newest model and its source.
+Status open_folder(out::serve::SuitPlace& place) {
+  if (!live::sources::is_array_folder(place.from)) return Done{};
+  const Result<live::sources::ArrayFolder> folder = live::sources::read_array_folder(place.from);
+  if (!folder) return folder.error();
+  if (folder->from.empty()) {
+    return bad_input(
+        fmt::format("'{}': has no source.toml: say --from where it is, with --model {}", folder->path, folder->model));
+  }
+  place.from.clear();
+  if (folder->is_suit()) {
+    place.suit = folder->model;
+    return Done{};
+  }
+  const Result<ArrayDescription> array = bytes::files::read_array(folder->path + "/array.toml");
+  if (!array) return array.error();
+  const Result<live::sources::SourceName> found = live::sources::find_source(
+      *folder, array->order.sent({array->rows, array->cols}), {.stop = &stop_flag(), .notice = print_notice});
+  if (!found) return found.error();
+  place.from = found->text;
+  if (place.model.empty()) place.model = folder->model;
+  return live::sources::write_array_source(folder->path, *found);
+}
+
 Status serve_suit(ServeOptions& options) {
+  if (Status opened = open_folder(options.place); !opened) return opened;
   if (Status possible = check(options); !possible) return possible;
   if (options.dds) {
     Result<live::dds::PublisherOptions> dds = live::dds::options_of_environment(options.domain);

@@ -11,6 +11,8 @@ export interface KnownArray {
   rows: number;
   cols: number;
   calibrated: boolean;
+  /** Where it was; empty: not known. */
+  from: string;
 }
 
 /** The arrays of the server's folder, from last time. */
@@ -62,7 +64,11 @@ export class KnownArrays {
   }
 }
 
-function makeKnown({ file, name, rows, cols, calibrated }: KnownArray, choose: () => void): HTMLElement {
+function makeKnown({ file, name, rows, cols, calibrated, from }: KnownArray, choose: () => void): HTMLElement {
   const words = `${name}, ${rows}\u00d7${cols}, ${calibrated ? "calibrated" : "not calibrated"}`;
-  return button(words, choose, { "aria-pressed": "false", title: file, "data-known": file });
+  return button(words, choose, {
+    "aria-pressed": "false",
+    title: from === "" ? file : `${file}, last at ${from}`,
+    "data-known": file,
+  });
 }

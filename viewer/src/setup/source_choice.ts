@@ -3,7 +3,7 @@
 import { button, element, setHidden, setText } from "../dom";
 import { errorText } from "../format";
 import type { Stream } from "../stream/stream";
-import type { KnownArrays } from "./known_arrays";
+import type { KnownArray, KnownArrays } from "./known_arrays";
 import "./setup.css";
 
 const BAUDS = [9600, 57600, 115200, 230400, 250000, 460800, 921600, 1000000, 2000000];
@@ -59,6 +59,21 @@ export function makeSourceChoice(stream: Stream, known: KnownArrays): HTMLElemen
     for (const button of buttons) button.disabled = false;
   }
 
+  /** Its place is known, or it is asked for. */
+  async function useKnown(one: KnownArray): Promise<void> {
+    if (one.from === "") {
+      known.chosen.value = known.chosen.value === one ? undefined : one;
+      return;
+    }
+    setText(words, `Looking for ${one.name} ...`);
+    try {
+      await stream.callService("/array/use", { file: one.file });
+    } catch (error) {
+      known.chosen.value = one;
+      setText(words, `${errorText(error)}. Where is ${one.name} now?`);
+    }
+  }
+
   const choice = (name: string, title: string, data: string, request: () => object): HTMLElement =>
     button(name, () => void open(request(), name), { title, "data-source": data });
 
@@ -96,7 +111,7 @@ export function makeSourceChoice(stream: Stream, known: KnownArrays): HTMLElemen
     { class: "panel array-setup", "data-role": "source-setup", "aria-label": "The source", hidden: true },
     element("h2", {}, "Where is the array?"),
     words,
-    known.makeList((one) => (known.chosen.value = known.chosen.value === one ? undefined : one)),
+    known.makeList((one) => void useKnown(one)),
     part(
       "At a USB port of this machine",
       noPort,

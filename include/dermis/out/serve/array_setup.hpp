@@ -16,8 +16,9 @@ namespace dermis::out::serve {
 /// The description by a client.
 struct DescribedArray {
   std::string from{};   ///< URI of its source.
-  std::string suit{};   ///< NAME.suit.toml, which has both, where its places were pressed; else empty.
-  std::string model{};  ///< Its NAME.toml, or a model or array.toml from last time, in the current folder.
+  std::string suit{};   ///< NAME/array.suit.toml, which has both, where its places were pressed; else empty.
+  std::string model{};  ///< Its NAME/array.toml, or a model or array.toml from last time.
+  bool is_new = false;  ///< It was written now.
 };
 
 /// An array of which nothing is written yet. Serves a page that shows what its source sends, and asks for the rest: the

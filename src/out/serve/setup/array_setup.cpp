@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "dermis/bytes/files/array_toml.hpp"
+#include "dermis/live/sources/array_folder.hpp"
 #include "out/serve/requests/array_request.hpp"
 #include "out/serve/requests/json_request.hpp"
 #include "out/serve/setup/first_look.hpp"
@@ -54,19 +55,6 @@ std::string suit_json(const std::optional<SourceName>& name, const FirstLook& fo
   setup["message"] = found.message;
   setup["bytes"] = hex_of(std::span(found.bytes).first(std::min(found.bytes.size(), kMostShown)));
   return json_text(json);
-}
-
-Result<std::string> list_known() {
-  ordered_json answer;
-  answer["arrays"] = ordered_json::array();
-  for (const KnownArray& known : known_arrays()) {
-    answer["arrays"].push_back({{"file", known.file},
-                                {"name", known.array.name},
-                                {"rows", known.array.rows},
-                                {"cols", known.array.cols},
-                                {"calibrated", known.is_calibrated}});
-  }
-  return json_text(answer);
 }
 
 /// Missing readings are null.
@@ -109,18 +97,19 @@ class ArraySetup::Implementation {
     const auto service = [this](const char* name, Call call) {
       return websocket::Service{name, [this, call](std::string_view request) { return (this->*call)(request); }};
     };
-    std::vector<websocket::Service> services = {service("/array/describe", &Implementation::describe),
-                                                service("/array/use", &Implementation::use),
-                                                service("/array/watch", &Implementation::watch),
-                                                service("/array/touch", &Implementation::touch),
-                                                service("/layout/propose", &Implementation::propose),
-                                                service("/layout/use", &Implementation::use_layout),
-                                                service("/source/look", &Implementation::look),
-                                                service("/array/press", &Implementation::press),
-                                                service("/array/pressed", &Implementation::pressed),
-                                                service("/array/skip", &Implementation::skip),
-                                                service("/array/arrange", &Implementation::arrange),
-                                                {"/array/known", [](std::string_view) { return list_known(); }}};
+    std::vector<websocket::Service> services = {
+        service("/array/describe", &Implementation::describe),
+        service("/array/use", &Implementation::use),
+        service("/array/watch", &Implementation::watch),
+        service("/array/touch", &Implementation::touch),
+        service("/layout/propose", &Implementation::propose),
+        service("/layout/use", &Implementation::use_layout),
+        service("/source/look", &Implementation::look),
+        service("/array/press", &Implementation::press),
+        service("/array/pressed", &Implementation::pressed),
+        service("/array/skip", &Implementation::skip),
+        service("/array/arrange", &Implementation::arrange),
+        {"/array/known", [](std::string_view) { return Result<std::string>(known_arrays_json()); }}};
     if (!with_choice) return services;
     services.push_back({"/source/list", [](std::string_view) { return Result<std::string>(source_choices()); }});
     services.push_back(service("/source/open", &Implementation::open));
@@ -171,37 +160,57 @@ class ArraySetup::Implementation {
     if (!name_) return bad_input(kNoSource);
     const Result<ArrayDescription> array = array_request(request);
     if (!array) return array.error();
-    const std::string path = array->name + ".toml";
-    std::error_code ignored;
-    if (std::filesystem::exists(path, ignored)) {
-      return bad_field("name", path + " is there already: choose another name, or take the array from last time");
-    }
+    const Result<std::string> path = new_array_file(array->name, "array.toml");
+    if (!path) return path;
     if (Status sends = check_frames(*array); !sends) return sends.error();
-    if (Status written = bytes::files::write_array(path, *array); !written) return written.error();
-    return serve_as(path);
+    if (Status made = make_array_folder(array->name); !made) return made.error();
+    if (Status written = bytes::files::write_array(*path, *array); !written) return written.error();
+    if (Status kept = live::sources::write_array_source(array->name, *name_); !kept) return kept.error();
+    return serve_as({.from = name_->text, .model = *path, .is_new = true});
   }
 
-  /// {"file": "mat.safetensors"}, one of those that are known.
+  /// {"file": "mat/mat-20261130-101500.safetensors"}, one of those that are known. Without a source it is looked for
+  /// where it was last time, and at the other ports.
   Result<std::string> use(std::string_view text) {
-    if (!name_) return bad_input(kNoSource);
     const Result<JsonRequest> request = JsonRequest::parse(text);
     if (!request) return request.error();
     const Result<std::string> file = request->text("file", kMostFileName);
     if (!file) return file.error();
     const Result<KnownArray> known = known_array(*file);
     if (!known) return known.error();
+    if (!name_) {
+      if (Status found = find_device(*known); !found) return found.error();
+    }
     if (name_->kind == live::sources::SourceKind::recording) {
       if (const auto suit = open_suit({.from = name_->text, .model = known->file}, options_); !suit)
         return suit.error();
     }
     if (Status sends = check_frames(known->array); !sends) return sends.error();
-    return serve_as(known->file);
+    return serve_known(*known);
   }
 
-  Result<std::string> serve_as(const std::string& model) {
+  Result<std::string> serve_known(const KnownArray& known) {
+    if (!known.folder) return serve_as({.from = name_->text, .model = known.file});
+    if (name_->kind != live::sources::SourceKind::recording) {
+      if (Status kept = live::sources::write_array_source(known.folder->path, *name_); !kept) return kept.error();
+    }
+    if (known.folder->is_suit()) return serve_as({.suit = known.file});
+    return serve_as({.from = name_->text, .model = known.file});
+  }
+
+  Result<std::string> serve_as(DescribedArray array) {
     const std::lock_guard lock(mutex_);
-    described_ = {.from = name_->text, .model = model};
-    return json_text(nlohmann::json{{"file", model}});
+    described_ = std::move(array);
+    return json_text(nlohmann::json{{"file", described_.suit.empty() ? described_.model : described_.suit}});
+  }
+
+  Status find_device(const KnownArray& known) {
+    if (!known.folder || known.folder->from.empty()) return bad_input(kNoSource);
+    const FrameShape sent = known.array.order.sent({known.array.rows, known.array.cols});
+    Result<SourceName> found = live::sources::find_source(*known.folder, sent, options_);
+    if (!found) return found.error();
+    name_ = *std::move(found);
+    return Done{};
   }
 
   /// Waits for a frame of such an array: a source without one is not served, as its map would stay blank. Those of
@@ -254,7 +263,8 @@ class ArraySetup::Implementation {
     if (!name) return name.error();
     const Result<std::optional<std::uint64_t>> place = request->number("place", "that of a proposal");
     if (!place) return place.error();
-    const std::string file = *name + ".layout.toml";
+    if (Status made = make_array_folder(*name); !made) return made.error();
+    const std::string file = *name + "/layout.toml";
     const Result<std::string> array = write_layout(unread_, *known, place->value_or(0), file);
     if (!array) return array.error();
     const std::string& from = name_->text;
@@ -322,20 +332,18 @@ class ArraySetup::Implementation {
     if (!request) return request.error();
     const Result<std::string> name = request->file_name("name");
     if (!name) return name.error();
-    const learn::arrangement::ArrangementFiles files = learn::arrangement::arrangement_files(*name + ".toml");
-    for (const std::string& file : {files.array, files.positions, files.suit}) {
-      std::error_code ignored;
-      if (std::filesystem::exists(file, ignored)) {
-        return bad_field("name", file + " is there already: choose another name, or take the array from last time");
-      }
-    }
+    const Result<std::string> path = new_array_file(*name, "array.toml");
+    if (!path) return path;
+    const learn::arrangement::ArrangementFiles files = learn::arrangement::arrangement_files(*path);
     const Result<learn::arrangement::Arrangement> made = pressing_->arrange(*name);
     if (!made) return made.error();
+    if (Status folder = make_array_folder(*name); !folder) return folder.error();
     if (Status written = learn::arrangement::write_arrangement(files.array, *made, name_->text); !written)
       return written.error();
+    if (Status kept = live::sources::write_array_source(*name, *name_); !kept) return kept.error();
     close_watches();
     const std::lock_guard lock(mutex_);
-    described_ = {.suit = files.suit};
+    described_ = {.suit = files.suit, .is_new = true};
     return json_text(nlohmann::json{{"file", files.suit}, {"remarks", made->remarks}});
   }
 

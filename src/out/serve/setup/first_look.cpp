@@ -3,37 +3,16 @@
 #include "out/serve/setup/first_look.hpp"
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
 #include <span>
-#include <thread>
 #include <utility>
 
 #include "dermis/bytes/devices/device_source.hpp"
+#include "dermis/live/sources/patience.hpp"
 
 namespace dermis::out::serve {
 namespace {
 
-constexpr std::chrono::milliseconds kPeriod{50};
 constexpr std::size_t kMostKept = 65536;
-
-/// Sets a flag when another is set, or after kPatience.
-class Patience {
- public:
-  explicit Patience(const std::atomic<bool>* stop)
-      : thread_([this, stop](const std::stop_token& token) {
-          const auto end = std::chrono::steady_clock::now() + kPatience;
-          const auto is_over = [&] { return std::chrono::steady_clock::now() >= end || (stop != nullptr && *stop); };
-          while (!token.stop_requested() && !is_over()) std::this_thread::sleep_for(kPeriod);
-          over_ = true;
-        }) {}
-
-  [[nodiscard]] const std::atomic<bool>* over() const noexcept { return &over_; }
-
- private:
-  std::atomic<bool> over_ = false;
-  std::jthread thread_;
-};
 
 /// These bytes, possibly none, made no frame.
 void explain(const live::sources::SourceName& name, std::vector<std::uint8_t> bytes, FirstLook& found) {
@@ -51,8 +30,8 @@ void explain(const live::sources::SourceName& name, std::vector<std::uint8_t> by
 
 Result<FirstLook> first_look(const live::sources::SourceName& name, live::sources::SourceOptions options) {
   FirstLook found;
-  const Patience patience(options.stop);
-  options.stop = patience.over();
+  const live::sources::Patience waits(options.stop, kPatience);
+  options.stop = waits.over();
   const auto log = std::move(options.notice);
   options.notice = [&](const std::string& line) {
     found.message = line;
