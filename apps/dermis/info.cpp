@@ -118,13 +118,18 @@ void print_line(const char* what, const std::string& value) {
   if (!value.empty()) fmt::print("{:<14}{}\n", what, value);
 }
 
+/// "fnv1a64:... (with its file)"
+std::string model_text(const std::string& hash, const std::string& file) {
+  return file.empty() ? hash : hash + " (with its file)";
+}
+
 /// "chest  16x16  1000 frames, 0 lost (with its description), model fnv1a64:..."
 std::string array_text(const bytes::recordings::RecordedArrayInfo& array) {
   std::string text = array.name;
   if (array.shape) text += fmt::format("  {}x{}", array.shape->rows, array.shape->cols);
   text += fmt::format("  {} frames, {} lost", array.frames, array.lost);
   if (!array.array_toml.empty()) text += " (with its description)";
-  if (!array.model_hash.empty()) text += ", model " + array.model_hash;
+  if (!array.model_hash.empty()) text += ", model " + model_text(array.model_hash, array.model_file);
   if (!array.simulation.empty()) text += ", simulated: " + array.simulation;
   return text;
 }
@@ -147,7 +152,7 @@ void print_text(const std::string& format, const FrameFileInfo& info) {
   }
   for (const bytes::recordings::RecordedArrayInfo& array : info.arrays) print_line("array", array_text(array));
   print_line("array", info.notes.name + (info.notes.array_toml.empty() ? "" : " (with its description)"));
-  print_line("model", info.notes.model_hash);
+  print_line("model", model_text(info.notes.model_hash, info.notes.model_file));
   print_line("simulated", info.notes.simulation);
   print_line("software", info.software);
   for (const bytes::recordings::RecordingTopic& topic : info.topics) {

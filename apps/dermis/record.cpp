@@ -17,6 +17,7 @@
 #include "source_options.hpp"
 #include "status_line.hpp"
 #include "stop_flag.hpp"
+#include "typed_marks.hpp"
 #include "unread_bytes.hpp"
 
 namespace dermis::app {
@@ -109,8 +110,12 @@ Status record(const RecordOptions& options) {
 
   recorder.progress = [&](const bytes::devices::RecorderProgress& progress) { line.show(with_queue(progress)); };
   bytes::devices::RecorderProgress last;
-  Status recorded = bytes::devices::record(
-      **source, [&](const FrameShape& shape) { return live::forces::create_recording(output, shape); }, recorder, last);
+  TypedMarks marks(options.out);
+  const auto begin = [&](const FrameShape& shape) {
+    marks.begin();
+    return live::forces::create_recording(output, shape);
+  };
+  Status recorded = bytes::devices::record(**source, begin, recorder, last);
   line.end();
   if (last.frames > 0) {
     print_notice(sum_of(options, last, known->model.has_value()));

@@ -153,10 +153,9 @@ Status run(const RunOptions& options) {
 
 void add_run(Command& command) {
   auto options = std::make_shared<RunOptions>();
-  command
-      .input_file("--model", options->model,
-                  "Model file of 'dermis calibrate', or array.toml where readings are forces")
-      .required();
+  command.input_file("--model", options->model,
+                     "Model file of 'dermis calibrate', or array.toml where readings are forces; without it, the model "
+                     "that the recording holds");
   command
       .input("--in", options->in,
              "Raw counts: frames.csv, a recording or another file of frames, or the URI of a device")

@@ -33,7 +33,7 @@ export class App implements ViewContext {
   readonly display = new DisplayStatistics();
   readonly #views: readonly View[];
   readonly #bar: Bar;
-  readonly #transport = new Transport(this.stream);
+  readonly #transport = new Transport(this.stream, this.live.marks);
   readonly #help = makeHelp();
   readonly #thresholds = makeThresholds(this.stream);
   readonly #take = new TakeDialog(this);
@@ -80,6 +80,7 @@ export class App implements ViewContext {
       makeThreatBanner(this.live.threats, this.stream),
       makeTareBanner(this.stream),
       this.#room,
+      this.#transport.marks.element,
       this.#transport.element,
       this.#help,
       this.#thresholds,
@@ -176,8 +177,14 @@ export class App implements ViewContext {
     else if (event.key === "k") this.#transport.toggle();
     else if (event.key === "j") this.#transport.step(-1);
     else if (event.key === "l") this.#transport.step(1);
+    else if (event.key === "m") this.#markMoment();
     else return false;
     return true;
+  }
+
+  #markMoment(): void {
+    if (this.#transport.isThere) this.#transport.mark();
+    else void this.live.marks.add(this.live.latestS, `mark ${this.live.events.marks.length + 1}`);
   }
 
   #step(by: number): void {

@@ -360,17 +360,23 @@ std::optional<std::string> checksum_note(const std::string& path, const FileForm
   return path + ": is of an older dermis and has no checksum, so damage to it would not show";
 }
 
-Status write_safetensors(const std::string& path, const SafetensorsFile& file) {
+Result<std::string> safetensors_to_bytes(const SafetensorsFile& file, const std::string& name) {
   std::map<std::string, std::string> metadata = file.metadata;
   metadata[kChecksum] = checksum_of(file);
   const std::string header = header_of(in_file_order(file), metadata);
   if (header.size() > kMaxHeaderBytes)
-    return failed("cannot write " + in_quotes(path) + ": its header would be too long");
+    return failed("cannot write " + in_quotes(name) + ": its header would be too long");
+  std::string bytes = length_of(header) + header;
+  for (const ListedTensor& tensor : in_file_order(file)) bytes += bytes_of(*tensor.values);
+  return bytes;
+}
+
+Status write_safetensors(const std::string& path, const SafetensorsFile& file) {
+  const Result<std::string> bytes = safetensors_to_bytes(file, path);
+  if (!bytes) return bytes.error();
   Result<AtomicFile> out = AtomicFile::create(path);
   if (!out) return out.error();
-  out->write(length_of(header));
-  out->write(header);
-  for (const ListedTensor& tensor : in_file_order(file)) out->write(bytes_of(*tensor.values));
+  out->write(*bytes);
   return out->commit();
 }
 

@@ -256,11 +256,9 @@ Result<Model> read_direct_model(const std::string& path) {
   return bad_input(path + ": describes an array, and is no model; a calibration makes one");
 }
 
-}  // namespace
-
-Status write_model(const std::string& path, const Model& model) {
+Result<SafetensorsFile> file_of(const Model& model, const std::string& name) {
   if (!touch::pipeline::is_consistent(model))
-    return failed("cannot write '" + path + "': the model holds values out of range");
+    return failed("cannot write '" + name + "': the model holds values out of range");
   SafetensorsFile file;
   file.metadata["format"] = kModelFormat.name;
   file.metadata["array"] = files::array_to_toml(model.array);
@@ -273,10 +271,8 @@ Status write_model(const std::string& path, const Model& model) {
   if (model.memory) put_memory(file, *model.memory);
   if (model.strip) put_strip(file, *model.strip);
   if (model.supply) put_supply(file, *model.supply);
-  return files::write_safetensors(path, file);
+  return file;
 }
-
-namespace {
 
 Status read_baselines(const SafetensorsFile& file, const std::string& path, TensorReader& reader, Model& model) {
   const std::size_t baselines = metadata_count(file, "baselines");
@@ -293,11 +289,7 @@ Status read_baselines(const SafetensorsFile& file, const std::string& path, Tens
   return Done{};
 }
 
-}  // namespace
-
-Result<Model> read_model(const std::string& path) {
-  if (path.ends_with(".toml")) return read_direct_model(path);
-  const Result<SafetensorsFile> file = files::read_safetensors(path);
+Result<Model> model_of(const Result<SafetensorsFile>& file, const std::string& path) {
   if (!file) return file.error();
   if (metadata(*file, "format") == kFormatWithoutSigma) {
     return bad_input(path + ": is of an older dermis that did not know how sure its forces are; calibrate again");
@@ -329,6 +321,27 @@ Result<Model> read_model(const std::string& path) {
     if (key.starts_with(prefix)) model.provenance[key.substr(prefix.size())] = text;
   }
   return model;
+}
+
+}  // namespace
+
+Status write_model(const std::string& path, const Model& model) {
+  const Result<SafetensorsFile> file = file_of(model, path);
+  return file ? files::write_safetensors(path, *file) : Status(file.error());
+}
+
+Result<std::string> model_to_bytes(const Model& model) {
+  const Result<SafetensorsFile> file = file_of(model, model.array.name);
+  return file ? files::safetensors_to_bytes(*file, model.array.name) : Result<std::string>(file.error());
+}
+
+Result<Model> read_model(const std::string& path) {
+  if (path.ends_with(".toml")) return read_direct_model(path);
+  return model_of(files::read_safetensors(path), path);
+}
+
+Result<Model> model_from_bytes(std::string_view bytes, const std::string& name) {
+  return model_of(files::safetensors_from_bytes(bytes, name), name);
 }
 
 }  // namespace dermis::bytes::models

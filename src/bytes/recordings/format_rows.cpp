@@ -96,6 +96,7 @@ Sink create_mcap(const std::string& path, FrameShape shape, const FrameNotes& no
   options.array_toml = notes.array_toml;
   options.model_hash = notes.model_hash;
   options.simulation = notes.simulation;
+  options.model_file = notes.model_file;
   options.live = false;
   return as<FrameSink>(RecordingWriter::create(path, shape, options));
 }

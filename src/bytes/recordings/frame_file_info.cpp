@@ -33,7 +33,7 @@ Result<FrameFileInfo> info_of_recording(const std::string& path) {
   } else {
     const RecordedArrayInfo& array = recording->arrays.front();
     info.shape = array.shape;
-    info.notes = {array.name, array.array_toml, array.model_hash, array.simulation};
+    info.notes = {array.name, array.array_toml, array.model_hash, array.simulation, array.model_file};
   }
   info.compression = recording->compression;
   info.software = recording->software_version;

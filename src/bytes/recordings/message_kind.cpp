@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "bytes/recordings/message_kind.hpp"
 
+#include "dermis/bytes/ros_messages/live_messages.hpp"
 #include "dermis/bytes/ros_messages/ros_messages.hpp"
 
 namespace dermis::bytes::recordings {
@@ -14,6 +15,8 @@ MessageKind kind_of(const McapChannel& channel) {
   }
   if (channel.schema_name == ros_messages::acquisition_type().name) return MessageKind::acquisition;
   if (channel.schema_name == ros_messages::temperature_type().name) return MessageKind::temperature;
+  if (channel.schema_name == ros_messages::grid_type().name) return MessageKind::force;
+  if (channel.schema_name == ros_messages::contacts_type().name) return MessageKind::contacts;
   return MessageKind::none;
 }
 

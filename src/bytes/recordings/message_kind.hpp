@@ -13,7 +13,7 @@
 namespace dermis::bytes::recordings {
 
 /// The meaning of a topic's messages for the frames; what holds counts is an image, also of sensors without places.
-enum class MessageKind : std::uint8_t { none, image, acquisition, temperature, sensors };
+enum class MessageKind : std::uint8_t { none, image, acquisition, temperature, sensors, force, contacts };
 
 /// Last part of the topic that carries the temperatures of several sensors. They are an image of one row or, with one
 /// a taxel, of the array's shape.

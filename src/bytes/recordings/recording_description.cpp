@@ -63,9 +63,13 @@ std::vector<RecordingDescription> descriptions_of(const McapReader& mcap) {
   std::map<std::string, const McapAttachment*> attachments;
   for (const McapAttachment& attachment : mcap.attachments()) attachments[attachment.name] = &attachment;
   for (RecordingDescription& description : descriptions) {
-    const std::string name = descriptions.size() == 1 ? kArrayAttachment : array_attachment(description.name);
-    const auto found = attachments.find(name);
-    if (found != attachments.end()) description.array_toml = found->second->data;
+    const std::string array = descriptions.size() == 1 ? "" : description.name;
+    const auto data = [&](const char* of) {
+      const auto found = attachments.find(attachment_name(of, array));
+      return found == attachments.end() ? std::string() : found->second->data;
+    };
+    description.array_toml = data(kArrayAttachment);
+    description.model_file = data(kModelAttachment);
   }
   return descriptions;
 }

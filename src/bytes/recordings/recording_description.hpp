@@ -21,6 +21,7 @@ struct RecordingDescription {
   std::string array_toml;
   std::string model_hash;
   std::string simulation;
+  std::string model_file;
   std::string software;
 };
 

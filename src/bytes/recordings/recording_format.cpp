@@ -20,8 +20,8 @@ std::string topic_part(const std::string& name) {
   return part;
 }
 
-std::string array_attachment(const std::string& name) {
-  return topic_part(name) + '/' + kArrayAttachment;
+std::string attachment_name(const char* of, const std::string& array) {
+  return array.empty() ? of : topic_part(array) + '/' + of;
 }
 
 }  // namespace dermis::bytes::recordings

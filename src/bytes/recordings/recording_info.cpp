@@ -40,6 +40,7 @@ RecordedArrayInfo info_of(const RecordingDescription& description) {
   info.array_toml = description.array_toml;
   info.model_hash = description.model_hash;
   info.simulation = description.simulation;
+  info.model_file = description.model_file;
   info.shape = description.shape;
   return info;
 }

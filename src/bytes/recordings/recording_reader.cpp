@@ -115,7 +115,7 @@ bool RecordingReader::complete() const noexcept {
 
 FrameNotes RecordingReader::notes() const {
   const RecordedArray& array = suit_->arrays()[array_];
-  return {array.name, array.array_toml, array.model_hash, array.simulation};
+  return {array.name, array.array_toml, array.model_hash, array.simulation, array.model_file};
 }
 
 }  // namespace dermis::bytes::recordings

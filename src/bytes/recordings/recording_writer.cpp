@@ -12,9 +12,11 @@ RecordingWriter::~RecordingWriter() = default;
 
 Result<std::unique_ptr<RecordingWriter>> RecordingWriter::create(const std::string& path, const FrameShape& shape,
                                                                  const RecordingOptions& options) {
-  Result<std::unique_ptr<SuitRecordingWriter>> suit = SuitRecordingWriter::create(
-      path, {{options.name, shape, options.array_toml, options.model_hash, options.pitch, options.simulation}},
-      {options.compression, options.live});
+  Result<std::unique_ptr<SuitRecordingWriter>> suit =
+      SuitRecordingWriter::create(path,
+                                  {{options.name, shape, options.array_toml, options.model_hash, options.pitch,
+                                    options.simulation, options.model_file}},
+                                  {options.compression, options.live});
   if (!suit) return suit.error();
   return std::unique_ptr<RecordingWriter>(new RecordingWriter(*std::move(suit)));
 }

@@ -74,6 +74,7 @@ class SuitRecordingReader::Implementation {
   [[nodiscard]] const std::vector<RecordedArray>& arrays() const noexcept { return arrays_; }
   void read_only(std::size_t array) { only_ = array; }
   [[nodiscard]] Result<bool> next(std::size_t& array, RawFrame& frame);
+  void hear_results(std::function<void(const RecordedResult&)> hear) { hear_ = std::move(hear); }
   void seek(Nanos time);
   [[nodiscard]] bool complete() const noexcept { return mcap_->complete(); }
 
@@ -103,6 +104,7 @@ class SuitRecordingReader::Implementation {
   std::vector<BagReading> readings_;  ///< Of that message.
   std::size_t next_reading_ = 0;
   std::optional<std::size_t> only_;
+  std::function<void(const RecordedResult&)> hear_;
   std::uint64_t begin_time_ = 0;  ///< Frames of earlier log times are left out.
 
   RawFrame first_;  ///< Read by begin().
@@ -133,6 +135,7 @@ void SuitRecordingReader::Implementation::describe() {
     arrays_[i].array_toml = description.array_toml;
     arrays_[i].model_hash = description.model_hash;
     arrays_[i].simulation = description.simulation;
+    arrays_[i].model_file = description.model_file;
     if (count > 1) read_[i].shape = description.shape;
     if (count > 1) folders_.emplace(description.folder, i);
   }
@@ -224,6 +227,10 @@ Status SuitRecordingReader::Implementation::read_other(const Use& use, const Mca
     const Result<FrameShape> taken = ros_messages::decode_image(message.data, array.sensors);
     if (!taken) return error(message, taken.error());
     array.sensors_time = message.log_time;
+  } else if (hear_) {
+    const bool is_force = use.kind == MessageKind::force;
+    hear_({is_force ? RecordedResult::Kind::force : RecordedResult::Kind::contacts, use.array,
+           time_of(message.log_time), message.data});
   }
   return Done{};
 }
@@ -354,6 +361,10 @@ void SuitRecordingReader::read_only(std::size_t array) {
 
 Result<bool> SuitRecordingReader::next(std::size_t& array, RawFrame& frame) {
   return implementation_->next(array, frame);
+}
+
+void SuitRecordingReader::hear_results(std::function<void(const RecordedResult&)> hear) {
+  implementation_->hear_results(std::move(hear));
 }
 
 void SuitRecordingReader::seek(Nanos time) {

@@ -30,6 +30,8 @@ constexpr std::size_t kSuitChunkBytes = std::size_t{8} << 20U;  ///< Each chunk 
 
 constexpr std::size_t kMostWaitingBytes = std::size_t{64} << 20U;  ///< For a disk that stalls.
 
+constexpr std::size_t kShareOfResults = 8;  ///< Of that room, in which results may wait.
+
 constexpr std::chrono::seconds kSynchronisePeriod{1};
 
 /// An array with what was written of it.
@@ -124,10 +126,12 @@ SuitRecordingWriter::Implementation::~Implementation() {
 
 void SuitRecordingWriter::Implementation::describe(const RecordedArray& array) {
   mcap_->add_metadata(metadata_of(array));
-  if (array.array_toml.empty()) return;
-  const bool is_only_one = arrays_.size() == 1;
-  mcap_->add_attachment(
-      {is_only_one ? kArrayAttachment : array_attachment(array.name), "application/toml", array.array_toml});
+  const std::string name = arrays_.size() == 1 ? "" : array.name;
+  const auto attach = [&](const char* of, const char* type, const std::string& data) {
+    if (!data.empty()) mcap_->add_attachment({attachment_name(of, name), type, data});
+  };
+  attach(kArrayAttachment, "application/toml", array.array_toml);
+  attach(kModelAttachment, "application/octet-stream", array.model_file);
 }
 
 /// The messages of the frame go into the chunk.
@@ -226,7 +230,7 @@ Result<bool> SuitRecordingWriter::Implementation::try_write(std::size_t index, c
 }
 
 Result<bool> SuitRecordingWriter::Implementation::try_write(const RecordedEvent& event) {
-  return try_to_add(event, 2 * most_chunks());
+  return try_to_add(event, event.is_of_frame ? most_chunks() / kShareOfResults : 2 * most_chunks());
 }
 
 template <typename Written>

@@ -27,6 +27,7 @@ FUNCTIONS = {
     "transforms_type": "tf2_msgs/TFMessage",
     "classification_type": "vision_msgs/Classification",
     "threat_type": "dermis_msgs/Threat",
+    "mark_type": "dermis_msgs/Mark",
     "wrench_type": "geometry_msgs/WrenchStamped",
 }
 

@@ -26,4 +26,18 @@ std::span<std::uint8_t> write_grid(const GridPlace& place, std::span<const GridF
   return writer.write_bytes(place.shape.taxel_count() * cell_bytes);
 }
 
+void read_taxels(std::span<const std::uint8_t> cells, std::vector<float>& values, std::vector<float>& sigmas,
+                 std::vector<TaxelStatus>& taxels) {
+  const std::size_t count = cells.size() / kCellBytes;
+  values.resize(count);
+  sigmas.resize(count);
+  taxels.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::span<const std::uint8_t> cell = cells.subspan(i * kCellBytes, kCellBytes);
+    std::memcpy(&values[i], cell.data(), sizeof(float));
+    std::memcpy(&sigmas[i], cell.data() + kSigmaOffset, sizeof(float));
+    taxels[i] = static_cast<TaxelStatus>(cell[kCellStatusOffset]);
+  }
+}
+
 }  // namespace dermis::bytes::ros_messages

@@ -60,4 +60,8 @@ void write_taxels(const GridPlace& place, std::span<const GridField> fields, con
   }
 }
 
+/// The cells of write_taxels().
+void read_taxels(std::span<const std::uint8_t> cells, std::vector<float>& values, std::vector<float>& sigmas,
+                 std::vector<TaxelStatus>& taxels);
+
 }  // namespace dermis::bytes::ros_messages

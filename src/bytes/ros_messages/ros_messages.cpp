@@ -191,6 +191,20 @@ Result<std::string_view> decode_text(std::span<const std::uint8_t> message) {
   return text;
 }
 
+void encode_mark(const Mark& mark, std::string_view frame_id, std::vector<std::uint8_t>& message) {
+  CdrWriter writer(message);
+  write_header(writer, mark.time, frame_id);
+  for (const std::string* text : {&mark.label, &mark.by, &mark.event}) writer.write_text(*text);
+}
+
+Result<Mark> decode_mark(std::span<const std::uint8_t> message) {
+  CdrReader reader(message);
+  Mark mark{.time = read_header(reader)};
+  for (std::string* text : {&mark.label, &mark.by, &mark.event}) *text = reader.read_text();
+  if (!reader.good()) return not_whole(mark_type());
+  return mark;
+}
+
 Result<FrameShape> decode_tactile_state(std::span<const std::uint8_t> message, RawFrame& frame) {
   CdrReader reader(message);
   frame.time = read_header(reader);
@@ -299,6 +313,30 @@ void encode_grid(const ForceFrame& frame, const FrameShape& shape, const Pitch& 
                  std::vector<std::uint8_t>& message) {
   write_taxels({frame.time, shape, pitch, frame_id}, kGridFields, frame.newtons, frame.sigma_newtons, frame.taxels,
                message);
+}
+
+Result<FrameShape> decode_grid(std::span<const std::uint8_t> message, ForceFrame& frame) {
+  constexpr int kNumbersOfPose = 7;
+  CdrReader reader(message);
+  frame.time = read_header(reader);
+  for (int k = 0; k < kNumbersOfPose; ++k) static_cast<void>(reader.read<double>());
+  const std::size_t cols = reader.read<std::uint32_t>();
+  for (int k = 0; k < 2; ++k) static_cast<void>(reader.read<double>());  // pitches
+  const std::size_t row_bytes = reader.read<std::uint32_t>();
+  const std::size_t cell_bytes = reader.read<std::uint32_t>();
+  bool has_fields = reader.read<std::uint32_t>() == kGridFields.size();
+  for (const GridField& field : kGridFields) {
+    if (!has_fields) break;
+    has_fields = reader.read_text() == field.name && reader.read<std::uint32_t>() == field.offset;
+    has_fields = reader.read<std::uint8_t>() == static_cast<std::uint8_t>(field.type) && has_fields;
+  }
+  const std::span<const std::uint8_t> cells = reader.read_bytes();
+  const bool is_ours = reader.good() && has_fields && cell_bytes == kCellBytes && cols >= 1 && cols <= kMaxLines &&
+                       row_bytes == cols * cell_bytes && !cells.empty() && cells.size() % row_bytes == 0 &&
+                       cells.size() / row_bytes <= kMaxLines;
+  if (!is_ours) return not_whole(grid_type());
+  read_taxels(cells, frame.newtons, frame.sigma_newtons, frame.taxels);
+  return FrameShape{cells.size() / row_bytes, cols};
 }
 
 void encode_frame_status(const ForceFrame& frame, std::vector<std::uint8_t>& message) {

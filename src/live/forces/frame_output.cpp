@@ -13,6 +13,7 @@
 #include "dermis/bytes/files/array_toml.hpp"
 #include "dermis/bytes/files/content_hash.hpp"
 #include "dermis/bytes/files/forces_csv.hpp"
+#include "dermis/bytes/models/model_file.hpp"
 #include "dermis/bytes/recordings/frame_files.hpp"
 #include "dermis/bytes/recordings/recording.hpp"
 #include "dermis/touch/pipeline/frame_troubles.hpp"
@@ -82,6 +83,8 @@ Result<bytes::recordings::FrameNotes> notes_of(const FrameOutput& output) {
     const Result<std::string> hash = bytes::files::content_hash(output.model_path);
     if (!hash) return hash.error();
     notes.model_hash = *hash;
+    Result<std::string> file = bytes::models::model_to_bytes(*output.model);
+    if (file && file->size() <= bytes::recordings::kMostModelBytes) notes.model_file = *std::move(file);
   }
   return notes;
 }
@@ -94,6 +97,7 @@ Result<std::unique_ptr<FrameSink>> create_live_recording(const FrameOutput& outp
   options.array_toml = notes.array_toml;
   options.model_hash = notes.model_hash;
   options.simulation = notes.simulation;
+  options.model_file = notes.model_file;
   if (output.array != nullptr) options.pitch = {output.array->row_pitch_m, output.array->col_pitch_m};
   std::optional<touch::pipeline::Pipeline> pipeline;
   if (output.model != nullptr) {

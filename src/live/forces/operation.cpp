@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "dermis/bytes/models/model_file.hpp"
+#include "dermis/bytes/recordings/frame_files.hpp"
 
 namespace dermis::live::forces {
 
@@ -20,9 +21,21 @@ Result<ModelAtWork> ModelAtWork::read(const std::string& path) {
   return create(*std::move(model));
 }
 
+Result<ModelAtWork> ModelAtWork::read_recorded(const std::string& from) {
+  const Result<sources::SourceName> name = sources::SourceName::parse(from);
+  if (!name) return name.error();
+  if (name->kind != sources::SourceKind::recording) return bad_input("'" + from + "': holds no model: give --model");
+  const Result<bytes::recordings::FrameNotes> notes = bytes::recordings::read_frame_notes(from);
+  if (!notes) return notes.error();
+  if (notes->model_file.empty()) return bad_input("'" + from + "': was recorded without a model: give --model");
+  Result<touch::pipeline::Model> model = bytes::models::model_from_bytes(notes->model_file, from + ": its model");
+  if (!model) return model.error();
+  return create(*std::move(model));
+}
+
 Result<std::unique_ptr<Operation>> open_operation(const std::string& model, const std::string& from,
                                                   sources::SourceOptions options) {
-  Result<ModelAtWork> work = ModelAtWork::read(model);
+  Result<ModelAtWork> work = model.empty() ? ModelAtWork::read_recorded(from) : ModelAtWork::read(model);
   if (!work) return work.error();
   options.array = &work->model.array;
   Result<std::unique_ptr<FrameSource>> frames = sources::open_source(from, options);

@@ -193,8 +193,8 @@ void ArrayWorker::find_contacts(const RawFrame& frame) {
   if (!options_.on_result) return;
   const Nanos arrival = frame.acquisition.arrival_steady;
   const Nanos latency = arrival > Nanos{} ? now - arrival : Nanos{};
-  options_.on_result(
-      {index_, frame, pipeline_->conductance(), results_.force, results_.report, results_.contacts, latency});
+  options_.on_result({index_, frame, pipeline_->conductance(), results_.force, results_.report, results_.contacts,
+                      latency, pipeline_->last_tare().number});
 }
 
 /// A frame of a device that comes a little late is rejected and no more.

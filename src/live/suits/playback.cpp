@@ -7,12 +7,12 @@
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
-#include <deque>
 #include <mutex>
 #include <optional>
 #include <utility>
 
 #include "dermis/bytes/recordings/recording.hpp"
+#include "live/suits/played_track.hpp"
 
 namespace dermis::live::suits {
 namespace {
@@ -21,66 +21,42 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kSlowest = 0.01;
 constexpr double kFastest = 100.0;
-constexpr Nanos kReadAhead = std::chrono::milliseconds(100);  // of the time that passes, not of the recording
-constexpr Nanos kFirstAhead = std::chrono::seconds(2);        // of the recording, for the first frames after a seek
-constexpr std::size_t kMostWaiting = 1024;                    // frames of an array
-constexpr Nanos kMostLate = std::chrono::milliseconds(200);   // then the clock waits
-constexpr Nanos kRatePeriod = std::chrono::seconds(1);
+constexpr Nanos kReadAhead = std::chrono::milliseconds(100);     // of the time that passes, not of the recording
+constexpr Nanos kFirstAhead = std::chrono::seconds(2);           // of the recording, for the first frames after a seek
+constexpr std::size_t kMostWaiting = 1024;                       // frames of an array
+constexpr Nanos kMostLate = std::chrono::milliseconds(200);      // then the clock waits
+constexpr Nanos kResultsAfter = std::chrono::milliseconds(200);  // so much later than its frame a result may be
 
 Nanos scaled(Nanos time, double factor) {
   return Nanos(std::llround(static_cast<double>(time.count()) * factor));
-}
-
-/// Frames of an array that were read and wait for their moment.
-struct Track {
-  struct Waiting {
-    Nanos time{};  ///< By which it is played.
-    RawFrame frame;
-  };
-  bool is_used = false;  ///< Somebody takes the frames.
-  std::deque<Waiting> waiting;
-  bool is_shown_at_once = true;  ///< The next frame: after the beginning and after a seek.
-  std::condition_variable changed;
-  std::optional<RawFrame> shown;  ///< The last frame that was given.
-  bool is_shown_again = false;    ///< It is to be given once more.
-
-  SourceStatistics statistics;
-  Clock::time_point rate_begin = Clock::now();
-  std::uint64_t rate_frames = 0;
-
-  void count(const RawFrame& frame);
-};
-
-void Track::count(const RawFrame& frame) {
-  ++statistics.frames;
-  ++rate_frames;
-  statistics.lost_frames += frame.acquisition.lost_before;
-  const Clock::time_point now = Clock::now();
-  if (now - rate_begin < kRatePeriod) return;
-  statistics.rate_hz = static_cast<double>(rate_frames) / std::chrono::duration<double>(now - rate_begin).count();
-  rate_frames = 0;
-  rate_begin = now;
 }
 
 }  // namespace
 
 class Playback::Implementation {
  public:
-  Implementation(std::unique_ptr<bytes::recordings::SuitRecordingReader> reader,
+  Implementation(std::string path, std::unique_ptr<bytes::recordings::SuitRecordingReader> reader,
                  std::vector<bytes::recordings::RecordedArray> arrays,
                  std::vector<std::optional<std::size_t>> track_of_array, Nanos start, Nanos end)
-      : arrays(std::move(arrays)),
+      : path(std::move(path)),
+        arrays(std::move(arrays)),
         start(start),
         end(end),
         reader_(std::move(reader)),
         track_of_array_(std::move(track_of_array)),
         tracks_(this->arrays.size()),
-        position_(start) {}
+        position_(start) {
+    reader_->hear_results([this](const bytes::recordings::RecordedResult& result) { keep(result); });
+    reader_->seek(start);
+  }
 
+  const std::string path;
   const std::vector<bytes::recordings::RecordedArray> arrays;
   const Nanos start;
   const Nanos end;
 
+  [[nodiscard]] PlayedResults results(std::size_t track, Nanos time) const;
+  [[nodiscard]] bool has_results(std::size_t track) const;
   void set_used(std::size_t track, bool is_used);
   [[nodiscard]] Result<bool> next(std::size_t track, RawFrame& frame);
   [[nodiscard]] SourceStatistics statistics(std::size_t track) const;
@@ -96,15 +72,19 @@ class Playback::Implementation {
   [[nodiscard]] Clock::time_point moment_of(Nanos time) const;
   void seek(Nanos time);
   [[nodiscard]] Status read_ahead();
+  [[nodiscard]] Status read_one();
+  [[nodiscard]] Status read_results_of(const PlayedTrack& track);
+  void keep(const bytes::recordings::RecordedResult& result);
+  [[nodiscard]] bool is_full() const;
   [[nodiscard]] bool may_read() const;
-  void wait(Track& track, std::unique_lock<std::mutex>& lock);
-  void pop(Track& track, RawFrame& frame);
+  void wait(PlayedTrack& track, std::unique_lock<std::mutex>& lock);
+  void pop(PlayedTrack& track, RawFrame& frame);
   void wake_all();
 
   mutable std::mutex mutex_;  ///< Of all that follows.
   std::unique_ptr<bytes::recordings::SuitRecordingReader> reader_;
   std::vector<std::optional<std::size_t>> track_of_array_;
-  std::vector<Track> tracks_;
+  std::vector<PlayedTrack> tracks_;
   Status read_status_ = Done{};
   bool has_read_all_ = false;
   bool is_stopped_ = false;
@@ -137,51 +117,87 @@ Clock::time_point Playback::Implementation::moment_of(Nanos time) const {
 }
 
 void Playback::Implementation::wake_all() {
-  for (Track& track : tracks_) track.changed.notify_all();
+  for (PlayedTrack& track : tracks_) track.changed.notify_all();
 }
 
 void Playback::Implementation::seek(Nanos time) {
   reader_->seek(time);
   has_read_all_ = false;
   read_until_ = time;
-  for (Track& track : tracks_) {
+  for (PlayedTrack& track : tracks_) {
     track.waiting.clear();
+    track.results.clear();
     track.is_shown_at_once = true;
   }
 }
 
 /// Not so far that one array without frames has all of the others in memory.
+bool Playback::Implementation::is_full() const {
+  return std::any_of(tracks_.begin(), tracks_.end(),
+                     [](const PlayedTrack& track) { return track.waiting.size() >= kMostWaiting; });
+}
+
 bool Playback::Implementation::may_read() const {
-  const bool is_full = std::any_of(tracks_.begin(), tracks_.end(),
-                                   [](const Track& track) { return track.waiting.size() >= kMostWaiting; });
-  const bool is_first_awaited = std::any_of(tracks_.begin(), tracks_.end(), [](const Track& track) {
+  const bool is_first_awaited = std::any_of(tracks_.begin(), tracks_.end(), [](const PlayedTrack& track) {
     return track.is_used && track.is_shown_at_once && track.waiting.empty();
   });
   const Nanos ahead = scaled(kReadAhead, speed_);
-  return !has_read_all_ && !is_full && read_until_ <= now() + (is_first_awaited ? std::max(kFirstAhead, ahead) : ahead);
+  return !has_read_all_ && !is_full() &&
+         read_until_ <= now() + (is_first_awaited ? std::max(kFirstAhead, ahead) : ahead);
 }
 
 Status Playback::Implementation::read_ahead() {
   while (may_read()) {
-    Track::Waiting read;
-    std::size_t array = 0;
-    const Result<bool> more = reader_->next(array, read.frame);
-    if (!more) return more.error();
-    has_read_all_ = !*more;
-    if (has_read_all_) continue;
-    read.time = std::clamp(read.frame.time, start, end);
-    read_until_ = std::max(read_until_, read.time);
-    if (!track_of_array_[array]) continue;
-    Track& track = tracks_[*track_of_array_[array]];
-    if (!track.is_used) continue;
-    track.waiting.push_back(std::move(read));
-    track.changed.notify_all();
+    if (Status read = read_one(); !read) return read;
   }
   return Done{};
 }
 
+Status Playback::Implementation::read_one() {
+  PlayedTrack::Waiting read;
+  std::size_t array = 0;
+  const Result<bool> more = reader_->next(array, read.frame);
+  if (!more) return more.error();
+  has_read_all_ = !*more;
+  if (has_read_all_) return Done{};
+  read.time = std::clamp(read.frame.time, start, end);
+  read_until_ = std::max(read_until_, read.time);
+  if (!track_of_array_[array]) return Done{};
+  PlayedTrack& track = tracks_[*track_of_array_[array]];
+  if (!track.is_used) return Done{};
+  track.waiting.push_back(std::move(read));
+  track.changed.notify_all();
+  return Done{};
+}
+
+/// Results stand behind their frame in a recording of a server.
+Status Playback::Implementation::read_results_of(const PlayedTrack& track) {
+  const Nanos until = track.waiting.front().time + kResultsAfter;
+  while (!has_read_all_ && !is_full() && read_until_ < until) {
+    if (Status read = read_one(); !read) return read;
+  }
+  return Done{};
+}
+
+void Playback::Implementation::keep(const bytes::recordings::RecordedResult& result) {
+  if (!track_of_array_[result.array]) return;
+  PlayedTrack& track = tracks_[*track_of_array_[result.array]];
+  if (!track.is_used) return;
+  track.keep(result);
+}
+
+PlayedResults Playback::Implementation::results(std::size_t track, Nanos time) const {
+  const std::scoped_lock lock(mutex_);
+  return tracks_[track].results_of(time);
+}
+
+bool Playback::Implementation::has_results(std::size_t track) const {
+  const std::scoped_lock lock(mutex_);
+  return tracks_[track].has_results;
+}
+
 /// Until the next frame is due, or there may be one; control() and stop() wake.
-void Playback::Implementation::wait(Track& track, std::unique_lock<std::mutex>& lock) {
+void Playback::Implementation::wait(PlayedTrack& track, std::unique_lock<std::mutex>& lock) {
   if (!track.waiting.empty() && plays_) {
     const Clock::time_point due = moment_of(track.waiting.front().time);
     track.changed.wait_until(lock, due);
@@ -192,10 +208,11 @@ void Playback::Implementation::wait(Track& track, std::unique_lock<std::mutex>& 
   }
 }
 
-void Playback::Implementation::pop(Track& track, RawFrame& frame) {
+void Playback::Implementation::pop(PlayedTrack& track, RawFrame& frame) {
   const Nanos time = track.waiting.front().time;
   std::swap(frame, track.waiting.front().frame);
   track.waiting.pop_front();
+  track.forget_results(time);
   if (plays_ && !track.is_shown_at_once && now() - time > scaled(kMostLate, speed_)) set_clock(time, plays_);
   track.is_shown_at_once = false;
   track.is_shown_again = false;
@@ -206,9 +223,10 @@ void Playback::Implementation::pop(Track& track, RawFrame& frame) {
 
 Result<bool> Playback::Implementation::next(std::size_t index, RawFrame& frame) {
   std::unique_lock lock(mutex_);
-  Track& track = tracks_[index];
+  PlayedTrack& track = tracks_[index];
   while (!is_stopped_) {
     if (track.waiting.empty() && read_status_) read_status_ = read_ahead();
+    if (!track.waiting.empty() && read_status_) read_status_ = read_results_of(track);
     if (!read_status_) return read_status_.error();
     if (!track.waiting.empty()) {
       const bool is_due = track.is_shown_at_once || (plays_ && moment_of(track.waiting.front().time) <= Clock::now());
@@ -260,7 +278,7 @@ PlaybackStatus Playback::Implementation::control(const PlaybackCommand& command)
 
 void Playback::Implementation::show_again() {
   const std::scoped_lock lock(mutex_);
-  for (Track& track : tracks_) track.is_shown_again = track.shown.has_value();
+  for (PlayedTrack& track : tracks_) track.is_shown_again = track.shown.has_value();
   wake_all();
 }
 
@@ -315,11 +333,15 @@ Result<std::unique_ptr<Playback>> Playback::open(const std::string& path) {
   }
   const Nanos end = info->start_utc + Nanos(std::llround(1e9 * info->duration_s));
   return std::unique_ptr<Playback>(new Playback(std::make_shared<Implementation>(
-      *std::move(reader), std::move(arrays), std::move(tracks), info->start_utc, end)));
+      place.path, *std::move(reader), std::move(arrays), std::move(tracks), info->start_utc, end)));
 }
 
 const std::vector<bytes::recordings::RecordedArray>& Playback::arrays() const noexcept {
   return implementation_->arrays;
+}
+
+const std::string& Playback::path() const noexcept {
+  return implementation_->path;
 }
 
 Nanos Playback::start() const noexcept {
@@ -333,6 +355,14 @@ Nanos Playback::end() const noexcept {
 std::unique_ptr<FrameSource> Playback::source(std::size_t array) {
   assert(array < arrays().size());
   return std::make_unique<Source>(implementation_, array);
+}
+
+PlayedResults Playback::results(std::size_t array, Nanos time) const {
+  return implementation_->results(array, time);
+}
+
+bool Playback::has_results(std::size_t array) const {
+  return implementation_->has_results(array);
 }
 
 PlaybackStatus Playback::control(const PlaybackCommand& command) {

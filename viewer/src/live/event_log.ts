@@ -14,25 +14,19 @@ export interface TimedEvent {
 
 const MOST_EVENTS = 1000;
 
-/** The events, the oldest first. */
+/** The events, the oldest first, but for marks: those of a recording are known before their moment. */
 export class EventLog {
   readonly events: TimedEvent[] = [];
-  #marks = 0;
+  marks: readonly TimedEvent[] = [];
 
   add(kind: EventKind, atS: number, words: string, array = ""): void {
     this.events.push({ kind, atS, words, array });
     if (this.events.length > MOST_EVENTS) this.events.shift();
   }
 
-  /** The user's own. */
-  mark(atS: number): void {
-    this.#marks += 1;
-    this.add("mark", atS, `mark ${this.#marks}`);
-  }
-
-  /** A recording is played from this time on anew: what it holds comes again, the marks of the user stay. */
+  /** A recording is played from this time on anew: what it holds comes again. */
   rewind(toS: number): void {
-    const kept = this.events.filter(({ kind, atS }) => kind === "mark" || atS < toS);
+    const kept = this.events.filter(({ atS }) => atS < toS);
     this.events.splice(0, this.events.length, ...kept);
   }
 }

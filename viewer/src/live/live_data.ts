@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { ContactPhase, ContactsFrame, readContacts, readContactsArray } from "../messages/contacts";
+import type { Mark } from "../messages/mark";
 import { type HealthStatus, readHealth, readStatistics, type Statistics } from "../messages/statistics";
 import { readThreat, stands, type Threat } from "../messages/threat";
 import { Signal } from "../signal";
@@ -10,6 +11,7 @@ import { ContactSlots, Trail } from "./contact_slots";
 import { Delay } from "./delay";
 import { EventLog } from "./event_log";
 import { ForceHistory } from "./force_history";
+import { Marks } from "./marks";
 import { RegionForce } from "./region_force";
 import { ThreatBoard } from "./threat_board";
 
@@ -48,6 +50,7 @@ export class LiveData {
   readonly statistics = new Signal<Statistics | undefined>(undefined);
   readonly threats = new ThreatBoard();
   readonly events = new EventLog();
+  readonly marks: Marks;
   readonly region: RegionForce;
   readonly health = new Signal<readonly HealthStatus[]>([]);
   /** Delay of the frames, also while the picture is paused. */
@@ -56,13 +59,14 @@ export class LiveData {
   latestS = 0;
   version = 0;
   #names: string[] = [];
-  #tare: unknown;
   readonly #held: (() => void)[] = [];
 
   constructor(stream: Stream, suit: Suit, paused: Signal<boolean>) {
     const subscribe = (topic: string, handler: (message: DataView) => void): (() => void) =>
       stream.subscribe(topic, (message) => (paused.value ? this.#hold(() => handler(message)) : handler(message)));
     this.region = new RegionForce(subscribe);
+    this.marks = new Marks(stream);
+    this.marks.all.follow((marks) => this.#logMarks(marks));
     suit.description.follow(({ arrays }) => this.#restart(arrays.map(({ name }) => name)));
     subscribe("/contacts", (message) => this.#receive(message));
     stream.subscribe("/contacts", (_, logTimeS) => this.delay.add(logTimeS, performance.now()));
@@ -73,7 +77,6 @@ export class LiveData {
       this.threats.restart();
       this.delay.restart();
     });
-    stream.parameters.follow((parameters) => this.#seeTare(parameters.get("/tare")));
     stream.subscribe("/statistics", (message) => (this.statistics.value = readStatistics(message)));
     stream.subscribe("/health", (message) => (this.health.value = readHealth(message)));
   }
@@ -99,11 +102,14 @@ export class LiveData {
     );
   }
 
-  /** The first value is the present state, not a change. */
-  #seeTare(tare: unknown): void {
-    if (typeof tare !== "boolean" || tare === this.#tare) return;
-    if (this.#tare !== undefined) this.events.add("tare", this.latestS, tare ? "tare" : "tare taken back");
-    this.#tare = tare;
+  #logMarks(marks: readonly Mark[]): void {
+    this.events.marks = marks.map(({ atS, label, event }) => ({
+      kind: event === "tare" ? "tare" : "mark",
+      atS,
+      words: label === "" ? "the label ends" : label,
+      array: "",
+    }));
+    this.version += 1;
   }
 
   #receive(message: DataView): void {

@@ -11,7 +11,7 @@ const KEYS: readonly (readonly [string, string])[] = [
   ["S", "recordings, the last minute, pictures"],
   ["I", "interpolate between taxels"],
   ["C", "show contacts"],
-  ["M", "time: mark this moment"],
+  ["M", "mark this moment"],
   ["Arrows", "on the maps: move the cursor; on the suit: turn it"],
   ["Enter", "on the maps: pin the taxel, or set a corner of the region"],
   ["+  \u2212  Home", "on the suit: nearer, farther, all of it"],

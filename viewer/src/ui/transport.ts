@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { button, element, setHidden, setText } from "../dom";
-import { clock } from "../format";
+import { clock, errorText } from "../format";
+import type { Marks } from "../live/marks";
 import { PlaybackClock } from "../stream/playback_clock";
 import { type ServerInfo, secondsOf } from "../stream/protocol";
 import type { Stream } from "../stream/stream";
+import { MarkList } from "./mark_list";
 import "./transport.css";
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 8];
@@ -14,7 +16,11 @@ const STEP_S = 1;
 /** Play, pause, speed and place of a recording that is served. */
 export class Transport {
   readonly element: HTMLElement;
+  readonly marks: MarkList;
   readonly #stream: Stream;
+  readonly #marks: Marks;
+  readonly #mark: HTMLElement;
+  readonly #problem = element("span", { class: "attention", role: "alert" });
   readonly #play = button("Play", () => this.toggle(), { "data-role": "play" });
   readonly #now = element("span", { class: "figure", "data-role": "playback-now" });
   readonly #length = element("span", { class: "figure dim" });
@@ -24,8 +30,12 @@ export class Transport {
   #isScrubbing = false;
   #drawnMs = 0;
 
-  constructor(stream: Stream) {
+  constructor(stream: Stream, marks: Marks) {
     this.#stream = stream;
+    this.#marks = marks;
+    const fail = (error: unknown): void => setText(this.#problem, errorText(error));
+    this.marks = new MarkList(marks, (positionS) => this.#send(this.#clock?.isPlaying ?? false, positionS), fail);
+    this.#mark = button("Mark", () => this.mark(), { title: "A mark at this moment (M)", "data-role": "mark-here" });
     this.#bar = element("input", {
       type: "range",
       min: 0,
@@ -52,9 +62,11 @@ export class Transport {
       { class: "transport", "aria-label": "Playback", "data-role": "transport", hidden: true },
       this.#play,
       this.#now,
-      this.#bar,
+      element("div", { class: "time-line" }, this.#bar, this.marks.ticks),
       this.#length,
       this.#speed,
+      this.#mark,
+      this.#problem,
     );
     stream.serverInfo.follow((info) => this.#begin(info));
     stream.playback.follow((state) => {
@@ -72,6 +84,16 @@ export class Transport {
     if (this.#clock === undefined) return;
     if (this.#clock.hasEnded) this.#send(true, 0);
     else this.#send(!this.#clock.isPlaying);
+  }
+
+  /** At the place in the recording. */
+  mark(): void {
+    if (this.#clock === undefined) return;
+    const atS = this.#clock.startS + this.#clock.positionS(performance.now());
+    setText(this.#problem, "");
+    this.#marks.add(atS, `mark ${this.#marks.all.value.length + 1}`).catch((error) => {
+      setText(this.#problem, errorText(error));
+    });
   }
 
   /** Forward, or back where negative. */
@@ -102,6 +124,7 @@ export class Transport {
     this.#clock = canPlay ? new PlaybackClock(secondsOf(start), secondsOf(end)) : undefined;
     setHidden(this.element, true);
     if (this.#clock !== undefined) setText(this.#length, clock(this.#clock.lengthS));
+    this.marks.begin(this.#clock?.startS ?? 0, this.#clock?.lengthS ?? 0);
   }
 
   #scrub(): void {

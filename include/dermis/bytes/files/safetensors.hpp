@@ -97,6 +97,8 @@ struct FileFormat {
 /// Writes the file atomically, with a checksum as its metadata "checksum". The same content gives the same bytes;
 /// tensors are aligned to their element size.
 [[nodiscard]] Status write_safetensors(const std::string& path, const SafetensorsFile& file);
+/// The bytes that it writes; `name` stands for the path in messages.
+[[nodiscard]] Result<std::string> safetensors_to_bytes(const SafetensorsFile& file, const std::string& name);
 
 /// The part of a file before large tensors that are written piece by piece.
 struct SafetensorsBeginning {

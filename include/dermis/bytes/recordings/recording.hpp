@@ -36,6 +36,7 @@ struct RecordingOptions {
   std::string array_toml;     ///< Description of the array, as array.toml; empty: none.
   std::string model_hash;     ///< content_hash() of the model that gave the forces; empty: none.
   std::string simulation;     ///< As FrameNotes::simulation.
+  std::string model_file;     ///< As FrameNotes::model_file.
   ros_messages::Pitch pitch;  ///< Of the array, for the forces.
   McapCompression compression = McapCompression::lz4;
   /// If true, the file takes its place with its first frames. Frames are then in it 50 ms after write(), even if the
@@ -114,6 +115,7 @@ struct RecordedArrayInfo {
   std::string array_toml;  ///< Empty where there is none.
   std::string model_hash;  ///< Empty where there is none.
   std::string simulation;  ///< As FrameNotes::simulation.
+  std::string model_file;  ///< As FrameNotes::model_file.
 };
 
 /// The content of a recording.

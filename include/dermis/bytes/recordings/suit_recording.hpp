@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <istream>
 #include <memory>
 #include <span>
@@ -28,6 +29,7 @@ struct RecordedArray {
   std::string model_hash{};     ///< content_hash() of the model that gave the forces; empty: none.
   ros_messages::Pitch pitch{};  ///< For the forces.
   std::string simulation{};     ///< As FrameNotes::simulation.
+  std::string model_file{};     ///< As FrameNotes::model_file.
   std::string topic{};          ///< "/touch" or "/touch.thumb_matrix" of a file of others; empty: dermis wrote it.
 };
 
@@ -37,6 +39,16 @@ struct RecordedEvent {
   const ros_messages::MessageType& type;
   Nanos time{};
   std::span<const std::uint8_t> message;
+  bool is_of_frame = false;  ///< The readings give it again: it gives way to them where a disk stalls.
+};
+
+/// What a recording holds of a frame besides its readings.
+struct RecordedResult {
+  enum class Kind : std::uint8_t { force, contacts };  ///< foxglove_msgs/msg/Grid, dermis_msgs/msg/Contacts.
+  Kind kind = Kind::force;
+  std::size_t array = 0;
+  Nanos time{};                           ///< Log time, which is that of the frame.
+  std::span<const std::uint8_t> message;  ///< In CDR.
 };
 
 struct SuitRecordingOptions {
@@ -63,7 +75,8 @@ class SuitRecordingWriter {
   [[nodiscard]] Status write(std::size_t array, const RawFrame& frame, const ForceFrame& force);
   [[nodiscard]] Status write(const RecordedEvent& event);
   /// As write(), but never waits: false where it would. Then the frame is not in the recording, and the next one of its
-  /// array says how many before it are lost. Events have as much room again, so that frames do not take it.
+  /// array says how many before it are lost. Events have as much room again, so that frames do not take it, and
+  /// those of frames an eighth of it.
   [[nodiscard]] Result<bool> try_write(std::size_t array, const RawFrame& frame);
   [[nodiscard]] Result<bool> try_write(const RecordedEvent& event);
   /// Call it once, when no write() is under way or follows.
@@ -101,6 +114,8 @@ class SuitRecordingReader {
   /// Fills `frame` with the next frame, reusing its buffers, and `array` with the index of its array in arrays().
   /// Returns false at the end.
   [[nodiscard]] Result<bool> next(std::size_t& array, RawFrame& frame);
+  /// next() passes on the results between the frames, before or after theirs; they are valid during the call.
+  void hear_results(std::function<void(const RecordedResult&)> hear);
   /// next() continues with the first frames of this log time or later. The log time is the time of the frame
   /// (docs/recordings.md). A recording without index is read from its beginning.
   void seek(Nanos time);

@@ -32,6 +32,7 @@ struct MessageType {
 [[nodiscard]] const MessageType& acquisition_type();
 [[nodiscard]] const MessageType& frame_status_type();
 [[nodiscard]] const MessageType& raw_frame_type();
+[[nodiscard]] const MessageType& mark_type();
 
 /// sensor_msgs/msg/Image of frame.counts, stamped with frame.time: "16UC1" if all counts are whole numbers of 0 ...
 /// 65535, else "32FC1". Reads back with the same bits.
@@ -46,6 +47,18 @@ void encode_value_image(std::span<const float> values, Nanos time, const FrameSh
 
 /// The text of a std_msgs/msg/String, which stays in the message.
 [[nodiscard]] Result<std::string_view> decode_text(std::span<const std::uint8_t> message);
+
+/// dermis_msgs/msg/Mark: a moment with a name. Texts hold no NUL.
+struct Mark {
+  Nanos time{};
+  std::string label{};  ///< Lasts until the next mark; empty: the label before it ends.
+  std::string by{};     ///< Who set it.
+  std::string event{};  ///< Empty: a mark of a person. "tare": the server tells of a zero.
+
+  bool operator==(const Mark&) const = default;
+};
+void encode_mark(const Mark& mark, std::string_view frame_id, std::vector<std::uint8_t>& message);
+[[nodiscard]] Result<Mark> decode_mark(std::span<const std::uint8_t> message);
 
 /// tactile_msgs/msg/TactileState, as other robots have it: the values of sensors. Those of as many values each are the
 /// rows; else all values are one row. Sets counts, and time to the stamp. Accepts 1x1 ... 1024x1024 values.
@@ -86,6 +99,9 @@ struct Pitch {
 /// is at the origin of `frame_id`, with columns along x and rows along y.
 void encode_grid(const ForceFrame& frame, const FrameShape& shape, const Pitch& pitch, std::string_view frame_id,
                  std::vector<std::uint8_t>& message);
+/// Sets time, newtons, sigma_newtons and taxels, with the bits that encode_grid() took. Accepts its fields alone, of
+/// 1x1 ... 1024x1024 taxels.
+[[nodiscard]] Result<FrameShape> decode_grid(std::span<const std::uint8_t> message, ForceFrame& frame);
 
 /// dermis_msgs/msg/FrameStatus: the time and the status of a frame of forces.
 void encode_frame_status(const ForceFrame& frame, std::vector<std::uint8_t>& message);

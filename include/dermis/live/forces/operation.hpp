@@ -22,6 +22,8 @@ struct ModelAtWork {
   [[nodiscard]] static Result<ModelAtWork> create(touch::pipeline::Model model);
   /// `path`: as for bytes::models::read_model().
   [[nodiscard]] static Result<ModelAtWork> read(const std::string& path);
+  /// The model that a recording holds. Fails where `from` is none, or holds none.
+  [[nodiscard]] static Result<ModelAtWork> read_recorded(const std::string& from);
 };
 
 /// A model at work on a source. Not thread-safe.
@@ -30,8 +32,8 @@ struct Operation : ModelAtWork {
   std::string from;  ///< What was opened.
 };
 
-/// `from` and `options`: as for sources::open_source(), but the array is that of the model. Fails where
-/// bytes::models::read_model() or sources::open_source() do.
+/// `model`: empty for that of the recording. `from` and `options`: as for sources::open_source(), but the array is that
+/// of the model. Fails where bytes::models::read_model() or sources::open_source() do.
 [[nodiscard]] Result<std::unique_ptr<Operation>> open_operation(const std::string& model, const std::string& from,
                                                                 sources::SourceOptions options = {});
 

@@ -43,6 +43,7 @@ struct ArrayResult {
   const ContactReport& report;
   std::span<const SuitContact> contacts;
   Nanos latency{};  ///< From the arrival of the last byte to now; 0 where the source does not know when that was.
+  std::uint64_t tares = 0;  ///< So many were begun.
 };
 
 /// How an array is doing.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,6 +15,12 @@
 #include "dermis/touch/frames/result.hpp"
 
 namespace dermis::live::suits {
+
+/// What a recording holds of a frame besides its readings, in CDR; empty where it holds none.
+struct PlayedResults {
+  std::vector<std::uint8_t> force;
+  std::vector<std::uint8_t> contacts;
+};
 
 /// Plays the arrays of a recording on one clock, at the pace of their frame times. After a seek, each array gives its
 /// first frame of that time or later at once, also while paused. Where a consumer is slower than the pace, the clock
@@ -28,12 +35,18 @@ class Playback {
 
   /// The arrays that are played.
   [[nodiscard]] const std::vector<bytes::recordings::RecordedArray>& arrays() const noexcept;
-  [[nodiscard]] Nanos start() const noexcept;  ///< Time of the first and of
-  [[nodiscard]] Nanos end() const noexcept;    ///< the last frame.
+  [[nodiscard]] const std::string& path() const noexcept;  ///< Of the recording, without the name of an array.
+  [[nodiscard]] Nanos start() const noexcept;              ///< Time of the first and of
+  [[nodiscard]] Nanos end() const noexcept;                ///< the last frame.
 
   /// The frames of an array, for one thread; next() waits until a frame is due, and at the end for a seek. They are as
   /// recorded, but for arrival_steady, which is now. Ask for it once for each array.
   [[nodiscard]] std::unique_ptr<FrameSource> source(std::size_t array);
+
+  /// Of a frame that source() gave within the last second of the recording, as it was live; empty where none is known.
+  [[nodiscard]] PlayedResults results(std::size_t array, Nanos time) const;
+  /// The recording holds forces of this array; known from the first of them on.
+  [[nodiscard]] bool has_results(std::size_t array) const;
 
   PlaybackStatus control(const PlaybackCommand& command);
   [[nodiscard]] PlaybackStatus status() const;

@@ -39,6 +39,8 @@ struct ServedArray {
   std::optional<learn::recognition::Classes> classes{};  ///< Names for its touches; learned from newtons.
   std::string simulation{};                              ///< As bytes::recordings::FrameNotes::simulation.
   std::string from{};                                    ///< Name of a live source; empty: not known, or a recording.
+  /// Index in the played recording, whose own forces and contacts are shown. Empty: they are computed.
+  std::optional<std::size_t> played{};
   std::vector<FreePlace> places{};  ///< Those of the taxels, where they are in no grid; else empty.
 };
 

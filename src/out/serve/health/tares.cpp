@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "out/serve/parts/part_makers.hpp"
+#include "out/serve/topics/mark_book.hpp"
 
 namespace dermis::out::serve {
 namespace {
@@ -161,7 +162,10 @@ void Tares::model_changed(std::size_t array) {
 Result<std::unique_ptr<Part>> make_tares(Host& host) {
   return std::unique_ptr<Part>(
       std::make_unique<Tares>(host.suit, host.live, [&host](const std::vector<std::string>& lines) {
-        for (const std::string& line : lines) host.notify(line);
+        for (const std::string& line : lines) {
+          host.notify(line);
+          host.marks.add({.time = host.now(), .label = line, .event = "tare"}, host.now());
+        }
         host.server.parameters_changed();
       }));
 }

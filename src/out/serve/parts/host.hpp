@@ -19,6 +19,7 @@
 
 namespace dermis::out::serve {
 
+class MarkBook;
 class SuitRecorder;
 class Topics;
 
@@ -32,6 +33,7 @@ struct Host {
   live::suits::LiveSuit& live;
   Topics& topics;
   SuitRecorder& recorder;
+  MarkBook& marks;
   PartList& parts;
   std::unique_ptr<std::mutex> changing =
       std::make_unique<std::mutex>();  ///< One change of models and classes at a time.

@@ -168,7 +168,9 @@ Result<std::unique_ptr<Part>> make_recording(Host& host) {
   const auto played = [&host](const std::string& recording) -> Result<ServedSuit> {
     Result<ServedSuit> suit = played_suit(host.suit, recording);
     if (!suit) return suit;
-    for (std::size_t k = 0; k < suit->arrays.size(); ++k) suit->arrays[k].model = host.models.of(k);
+    for (std::size_t k = 0; k < suit->arrays.size(); ++k) {
+      if (!suit->arrays[k].played) suit->arrays[k].model = host.models.of(k);
+    }
     return suit;
   };
   // A played recording cannot play another one.

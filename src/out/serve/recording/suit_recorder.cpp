@@ -91,7 +91,7 @@ void SuitRecorder::write(std::size_t array, const RawFrame& raw) {
 void SuitRecorder::write(const bytes::recordings::RecordedEvent& event) {
   write_with([&](bytes::recordings::SuitRecordingWriter& writer) {
     Result<bool> taken = writer.try_write(event);
-    if (taken && !*taken) ++left_out_;
+    if (taken && !*taken && !event.is_of_frame) ++left_out_;
     return taken;
   });
 }

@@ -25,9 +25,8 @@ namespace dermis::out::serve {
 [[nodiscard]] std::string recording_name(const std::string& wanted, bool is_first,
                                          std::chrono::system_clock::time_point now);
 
-/// Records every frame of all arrays as the device sent it, from begin() to stop(). Forces are left out: the model
-/// gives them again, and they would be four fifths of the bytes. No array waits for the disk. While a disk stalls,
-/// frames wait in 64 MB of memory; later ones are left out and counted. Thread-safe.
+/// Records every frame of all arrays as the device sent it, from begin() to stop(), and events. No array waits for the
+/// disk. While a disk stalls, frames wait in 64 MB of memory; later ones are left out and counted. Thread-safe.
 class SuitRecorder {
  public:
   using Arrays = std::function<std::vector<bytes::recordings::RecordedArray>()>;
@@ -59,7 +58,8 @@ class SuitRecorder {
   /// Path of the present or the last recording.
   [[nodiscard]] std::string path() const;
   [[nodiscard]] std::uint64_t frames() const noexcept { return frames_.load(); }
-  /// Frames and events that are missing in the present or the last recording, because its disk was too slow.
+  /// Frames and events, but those of frames, that are missing in the present or the last recording, because its disk
+  /// was too slow.
   [[nodiscard]] std::uint64_t left_out() const noexcept { return left_out_.load(); }
 
  private:

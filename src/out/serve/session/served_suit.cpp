@@ -221,6 +221,14 @@ Result<std::unique_ptr<FrameSource>> open_live(const std::string& text, const Se
   return live::sources::open_source(*from, options);
 }
 
+/// The array is served by the model with which it was recorded.
+bool has_recorded_model(const ServedArray& array, const bytes::recordings::RecordedArray& recorded) {
+  if (recorded.model_hash.empty()) return false;
+  if (array.model_path.empty()) return !recorded.model_file.empty();
+  const Result<std::string> hash = bytes::files::content_hash(array.model_path);
+  return hash && *hash == recorded.model_hash;
+}
+
 /// Index in the recording of each array of the suit.
 Status open_playback(const std::string& from, ServedSuit& suit) {
   Result<std::unique_ptr<live::suits::Playback>> playback = live::suits::Playback::open(from);
@@ -241,7 +249,9 @@ Status open_playback(const std::string& from, ServedSuit& suit) {
     Status order = live::sources::check_recorded_order(from, found->array_toml, array.model->array);
     if (!order) return order;
     array.simulation = found->simulation;
-    array.source = (*playback)->source(static_cast<std::size_t>(found - recorded.begin()));
+    const auto index = static_cast<std::size_t>(found - recorded.begin());
+    array.source = (*playback)->source(index);
+    if (has_recorded_model(array, *found)) array.played = index;
   }
   suit.playback = *std::move(playback);
   return Done{};
@@ -276,6 +286,18 @@ Status open_sources(const SuitPlace& place, const SuitDescription& described,
   if (!from) return from.error();
   if (from->kind == SourceKind::recording) return open_playback(place.from, suit);
   return open_together(described, options, suit);
+}
+
+/// So that all is as it was when it was recorded. Without one that fits, the present model stays.
+void use_recorded_model(const live::suits::Playback& playback, ServedArray& array) {
+  const auto& recorded = playback.arrays();
+  for (std::size_t k = 0; k < recorded.size(); ++k) {
+    if (topic_name(recorded[k].name) != array.name && recorded.size() > 1) continue;
+    const Result<touch::pipeline::Model> model = bytes::models::model_from_bytes(recorded[k].model_file, array.name);
+    if (!model || model->array.taxel_count() != array.model->array.taxel_count()) continue;
+    array.model = std::make_shared<const touch::pipeline::Model>(*model);
+    array.played = k;
+  }
 }
 
 }  // namespace
@@ -333,6 +355,7 @@ Result<ServedSuit> played_suit(const ServedSuit& suit, const std::string& record
   played.threats = suit.threats;
   if (suit.body) played.body = suit.body->at_rest();
   if (Status opened = open_playback(recording, played); !opened) return opened.error();
+  for (ServedArray& array : played.arrays) use_recorded_model(*played.playback, array);
   return played;
 }
 

@@ -16,6 +16,7 @@
 #include "out/serve/recording/recordings_folder.hpp"
 #include "out/serve/recording/suit_recorder.hpp"
 #include "out/serve/session/make_live.hpp"
+#include "out/serve/topics/mark_book.hpp"
 #include "out/serve/topics/topics.hpp"
 
 namespace dermis::out::serve {
@@ -63,6 +64,7 @@ class Session::Implementation {
   std::unique_ptr<websocket::Server> server_;
   std::unique_ptr<Topics> topics_;
   std::unique_ptr<SuitRecorder> recorder_;
+  std::unique_ptr<MarkBook> marks_;
   std::unique_ptr<live::suits::LiveSuit> live_;
   std::optional<Host> host_;
   PartList parts_;
@@ -79,8 +81,11 @@ Status Session::Implementation::make(const SessionOptions& options) {
   Result<std::unique_ptr<Topics>> topics = Topics::create(*server_, options.dds);
   if (!topics) return topics.error();
   topics_ = *std::move(topics);
-  recorder_ = make_recorder(options.record);
-  host_.emplace(Host{suit_, options, models_, *server_, *live_, *topics_, *recorder_, parts_});
+  recorder_ = make_recorder(options.record.empty() ? options.recordings : options.record);
+  Result<std::unique_ptr<MarkBook>> marks = MarkBook::create(*topics_, *recorder_);
+  if (!marks) return marks.error();
+  marks_ = *std::move(marks);
+  host_.emplace(Host{suit_, options, models_, *server_, *live_, *topics_, *recorder_, *marks_, parts_});
   if (Status made = make_parts(); !made) return made;
   return options.dds ? check_topics(suit_, topics_->dds_topics(), options.dds->domain) : Done{};
 }

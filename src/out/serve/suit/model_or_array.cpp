@@ -18,19 +18,25 @@ Result<ModelOrArray> uncalibrated(Result<ArrayDescription> array) {
   return ModelOrArray{learn::calibration::uncalibrated_model(*array), *std::move(array)};
 }
 
-}  // namespace
-
-Result<ModelOrArray> read_model_or_array(const std::string& path) {
-  if (path.ends_with(".toml")) return uncalibrated(bytes::files::read_array(path));
-  Result<touch::pipeline::Model> model = bytes::models::read_model(path);
+Result<ModelOrArray> calibrated(Result<touch::pipeline::Model> model) {
   if (!model) return model.error();
   ArrayDescription array = model->array;
   return ModelOrArray{*std::move(model), std::move(array)};
 }
 
+}  // namespace
+
+Result<ModelOrArray> read_model_or_array(const std::string& path) {
+  if (path.ends_with(".toml")) return uncalibrated(bytes::files::read_array(path));
+  return calibrated(bytes::models::read_model(path));
+}
+
 Result<ModelOrArray> read_recorded_array(const std::string& recording) {
   const Result<bytes::recordings::FrameNotes> notes = bytes::recordings::read_frame_notes(recording);
   if (!notes) return notes.error();
+  if (!notes->model_file.empty()) {
+    return calibrated(bytes::models::model_from_bytes(notes->model_file, recording + ": its model"));
+  }
   if (notes->array_toml.empty()) return bad_input(recording + ": does not describe its array; name the model of it");
   return uncalibrated(bytes::files::array_from_toml(notes->array_toml, recording));
 }

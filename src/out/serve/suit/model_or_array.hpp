@@ -19,7 +19,7 @@ struct ModelOrArray {
 /// A model file, or an array.toml (by its ending .toml).
 [[nodiscard]] Result<ModelOrArray> read_model_or_array(const std::string& path);
 
-/// The array that a recording describes. Fails where it describes none.
+/// The array that a recording describes, with the model in it, if there is one. Fails where it describes none.
 [[nodiscard]] Result<ModelOrArray> read_recorded_array(const std::string& recording);
 
 }  // namespace dermis::out::serve

@@ -22,11 +22,6 @@ constexpr std::uint64_t kShownOfLate = 10;              // every one of so many
 constexpr double kSlowestHz = 1.0;
 constexpr double kFastestHz = 1000.0;
 
-bool begins_or_ends(const ContactReport& report) {
-  return std::any_of(report.contacts.begin(), report.contacts.end(),
-                     [](const Contact& contact) { return contact.phase != ContactPhase::held; });
-}
-
 /// The stream is thinned, DDS is not.
 Ends ends_of(bool is_due) {
   return is_due ? Ends::both : Ends::dds;
@@ -42,7 +37,8 @@ FrameTopics::Array::Array(const ServedSuit& suit, std::size_t index)
     : served(suit.arrays[index]),
       shape{served.model->array.rows, served.model->array.cols},
       pitch{served.model->array.row_pitch_m, served.model->array.col_pitch_m},
-      contacts(suit, index) {}
+      contacts(suit, index),
+      is_as_recorded(served.played.has_value()) {}
 
 Result<std::unique_ptr<FrameTopics>> FrameTopics::create(const ServedSuit& suit, Topics& topics) {
   std::unique_ptr<FrameTopics> created(new FrameTopics(suit, topics));
@@ -50,7 +46,7 @@ Result<std::unique_ptr<FrameTopics>> FrameTopics::create(const ServedSuit& suit,
   return created;
 }
 
-FrameTopics::FrameTopics(const ServedSuit& suit, Topics& topics) : topics_(topics), points_(suit) {
+FrameTopics::FrameTopics(const ServedSuit& suit, Topics& topics) : suit_(suit), topics_(topics), points_(suit) {
   for (std::size_t k = 0; k < suit.arrays.size(); ++k) arrays_.emplace_back(suit, k);
 }
 
@@ -119,30 +115,47 @@ void FrameTopics::keep(std::size_t index, const RawFrame& frame) {
 
 void FrameTopics::hear(const live::suits::ArrayResult& result) {
   Array& array = arrays_[result.array];
-  const bool due = is_due(array, result.raw.time) && has_time_for(array, result);
-  publish_images(array, result, due);
-  if (points_topic_.is_wanted(ends_of(due))) points_.keep(result.array, result.force);
-  if (due) stream_time_ns_ = result.raw.time.count();
-  last_time_ns_ = result.raw.time.count();
+  if (is_as_recorded(array, result)) return hear_played(array, result);
+  const bool due = array.pace.is_due(result.raw.time, rate_hz_) && has_time_for(array, result);
+  publish_frame(array, result, due);
   publish_contacts(array, result, due);
   if (topics_.has_dds() && !has(result.force.status, FrameStatus::rejected)) publish_wrench(array, result);
 }
 
-/// Evenly, whatever the jitter of the frames: what was late does not make the next one late. A frame that comes again
-/// is for somebody who has not seen it.
-bool FrameTopics::is_due(Array& array, Nanos time) const noexcept {
-  const Nanos period(static_cast<std::int64_t>(1e9 / rate_hz_));
-  if (array.pace.last == time) return true;
-  const bool went_back = array.pace.last && time < *array.pace.last;
-  const bool due = !array.pace.last || went_back || time >= array.pace.due;
-  if (due) array.pace.due = !went_back && time - array.pace.due < period ? array.pace.due + period : time + period;
-  array.pace.last = time;
-  return due;
+void FrameTopics::publish_frame(Array& array, const live::suits::ArrayResult& result, bool is_due) {
+  publish_images(array, result, is_due);
+  if (points_topic_.is_wanted(ends_of(is_due))) points_.keep(result.array, result.force);
+  if (is_due) stream_time_ns_ = result.raw.time.count();
+  last_time_ns_ = result.raw.time.count();
+}
+
+/// The frames that were recorded with their forces are shown, with the same bits. `dermis record` writes no contacts.
+void FrameTopics::hear_played(Array& array, const live::suits::ArrayResult& result) {
+  const live::suits::PlayedResults played = suit_.playback->results(*array.served.played, result.raw.time);
+  const Result<FrameShape> shape = bytes::ros_messages::decode_grid(played.force, array.played);
+  if (shape && *shape == array.shape) {
+    publish_frame(array,
+                  {result.array, result.raw, result.conductance, array.played, result.report, result.contacts,
+                   result.latency, result.tares},
+                  true);
+  }
+  if (played.contacts.empty() && shape) return publish_contacts(array, result, true);
+  if (played.contacts.empty() || !contacts_topic_.is_wanted()) return;
+  contacts_topic_.publish(result.raw.time, played.contacts, Ends::both, MessageKind::picture);
+}
+
+/// Until somebody who looks on tares, or takes another model.
+bool FrameTopics::is_as_recorded(const Array& array, const live::suits::ArrayResult& result) const {
+  return array.is_as_recorded && result.tares == 0 && suit_.playback->has_results(*array.served.played);
+}
+
+void FrameTopics::model_changed(std::size_t array) {
+  arrays_[array].is_as_recorded = false;
 }
 
 /// Contacts go before viewers: these get fewer of the frames that are late already.
 bool FrameTopics::has_time_for(Array& array, const live::suits::ArrayResult& result) {
-  if (result.latency < kLate || ++array.pace.late % kShownOfLate == 0) return true;
+  if (result.latency < kLate || ++array.late % kShownOfLate == 0) return true;
   topics_.thin();
   return false;
 }

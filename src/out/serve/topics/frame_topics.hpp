@@ -18,6 +18,7 @@
 #include "dermis/touch/frames/frames.hpp"
 #include "out/serve/parts/part.hpp"
 #include "out/serve/topics/contacts_in_suit.hpp"
+#include "out/serve/topics/pace.hpp"
 #include "out/serve/topics/suit_points.hpp"
 #include "out/serve/topics/topics.hpp"
 
@@ -35,6 +36,8 @@ class FrameTopics final : public Part {
   [[nodiscard]] std::vector<LiveParameter> parameters() override;
   void keep(std::size_t array, const RawFrame& frame) override;
   void hear(const live::suits::ArrayResult& result) override;
+  /// A recording that is played shows the forces of the new model from now on.
+  void model_changed(std::size_t array) override;
   /// The taxels of the whole suit as they were in the last frames that were published, and what presses on it.
   void tick(std::int64_t tick) override;
 
@@ -43,13 +46,6 @@ class FrameTopics final : public Part {
   struct Press {
     std::optional<Nanos> time{};  // empty: there was no frame yet
     Wrench in_suit{};
-  };
-
-  /// Which frames of an array are streamed.
-  struct Pace {
-    std::optional<Nanos> last{};  // frame that came
-    Nanos due{};
-    std::uint64_t late = 0;  // frames that were due
   };
 
   /// An array, touched by one thread at a time but for its last press.
@@ -65,8 +61,11 @@ class FrameTopics final : public Part {
     Topic force{};
     Topic force_sigma{};
     Topic wrench{};
+    std::atomic<bool> is_as_recorded;  // forces and contacts are those of the played recording
     Pace pace{};
+    std::uint64_t late = 0;  // frames that were due
     std::vector<std::uint8_t> message{};
+    ForceFrame played{};
     std::mutex press_mutex{};
     Press press{};
 
@@ -76,8 +75,10 @@ class FrameTopics final : public Part {
   FrameTopics(const ServedSuit& suit, Topics& topics);
   [[nodiscard]] Status add_topics();
   [[nodiscard]] Status add_topics_of(Array& array);
-  [[nodiscard]] bool is_due(Array& array, Nanos time) const noexcept;
   [[nodiscard]] bool has_time_for(Array& array, const live::suits::ArrayResult& result);
+  [[nodiscard]] bool is_as_recorded(const Array& array, const live::suits::ArrayResult& result) const;
+  void hear_played(Array& array, const live::suits::ArrayResult& result);
+  void publish_frame(Array& array, const live::suits::ArrayResult& result, bool is_due);
   void publish_images(Array& array, const live::suits::ArrayResult& result, bool is_due);
   void publish_values(Array& array, const Topic& topic, std::span<const float> values, Nanos time);
   void publish_contacts(Array& array, const live::suits::ArrayResult& result, bool is_due);
@@ -85,6 +86,7 @@ class FrameTopics final : public Part {
   void publish_points(Nanos time, Ends ends);
   void publish_suit_wrench();
 
+  const ServedSuit& suit_;
   Topics& topics_;
   std::deque<Array> arrays_;
   SuitPoints points_;

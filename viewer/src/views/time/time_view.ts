@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import "uplot/dist/uPlot.min.css";
 import { button, element, setHidden, setText } from "../../dom";
-import { fixed } from "../../format";
+import { errorText, fixed } from "../../format";
 import { SLOTS } from "../../live/contact_slots";
 import { EVENT_KINDS } from "../../live/event_log";
 import { binOf } from "../../live/force_history";
@@ -29,6 +29,13 @@ class TimeView implements View {
   readonly #contacts = new ForcePlot(CONTACTS_TITLE, "plot-contacts");
   readonly #readings: ReadingHistories;
   readonly #windowS = setting<number>("window", 10, (value) => WINDOWS_S.includes(value));
+  readonly #label = element("input", {
+    class: "field compact",
+    placeholder: "label",
+    "aria-label": "Label of the mark",
+    maxlength: 60,
+    "data-role": "mark-label",
+  });
   readonly #lastEvent = element("p", { class: "dim", "data-role": "last-event" });
   #isShown = false;
   #linesDue = true;
@@ -78,7 +85,10 @@ class TimeView implements View {
     this.#drawnMs = nowMs;
     const endBin = binOf(live.latestS);
     const chosen = this.#context.suit.selected.value?.name;
-    const events = live.events.events.filter(({ array }) => array === "" || array === chosen);
+    const events = [...live.events.events, ...live.events.marks].filter(
+      ({ array, atS }) => atS <= live.latestS && (array === "" || array === chosen),
+    );
+    events.sort((a, b) => a.atS - b.atS);
     this.#totals.draw(endBin, events);
     this.#contacts.draw(endBin, events);
     const last = events.at(-1);
@@ -88,16 +98,12 @@ class TimeView implements View {
     );
   }
 
-  key(event: KeyboardEvent): boolean {
-    if (event.key !== "m") return false;
-    this.#mark();
-    return true;
-  }
-
   /** At the moment that is shown. */
   #mark(): void {
     const { live } = this.#context;
-    live.events.mark(live.latestS);
+    live.marks.add(live.latestS, this.#label.value.trim() || `mark ${live.events.marks.length + 1}`).catch((error) => {
+      setText(this.#lastEvent, errorText(error));
+    });
     this.#linesDue = true;
   }
 
@@ -129,6 +135,7 @@ class TimeView implements View {
         element("legend", { class: "only-spoken" }, "Window"),
         ...WINDOWS_S.map(choice),
       ),
+      this.#label,
       button("Mark this moment", () => this.#mark(), {
         class: "compact",
         "data-role": "mark",

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "dermis/bytes/models/model_file.hpp"
+#include "dermis/bytes/recordings/marks.hpp"
+#include "dermis/bytes/recordings/recording.hpp"
+#include "out/serve/session_at_work.hpp"
+#include "out/serve/small_suit.hpp"
+#include "out/serve/stream_client.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace dermis::out::serve {
+namespace {
+
+using nlohmann::json;
+using support::TemporaryFolder;
+
+/// By topic and time.
+using Heard = std::map<std::pair<std::string, Nanos>, std::vector<std::uint8_t>>;
+
+Heard hear(StreamClient& client, std::size_t messages) {
+  Heard heard;
+  for (std::size_t k = 0; k < messages; ++k) {
+    StreamClient::Message message = client.next_message();
+    heard[{message.topic, message.time}] = std::move(message.bytes);
+  }
+  return heard;
+}
+
+/// What a client of a live array hears, all frames of it, while the array is recorded, tared and marked.
+Heard record(const std::string& path) {
+  const std::atomic<bool> never = false;
+  Work work(session_of(small_suit({"chest"}, never), options_with(path)));
+  StreamClient client(work.port());
+  client.set_parameter("/stream/rate_hz", "1000");
+  client.set_parameter("/tare/force", "true");
+  EXPECT_EQ(client.call("/marks/add", R"({"label":"grasp","by":"anna"})"), "{}");
+  client.subscribe({"/chest/force", "/contacts"});
+  Heard heard = hear(client, 1500);
+  EXPECT_TRUE(work.end());
+  return heard;
+}
+
+std::unique_ptr<Session> play(const std::string& path, const std::string& model = {}) {
+  Result<ServedSuit> suit = open_suit({.from = path, .model = model});
+  EXPECT_TRUE(suit) << suit.error().message;
+  return session_of(*std::move(suit), options_with());
+}
+
+/// So many of the messages of a player were heard live, and so many with the same bits.
+std::pair<int, int> compare(const Heard& live, const Heard& played) {
+  std::pair<int, int> counts;
+  for (const auto& [key, bytes] : played) {
+    const auto found = live.find(key);
+    if (found == live.end()) continue;
+    ++counts.first;
+    if (found->second == bytes) ++counts.second;
+  }
+  return counts;
+}
+
+TEST(PlayedResults, are_forces_and_contacts_as_they_were_live_with_the_same_bits) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("walk.mcap");
+  const Heard live = record(path);
+  Work work(play(path));
+  StreamClient client(work.port());
+  client.subscribe({"/chest/force", "/contacts"});
+  const auto [both, same] = compare(live, hear(client, 120));
+  EXPECT_GT(both, 60);
+  EXPECT_EQ(same, both);
+  EXPECT_TRUE(work.end());
+}
+
+TEST(PlayedResults, are_computed_by_another_model_where_one_is_named) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("walk.mcap");
+  const Heard live = record(path);
+  touch::pipeline::Model model = support::hand_made_model(kRows, kCols);
+  for (float& newtons : model.networks.gain) newtons *= 2.0F;
+  ASSERT_TRUE(bytes::models::write_model(folder.file("other.safetensors"), model));
+  Work work(play(path, folder.file("other.safetensors")));
+  StreamClient client(work.port());
+  client.subscribe({"/chest/force"});
+  const auto [both, same] = compare(live, hear(client, 120));
+  EXPECT_GT(both, 60);
+  EXPECT_EQ(same, 0);
+  EXPECT_TRUE(work.end());
+}
+
+TEST(PlayedResults, come_with_the_model_and_its_hash_in_the_recording) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("walk.mcap");
+  record(path);
+  const auto reader = bytes::recordings::RecordingReader::open(path);
+  ASSERT_TRUE(reader) << reader.error().message;
+  const auto model = bytes::models::model_from_bytes((*reader)->notes().model_file, "chest");
+  ASSERT_TRUE(model) << model.error().message;
+  EXPECT_EQ(bytes::models::model_to_bytes(*model).value(),
+            bytes::models::model_to_bytes(support::hand_made_model(kRows, kCols)).value());
+  EXPECT_FALSE((*reader)->notes().model_hash.empty());
+}
+
+TEST(PlayedResults, marks_are_there_after_the_page_and_edited_beside_the_recording) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("walk.mcap");
+  record(path);
+  Work work(play(path));
+  StreamClient client(work.port());
+  json marks = json::parse(client.call("/marks/list", "{}"))["marks"];
+  std::string labels;
+  for (const json& mark : marks)
+    labels += mark["event"].get<std::string>() + ":" + mark["label"].get<std::string>() + "\n";
+  EXPECT_NE(labels.find(":grasp\n"), std::string::npos) << labels;
+  EXPECT_NE(labels.find("tare:"), std::string::npos) << labels;
+
+  EXPECT_EQ(client.call("/marks/set", R"({"times_s":[1e12],"labels":["late"]})"),
+            "times_s: must be within the recording");
+  EXPECT_EQ(client.call("/marks/set", R"({"times_s":[],"labels":["late"]})"), "labels: must be as many as times_s");
+  const Nanos start = bytes::recordings::recording_info(path)->start_utc;
+  const std::string at = std::to_string(1e-9 * static_cast<double>(start.count()) + 0.25);
+  marks = json::parse(client.call("/marks/set", R"({"times_s":[)" + at + R"(],"labels":["lift"]})"))["marks"];
+  const auto read = bytes::recordings::read_marks(path, start);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->size(), marks.size());
+  labels.clear();
+  for (const bytes::ros_messages::Mark& mark : *read) {
+    if (mark.event.empty()) labels += mark.label;
+  }
+  EXPECT_EQ(labels, "lift");
+  EXPECT_TRUE(work.end());
+}
+
+}  // namespace
+}  // namespace dermis::out::serve
