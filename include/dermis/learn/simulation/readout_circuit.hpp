@@ -38,7 +38,7 @@ class ReadoutCircuit {
   void ratios(std::span<const double> siemens, std::span<const double> newtons, std::span<double> ratio) const;
 
   /// The same in single precision: a relative error of about 1e-6. Faster for a divider with grounded idle rows of up
-  /// to 64x64 taxels (docs/circuits.md has the times).
+  /// to 64x64 taxels (docs/reasons/inversions.md has the times).
   void ratios(std::span<const float> siemens, std::span<float> ratio) const;
 
  private:
