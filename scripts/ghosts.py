@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
-"""Inverts the ghosting recordings of a real hand (docs/notes/ghosts.md) under every divider circuit and shows what
+"""Inverts the ghosting recordings of a real hand (docs/reasons/ghosts.md) under every divider circuit and shows what
 remains.
 
 A contact: readings above 50 counts. Remote: at least three taxels from it; shared: in a row or column of the contact.

@@ -107,7 +107,7 @@ Status convert(const ConvertOptions& options) {
 
 void add_convert(Command& command) {
   auto options = std::make_shared<ConvertOptions>();
-  command.input("in", options->in, ".csv, .mcap, .h5, .hdf5, .npy, or a file of another system (docs/file-formats.md)")
+  command.input("in", options->in, ".csv, .mcap, .h5, .hdf5, .npy, or a file of another system (docs/frame-files.md)")
       .required();
   command.output("out", options->out, ".csv, .mcap, .h5, .hdf5, .npy or .wiresens.hdf5").required();
   command.input("--array", options->array, "array.toml, to keep with the frames (.mcap, .h5)");

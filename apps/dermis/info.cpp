@@ -290,7 +290,7 @@ Status print_info(const InfoOptions& options) {
 
 void add_info(Command& command) {
   auto options = std::make_shared<InfoOptions>();
-  command.input_file("file", options->file, "A file of frames (docs/file-formats.md), a model file, or array.toml")
+  command.input_file("file", options->file, "A file of frames (docs/frame-files.md), a model file, or array.toml")
       .required();
   command.input_file("--layout", options->layout, "layout.toml, which describes the bytes of a file (docs/layouts.md)");
   options->shape.add(command);

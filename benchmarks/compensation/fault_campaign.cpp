@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
-// Frames until each fault of a 16x16 array is found (docs/health.md, "How soon"):
+// Frames until each fault of a 16x16 array is found (docs/reasons/health.md, "How soon"):
 // fault_campaign [SEEDS [FAULT_FROM_FRAME [SIZE [IDLE_COUNTS]]]]. Unloaded taxels read about IDLE_COUNTS, and lines
 // that are open exactly 0, where they are given.
 #include <fmt/core.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
-// Watches random arrays without a fault (docs/health.md, "How well"), for ten minutes where they are touched, else for
-// 1000 frames. Of two thirds of them the circuit is given. The others are calibrated, by right labels or by people's,
-// with the circuit given or without ("auto"), and run through the whole pipeline. The counts of all are examined alone,
-// too. healthy_campaign [ARRAYS [MOST_FRAMES [FIRST_SEED]]]
+// Watches random arrays without a fault (docs/reasons/health.md, "How well"), for ten minutes where they are touched,
+// else for 1000 frames. Of two thirds of them the circuit is given. The others are calibrated, by right labels or by
+// people's, with the circuit given or without ("auto"), and run through the whole pipeline. The counts of all are
+// examined alone, too. healthy_campaign [ARRAYS [MOST_FRAMES [FIRST_SEED]]]
 #include <fmt/core.h>
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
-// Inverts random arrays of every circuit and size (docs/circuits.md, "What readings determine"). Takes minutes.
-// Usage: inversion_campaign [LARGEST]   (rows and columns of the largest arrays; 32)
+// Inverts random arrays of every circuit and size (docs/reasons/inversions.md, "What readings determine"). Takes
+// minutes. Usage: inversion_campaign [LARGEST]   (rows and columns of the largest arrays; 32)
 #include "support/inversion_campaign.hpp"
 
 #include <fmt/core.h>

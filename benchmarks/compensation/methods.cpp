@@ -62,7 +62,7 @@ void textbook(const Sample& sample, std::span<double> siemens) {
   }
 }
 
-/// Formula (2) of docs/derivations.md, which takes the columns as held at 0 V.
+/// Formula (2) of docs/reasons/derivations-circuits.md, which takes the columns as held at 0 V.
 void grounded_row_formula(const Sample& sample, std::span<double> siemens) {
   for (std::size_t row = 0; row < kSize; ++row) {
     double sum = 0.0;
@@ -77,7 +77,7 @@ void grounded_row_formula(const Sample& sample, std::span<double> siemens) {
 }
 
 /// G <- G T / T(G), twice, from the textbook's estimate: the recursion of Hidalgo-Lopez et al. (J. Sensors 2018,
-/// 9735741) as docs/derivations.md states it, for this circuit and with T(G) solved exactly.
+/// 9735741) as docs/reasons/derivations-circuits.md states it, for this circuit and with T(G) solved exactly.
 void two_recursions(const Sample& sample, std::span<double> siemens) {
   textbook(sample, siemens);
   const auto circuit = learn::simulation::ReadoutCircuit::create(sample.array);

@@ -20,7 +20,7 @@ class Peer {
   virtual ~Peer() = default;
 
   [[nodiscard]] virtual std::string name() const = 0;
-  /// Formula (4) of docs/derivations.md from where `siemens` is, until the certificate is `tolerance`.
+  /// Formula (4) of docs/reasons/derivations-circuits.md from where `siemens` is, until the certificate is `tolerance`.
   virtual void invert(std::span<const double> ratio, double tolerance, std::span<double> siemens) = 0;
   virtual void start(std::span<const double> ratio, std::span<double> siemens) = 0;
   virtual void forward(std::span<const double> siemens, std::span<double> ratio) = 0;

@@ -13,7 +13,7 @@
 #include "dermis/touch/frames/frames.hpp"
 #include "dermis/touch/frames/result.hpp"
 
-/// Frames as HDF5 (docs/file-formats.md), readable by h5py: counts (N, rows, cols), time_s and one dataset of N values
+/// Frames as HDF5 (docs/frame-files.md), readable by h5py: counts (N, rows, cols), time_s and one dataset of N values
 /// for each further member of RawFrame.
 namespace dermis::bytes::recordings {
 

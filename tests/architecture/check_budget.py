@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
-"""Holds the house to tests/architecture/budget.toml: lines of each wing, of a file, of a function, and commands.
+"""Holds the house to tests/architecture/budget.toml: lines of each wing, of a file, of a function, words of a document,
+and commands.
 
 Usage: check_budget.py PROJECT [DERMIS]
 Exit status 77 where there is no universal-ctags."""
@@ -64,6 +65,16 @@ def commands_of(dermis):
     return COMMAND.findall(text.split("--version", 1)[1])
 
 
+def too_wordy(project, most, longer):
+    pages = [project / "README.md", *(project / "docs").rglob("*.md")]
+    for page in pages:
+        words = len(page.read_text().split())
+        limit = most["words_of_the_readme" if page == pages[0] else "words_a_document"]
+        path = str(page.relative_to(project))
+        if words > limit and longer.pop(path, None) is None:
+            yield f"{path}: has {words} words, at most {limit}: reasons and measurements go to docs/reasons"
+
+
 def too_much(project, budget, dermis):
     """Yields a line for each that is over the budget, and for each exception that nobody needs."""
     sources = sources_of(project)
@@ -80,6 +91,7 @@ def too_much(project, budget, dermis):
     for path, name, lines in functions(project, sources):
         if lines > most["lines_a_function"] and longer.pop(f"{path} {name}", None) is None:
             yield f"{path}: {name} has {lines} lines, at most {most['lines_a_function']}"
+    yield from too_wordy(project, most, longer)
     if dermis and len(commands_of(dermis)) > most["commands"]:
         yield f"{len(commands_of(dermis))} commands, at most {most['commands']}"
     for place in longer:

@@ -18,6 +18,8 @@ touch = 30
 commands = 1
 lines_a_file = 20
 lines_a_function = 10
+words_a_document = 9
+words_of_the_readme = 5
 [longer]
 """
 
@@ -29,6 +31,7 @@ class Budget(unittest.TestCase):
         self.house = Path(folder.name)
         subprocess.run(["git", "init", "--quiet", self.house], check=True)
         self.write("src/touch/pipeline/short.cpp", SHORT)
+        self.write("README.md", "Newtons from robot touch.\n")
 
     def write(self, path, text):
         (self.house / path).parent.mkdir(parents=True, exist_ok=True)
@@ -63,6 +66,15 @@ class Budget(unittest.TestCase):
         found = self.found('"src/touch/pipeline/short.cpp" = "it was long"\n')
         self.assertIn("apps: has 3 lines, at most 0\n", found)
         self.assertIn("src/touch/pipeline/short.cpp: is no longer too long; take it out of budget.toml\n", found)
+
+    def test_a_long_document_is_found_unless_it_has_a_reason(self):
+        self.write("README.md", "a word " * 3)
+        self.write("docs/reasons/long.md", "a word " * 5)
+        self.write("docs/short.md", "a word " * 4)
+        found = self.found().splitlines()
+        self.assertEqual([line.split(":")[0] for line in found], ["README.md", "docs/reasons/long.md"])
+        self.assertIn("has 10 words, at most 9", found[1])
+        self.assertEqual(len(self.found('"docs/reasons/long.md" = "made from the help"\n').splitlines()), 1)
 
     def test_one_command_too_many_is_found(self):
         dermis = self.house / "dermis"

@@ -49,7 +49,7 @@ class TaxelStatus(enum.IntEnum):
     INVALID = 5  # no force (NaN)
 
 class ArrayDescription:
-    """An array.toml (docs/file-formats.md)."""
+    """An array.toml (docs/array-toml.md)."""
 
     @staticmethod
     def from_toml(text: str) -> ArrayDescription: ...

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
-"""Readout circuits: conductances to readings, and back (docs/circuits.md)."""
+"""Readout circuits: conductances to readings, and back (docs/circuit-drawings.md)."""
 
 from dermis import _dermis
 

@@ -14,7 +14,7 @@ namespace dermis::paper {
 inline constexpr bytes::files::FileFormat kPaperBankFormat{
     "dermis paper bank 2", "dermis paper bank 1", "is not a bank of the paper; the paper's calibration writes one"};
 
-/// Writes a safetensors file (docs/file-formats.md) beside `path` and renames it; 135 MB for 16 x 16 taxels. Each rank
+/// Writes a safetensors file (docs/model-file.md) beside `path` and renames it; 135 MB for 16 x 16 taxels. Each rank
 /// writes the networks of its bank.
 [[nodiscard]] Status write_paper_bank(const std::string& path, const PaperBank& bank, Ranks& ranks = one_process());
 

@@ -27,7 +27,8 @@ constexpr std::size_t kMostErrors = 8;
 constexpr std::size_t kPanelColumns = 4;
 constexpr const char* kHowToRead =
     "All learn from the same examples, are asked the same ones and see the same folds; dermis is the recipe of "
-    "docs/recognition.md, and what learning writes. The nearest frame compares what is held, taxel by taxel, and "
+    "docs/reasons/recognition.md, and what learning writes. The nearest frame compares what is held, taxel by taxel, "
+    "and "
     "gives no probability.";
 
 std::string share(double value) {

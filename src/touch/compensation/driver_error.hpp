@@ -12,7 +12,7 @@ namespace dermis::touch::compensation {
 
 /// The effect of drivers that are known only to a standard deviation, where idle rows are grounded through them. A
 /// driver k that is wrong by s moves its row by s times its current, in all scans. With the symbols of GroundedRows,
-/// the readings fixed (docs/derivations.md, "Wrong drivers"),
+/// the readings fixed (docs/reasons/derivations-circuits.md, "Wrong drivers"),
 ///
 ///   d G_ij / d s_k = L_ik p_kj + G_ij (Rd_i L_ik sum_m p_km + c_kj) - [i = k] G_ij^2
 ///   L = diag(G 1) - G diag(eta) G^T,   p_kj = y_kj / w_j

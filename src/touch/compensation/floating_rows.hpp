@@ -14,13 +14,13 @@
 
 namespace dermis::touch::compensation {
 
-/// The divider whose idle rows float and whose lines have no resistance: "Floating rows" in docs/derivations.md. It is
-/// solved by a fixed point of as many numbers as there are lines. Given the sum D_j of the conductances on each column
-/// and a factor b_i of each row, all conductances follow from the readings. These give D and b anew. A reading below
-/// what its neighbours alone explain is raised until its taxel is at 0 S. Usually settles in 5 to 20 passes of about 35
-/// cols^3 + 4 rows cols^2 multiplications, where a single product with the Jacobian takes rows^2 cols^2. Under a film
-/// its conductances are further numbers, and the sum of each row stands for b_i. That takes two to three times as many
-/// passes.
+/// The divider whose idle rows float and whose lines have no resistance: "Floating rows" in
+/// docs/reasons/derivations-circuits.md. It is solved by a fixed point of as many numbers as there are lines. Given the
+/// sum D_j of the conductances on each column and a factor b_i of each row, all conductances follow from the readings.
+/// These give D and b anew. A reading below what its neighbours alone explain is raised until its taxel is at 0 S.
+/// Usually settles in 5 to 20 passes of about 35 cols^3 + 4 rows cols^2 multiplications, where a single product with
+/// the Jacobian takes rows^2 cols^2. Under a film its conductances are further numbers, and the sum of each row stands
+/// for b_i. That takes two to three times as many passes.
 ///
 /// Many members: the work space of a pass, which may not allocate.
 class FloatingRows {

@@ -263,7 +263,7 @@ void GroundedRows::keep() noexcept {
   best_explained_ = state_.explained;
 }
 
-/// From the start, the first steps halved (docs/derivations.md, below (4)), the others mixed.
+/// From the start, the first steps halved (docs/reasons/derivations-circuits.md, below (4)), the others mixed.
 double GroundedRows::iterate_with_mixing(double best, int damped_steps) noexcept {
   for (std::size_t k = 0; k < mixing_.log_siemens.size(); ++k) {
     mixing_.log_siemens[k] = std::log(std::max(state_.estimate[k], kLeastSiemens));

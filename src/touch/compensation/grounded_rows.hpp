@@ -17,7 +17,7 @@ namespace dermis::touch::compensation {
 
 /// Circuits whose idle rows are grounded through their drivers and whose columns end in resistors RL to ground. Either
 /// all columns are loaded at once or only the one that is read (IdleColumns). With y_kj the current into the load of
-/// column j while row k is driven, over the supply [S], formula (1) of docs/derivations.md reads
+/// column j while row k is driven, over the supply [S], formula (1) of docs/reasons/derivations-circuits.md reads
 ///
 ///   y = D S^-1 G diag(w),   S = A - G diag(eta) G^T,   D = diag(1/Rd),   A = D + diag(G 1)
 ///   all loaded:  eta_j = RL_j w_j,         w_j = 1 / (1 + RL_j sum_i G_ij)

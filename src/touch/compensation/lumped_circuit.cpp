@@ -95,7 +95,8 @@ bool LumpedCircuit::one_loaded() const noexcept {
 
 // Where idle rows are tied all scans share one matrix; where they float, each scan has its own driver in it. Where one
 // column at a time is loaded, the matrix is that of no load. A probe is the response of a column's own voltage to a
-// current into it. It puts the column's load back: v_j / (1 + gL_j K_jj), formula (3) of docs/derivations.md.
+// current into it. It puts the column's load back: v_j / (1 + gL_j K_jj), formula (3) of
+// docs/reasons/derivations-circuits.md.
 void LumpedCircuit::solve(std::span<const double> siemens, std::span<double> ratio) noexcept {
   const std::size_t scans = array_.driven_lines();
   const std::size_t probes = one_loaded() ? array_.sensed_lines() : 0;

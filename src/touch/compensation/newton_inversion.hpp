@@ -17,7 +17,7 @@
 namespace dermis::touch::compensation {
 
 /// Any readout circuit, by Newton's method with the exact Jacobian J of CircuitModel (formula (5) of
-/// docs/derivations.md).
+/// docs/reasons/derivations-circuits.md).
 ///
 /// Readings and taxels are on the scale x of ReadingScale. With it, Newton's method converges from the textbook
 /// estimate in about 14 steps (four and five decades of taxels, 2x2 to 64x64, every circuit).

@@ -11,8 +11,9 @@
 
 namespace dermis::touch::compensation {
 
-/// How errors add up in sum_ij c_ij G_ij, driven lines i and sensed lines j (docs/derivations.md, "Sums of forces").
-/// With the symbols of GroundedRows, u_i = Rd_i sum_j c_ij G_ij and v_j = RL_j sum_i c_ij G_ij, to first order:
+/// How errors add up in sum_ij c_ij G_ij, driven lines i and sensed lines j (docs/reasons/derivations-forces.md, "Sums
+/// of forces"). With the symbols of GroundedRows, u_i = Rd_i sum_j c_ij G_ij and v_j = RL_j sum_i c_ij G_ij, to first
+/// order:
 ///
 ///   noise of a reading     (S D^-1)_ii / w_j (c_ij + u_i + v_j)      GroundedRows::propagate_noise, transposed
 ///   supply, relative       sum_ij c_ij G_ij a_i / w_j                SupplyError

@@ -10,7 +10,7 @@
 namespace dermis::touch::compensation {
 
 /// The effect of a wrong supply: all readings of a frame are wrong by one factor, 1 + d. Differentiating formula (1) of
-/// docs/derivations.md, for ideal drivers exactly and for others nearly,
+/// docs/reasons/derivations-circuits.md, for ideal drivers exactly and for others nearly,
 ///
 ///   d ln G_ij = (1 + Rd_i sum_k G_ik) (1 + Rl_j sum_k G_kj) d        (without the second factor at virtual ground)
 ///

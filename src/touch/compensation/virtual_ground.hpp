@@ -11,7 +11,7 @@
 
 namespace dermis::touch::compensation {
 
-/// Columns at virtual ground, resistive row drivers: closed form, formula (2) of docs/derivations.md.
+/// Columns at virtual ground, resistive row drivers: closed form, formula (2) of docs/reasons/derivations-circuits.md.
 ///
 ///   y_kj = ratio_kj / load_ohm_j,   Y_k = sum_j y_kj,   G_kj = y_kj / (1 - drive_ohm_k Y_k)
 ///

@@ -111,7 +111,7 @@ TotalForce material_total(const ForceSums& sums, Region region, ConductanceSums&
   return total;
 }
 
-/// docs/derivations.md, "Sums of forces".
+/// docs/reasons/derivations-forces.md, "Sums of forces".
 void find_signed_totals(const ForceSums& sums, std::span<const Region> regions, std::span<TotalForce> totals) {
   thread_local ConductanceSums conductances;
   conductances.clear(regions);

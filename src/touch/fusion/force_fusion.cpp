@@ -22,7 +22,7 @@ constexpr double kUnlearnedPerCelsius = 0.005;  // 1/C, standard deviation of th
 constexpr float kCommonSigmas = 2.0F;           // of an error that all taxels share
 
 // Beyond the heaviest calibrated load the exponent stays as it is there. It is uncertain by the first, and changes by
-// the second for every factor e of the force. docs/derivations.md, "Beyond the calibrated loads".
+// the second for every factor e of the force. docs/reasons/derivations-forces.md, "Beyond the calibrated loads".
 constexpr float kExponentSigma = 0.2F;
 constexpr float kExponentChange = 0.3F;
 constexpr float kLineExponentSigma = 0.3F;  // below the first load of a table: a line, where rubber has a power

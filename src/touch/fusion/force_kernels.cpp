@@ -43,8 +43,8 @@ void compute_inputs(const ExcessConductance excess, float* inputs) {
   });
 }
 
-// Relative error of the exponent below the lightest calibrated load: docs/derivations.md, "Beyond the calibrated
-// loads".
+// Relative error of the exponent below the lightest calibrated load: docs/reasons/derivations-forces.md, "Beyond the
+// calibrated loads".
 constexpr float kExponentSigmaBelow = 0.1F;
 
 /// Square of the relative error at a force between its knots.

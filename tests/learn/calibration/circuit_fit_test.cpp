@@ -388,7 +388,7 @@ TEST(CircuitFit, does_not_depend_on_the_number_of_threads) {
   }
 }
 
-// What the recordings of a real hand show of crosstalk (docs/notes/ghosts.md). A contact: readings above 50 counts;
+// What the recordings of a real hand show of crosstalk (docs/reasons/ghosts.md). A contact: readings above 50 counts;
 // remote: at least three taxels from it; shared: in a row or column of the contact.
 constexpr float kContactCounts = 50.0F;
 constexpr std::size_t kHandRows = 13;

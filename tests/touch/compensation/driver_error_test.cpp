@@ -31,7 +31,8 @@ class DriverErrorOf : public testing::TestWithParam<NamedCircuit> {};
 INSTANTIATE_TEST_SUITE_P(DriverError, DriverErrorOf, testing::ValuesIn(support::all_circuits()),
                          [](const auto& info) { return info.param.name; });
 
-/// Whether the formula of docs/derivations.md stands for the derivatives: exact for ideal drivers only.
+/// Whether the formula of docs/reasons/derivations-circuits.md stands for the derivatives: exact for ideal drivers
+/// only.
 bool is_approximate(const NamedCircuit& circuit) {
   const bool at_ground = circuit.circuit == Circuit::transimpedance && !circuit.real_amplifiers;
   return circuit.idle_rows == IdleRows::grounded && !circuit.resistive_lines && !at_ground;

@@ -13,7 +13,7 @@ export interface WayRound {
 
 export const AS_SENT: WayRound = { transpose: false, flip_rows: false, flip_cols: false };
 
-/** Where a taxel of the array is in what its device sends, by the rules of docs/file-formats.md. */
+/** Where a taxel of the array is in what its device sends, by the rules of docs/array-toml.md. */
 export function sentPlace(
   [row, col]: Place,
   { rows, cols }: { rows: number; cols: number },

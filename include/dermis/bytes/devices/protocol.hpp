@@ -25,7 +25,7 @@ namespace dermis::bytes::devices {
 using layouts::Decoder;
 using layouts::DecoderCounts;
 
-/// A device protocol and its options; docs/devices.md describes each.
+/// A device protocol and its options; docs/protocols.md describes each.
 struct ProtocolOptions {
   std::string name = "auto";           ///< One of protocol_names(): flexitac, 3dvitac, wiresens, ... or auto.
   std::optional<FrameShape> shape{};   ///< Empty: the protocol's own or learned from the bytes. 1x1 ... 1024x1024.

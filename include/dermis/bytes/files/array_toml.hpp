@@ -10,7 +10,7 @@
 
 namespace dermis::bytes::files {
 
-/// Reads array.toml (docs/file-formats.md). The result has passed ArrayDescription::validate().
+/// Reads array.toml (docs/array-toml.md). The result has passed ArrayDescription::validate().
 [[nodiscard]] Result<ArrayDescription> read_array(const std::string& path);
 /// The same from memory; `name` stands for the path in messages.
 [[nodiscard]] Result<ArrayDescription> array_from_toml(std::string_view text, const std::string& name);

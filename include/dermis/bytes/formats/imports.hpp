@@ -13,7 +13,7 @@
 #include "dermis/touch/frames/frame_source.hpp"
 #include "dermis/touch/frames/result.hpp"
 
-/// The frames in files of other systems, a function a format; docs/file-formats.md describes what each reads. A last
+/// The frames in files of other systems, a function a format; docs/frame-files.md describes what each reads. A last
 /// frame that is cut is left out, with a notice. The memory is that of a frame and of a line, at most 32 MiB, unless
 /// said otherwise. `name` stands for the path in messages. Files without times need options.rate_hz.
 namespace dermis::bytes::formats {

@@ -15,7 +15,7 @@ namespace dermis::bytes::models {
 inline constexpr files::FileFormat kModelFormat{"dermis model 3", "dermis model 2",
                                                 "is not a dermis model; a calibration writes one"};
 
-/// Writes a safetensors file (docs/file-formats.md) beside `path` and renames it.
+/// Writes a safetensors file (docs/model-file.md) beside `path` and renames it.
 [[nodiscard]] Status write_model(const std::string& path, const touch::pipeline::Model& model);
 /// The bytes of that file, such as a recording holds.
 [[nodiscard]] Result<std::string> model_to_bytes(const touch::pipeline::Model& model);

@@ -14,7 +14,7 @@
 #include "dermis/touch/frames/frames.hpp"
 #include "dermis/touch/frames/result.hpp"
 
-/// Files of raw frames of every format; the ending of the name gives the format (docs/file-formats.md). In a recording
+/// Files of raw frames of every format; the ending of the name gives the format (docs/frame-files.md). In a recording
 /// of several arrays, "rec.mcap#chest" is the one named 'chest'. Other files that may have several work alike.
 namespace dermis::bytes::recordings {
 

@@ -39,7 +39,7 @@ struct PressPair {
 struct CircuitFit {
   ArrayDescription array;  ///< Nothing is unknown any more.
   /// Relative standard errors of drive_ohm and load_ohm (1: nothing is known); 0 where the value was given. They hold
-  /// the assumptions of docs/calibration.md.
+  /// the assumptions of docs/reasons/circuit-fit.md.
   std::vector<double> drive_error;
   std::vector<double> load_error;
   double common_drive_error = 0.0;  ///< Relative error of the mean of the fitted drivers.

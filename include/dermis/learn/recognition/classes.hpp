@@ -12,7 +12,7 @@
 #include "dermis/learn/recognition/touch_finder.hpp"
 #include "dermis/touch/frames/result.hpp"
 
-/// The learned classes; docs/recognition.md has the equations.
+/// The learned classes; docs/reasons/recognition.md has the equations.
 namespace dermis::learn::recognition {
 
 inline constexpr std::size_t kMostClasses = 1000;

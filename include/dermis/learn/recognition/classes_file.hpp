@@ -9,7 +9,7 @@
 #include "dermis/learn/recognition/classes.hpp"
 #include "dermis/touch/frames/result.hpp"
 
-/// Classes as safetensors: docs/recognition.md names its tensors. The same classes give the same bytes.
+/// Classes as safetensors: docs/model-file.md names its tensors. The same classes give the same bytes.
 namespace dermis::learn::recognition {
 
 inline constexpr bytes::files::FileFormat kClassesFormat{"dermis classes 2", "dermis classes 1",

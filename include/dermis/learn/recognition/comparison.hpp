@@ -13,7 +13,8 @@
 #include "dermis/learn/recognition/learning.hpp"
 #include "dermis/touch/frames/result.hpp"
 
-/// Estimators side by side: each learns what the recipe of docs/recognition.md learns, and is asked what it is asked.
+/// Estimators side by side: each learns what the recipe of docs/reasons/recognition.md learns, and is asked what it is
+/// asked.
 namespace dermis::learn::recognition {
 
 /// The input of an estimator in one fold: the examples that it learns from and those that it is asked about. Features

@@ -9,7 +9,7 @@
 
 #include "dermis/touch/frames/result.hpp"
 
-/// Where touches begin and end in a stream: docs/recognition.md has the rule.
+/// Where touches begin and end in a stream: docs/reasons/recognition.md has the rule.
 namespace dermis::learn::recognition {
 
 /// The limits of a touch, as forces (sums of the readings of a frame) and frames.

@@ -13,7 +13,7 @@ namespace dermis::learn::simulation {
 
 /// Computes readings from taxel conductances, crosstalk included, for every circuit of core/array_description.hpp. For
 /// each driven line, Kirchhoff's current law at every line gives the voltages of all lines (nodal analysis,
-/// docs/simulation.md). The reading, over the supply, is
+/// docs/reasons/simulation.md). The reading, over the supply, is
 ///   divider, flexitac: the voltage of the sensed line across its load_ohm
 ///   transimpedance:    r = (I load_ohm - o) / (1 + 1/amplifier_gain), with I the current into the amplifier over the
 ///                      supply and o its offset over the nominal supply_v: minus the amplifier's output. Its input is
@@ -38,7 +38,7 @@ class ReadoutCircuit {
   void ratios(std::span<const double> siemens, std::span<const double> newtons, std::span<double> ratio) const;
 
   /// The same in single precision: a relative error of about 1e-6. Faster for a divider with grounded idle rows of up
-  /// to 64x64 taxels (docs/circuits.md has the times).
+  /// to 64x64 taxels (docs/reasons/inversions.md has the times).
   void ratios(std::span<const float> siemens, std::span<float> ratio) const;
 
  private:

@@ -12,7 +12,7 @@
 
 namespace dermis::learn::simulation {
 
-/// Strength of a rubber's memory. The ranges cover measurements on real sheets (docs/simulation.md).
+/// Strength of a rubber's memory. The ranges cover measurements on real sheets (docs/reasons/simulation.md).
 struct RubberMemoryOptions {
   double creep_per_decade = 0.10;  ///< Growth of a held reading per decade of time, 0.02 ... 0.30. Measured 0.08-0.31.
   double loop_gap = 0.08;          ///< Gap between loading and unloading, relative to the force, 0 ... 0.2. FSR: 0.10.

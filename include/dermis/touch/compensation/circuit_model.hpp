@@ -15,7 +15,7 @@ namespace dermis::touch::compensation {
 /// while line k is driven. Let w be the response of the reading j to a current into each node (adjoint). A conductance
 /// g between the nodes a and b then changes the reading by
 ///
-///   d T_kj / d g = -(w_a - w_b) (u_a - u_b)            formula (5) of docs/derivations.md
+///   d T_kj / d g = -(w_a - w_b) (u_a - u_b)            formula (5) of docs/reasons/derivations-circuits.md
 ///
 /// Star-mesh elimination finds the potentials without a subtraction. So readings are right to a few roundings, however
 /// far apart the conductances are. Readings have their taxel's row-major index. Not thread-safe: one per thread.

@@ -21,7 +21,7 @@ inline constexpr std::size_t kMaxLines = 1024;
 /// Most temperature sensors with places of their own; more are one on each taxel.
 inline constexpr std::size_t kMaxPlacedSensors = 64;
 
-/// How the array is wired to the ADC. Drawings: docs/circuits.md.
+/// How the array is wired to the ADC. Drawings: docs/circuit-drawings.md.
 enum class Circuit {
   divider,         ///< Every column ends in a resistor to ground; the ADC reads the column voltage.
   transimpedance,  ///< Every column is held at 0 V (virtual ground); the ADC reads its current times load_ohm.

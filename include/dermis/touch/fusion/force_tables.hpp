@@ -9,7 +9,7 @@
 namespace dermis::touch::fusion {
 
 /// Tables from conductance to force, for taxels whose calibration was better with a table than with a network
-/// (docs/calibration.md, "Never worse than a table"). Straight lines through the knots:
+/// (docs/reasons/calibration.md, "Never worse than a table"). Straight lines through the knots:
 ///
 ///   s = e * (1 + per_celsius * dT)       e: excess over the unloaded taxel, dT: from the centre of the calibration
 ///

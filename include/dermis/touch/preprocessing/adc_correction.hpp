@@ -10,7 +10,7 @@
 
 namespace dermis::touch::preprocessing {
 
-/// Undoes in the counts in what an ADC is not ideal (AdcErrors, docs/circuits.md#adc):
+/// Undoes in the counts in what an ADC is not ideal (AdcErrors, docs/circuits.md):
 ///
 ///   v_k = curve(sent_k - offset)             x_k = (v_k - s v_(k-1)) / (1 - s)
 ///

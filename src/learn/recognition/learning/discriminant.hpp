@@ -8,7 +8,7 @@
 
 #include "learn/recognition/features/standardisation.hpp"
 
-/// The linear discriminant with a shrunken covariance: docs/recognition.md, eqs. (1) to (3).
+/// The linear discriminant with a shrunken covariance: docs/reasons/recognition.md, eqs. (1) to (3).
 namespace dermis::learn::recognition {
 
 inline constexpr std::array kShrinkages{0.003, 0.01, 0.03, 0.1, 0.3, 0.6, 0.8, 0.9, 0.97};

@@ -8,7 +8,7 @@
 
 #include "learn/recognition/matrix.hpp"
 
-/// One answer from those of several experts: docs/recognition.md, eqs. (4) and (5).
+/// One answer from those of several experts: docs/reasons/recognition.md, eqs. (4) and (5).
 namespace dermis::learn::recognition {
 
 /// Examples that were scored by what they did not teach.

@@ -6,7 +6,7 @@
 
 #include "learn/recognition/learning/discriminant.hpp"
 
-/// Regression of the classes on kernels exp(-width |z - c|^2): docs/recognition.md, eq. (7).
+/// Regression of the classes on kernels exp(-width |z - c|^2): docs/reasons/recognition.md, eq. (7).
 namespace dermis::learn::recognition {
 
 /// A kernel regression has no more centres.
