@@ -57,8 +57,8 @@ it("proposes a layout, marks what the bytes hold, and reads the device by it", a
     await page.setViewportSize({ width: 1280, height: 720 });
     await page.locator("#array-name").fill("mine");
     await part(page, "use-layout").click();
-    await page.locator("[data-role=array-setup]", { hasText: "layout=mine.layout.toml" }).waitFor();
-    assert.match(readFileSync(join(folder, "mine.layout.toml"), "utf8"), /line = "T \{time_ms\} R\{row\}: \{values\}"/);
+    await page.locator("[data-role=array-setup]", { hasText: "layout=mine/layout.toml" }).waitFor();
+    assert.match(readFileSync(join(folder, "mine/layout.toml"), "utf8"), /line = "T \{time_ms\} R\{row\}: \{values\}"/);
     await part(page, "live-picture").waitFor();
     assert.ok(await part(page, "layout-choice").isHidden());
     await page.locator("[data-role=array-setup] button[type=submit]").click();
@@ -88,8 +88,8 @@ it("asks the bytes for the rows and columns that are typed", async () => {
     assert.deepEqual(await part(page, "layout-map").evaluate(({ width, height }) => [width, height]), [4, 6]);
     await page.locator("#array-name").fill("typed");
     await part(page, "use-layout").click();
-    await page.locator("[data-role=array-setup]", { hasText: "layout=typed.layout.toml" }).waitFor();
-    assert.match(readFileSync(join(folder, "typed.layout.toml"), "utf8"), /rows = 6\ncols = 4\n/);
+    await page.locator("[data-role=array-setup]", { hasText: "layout=typed/layout.toml" }).waitFor();
+    assert.match(readFileSync(join(folder, "typed/layout.toml"), "utf8"), /rows = 6\ncols = 4\n/);
     await page.close();
   } finally {
     await server.stop();

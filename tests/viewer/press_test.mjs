@@ -87,9 +87,9 @@ it("places on a picture get their channels, and are shown there", async () => {
     await part(page, "press-use").click();
     await page.locator("main").waitFor();
     await part(page, "maps").waitFor();
-    const array = readFileSync(join(folder, "hand.toml"), "utf8");
+    const array = readFileSync(join(folder, "hand/array.toml"), "utf8");
     assert.match(array, /taxel_order = \[4, 1, 0, 5\]\nsent = \[1, 6\]/);
-    const positions = readFileSync(join(folder, "hand.positions.csv"), "utf8").split("\n");
+    const positions = readFileSync(join(folder, "hand/array.positions.csv"), "utf8").split("\n");
     assert.equal(positions[0], "x_mm,y_mm,z_mm");
     const second = positions[2].split(",").map(Number);
     assert.ok(Math.abs(second[0] - 30) < 0.5, positions[2]);

@@ -215,7 +215,7 @@ it("leads a CSV mat on the network to newtons, and says nothing untrue", async (
   } finally {
     mat.close();
   }
-  assert.match(readFileSync(join(folder, "mat.toml"), "utf8"), /circuit = "auto"/);
+  assert.match(readFileSync(join(folder, "mat/array.toml"), "utf8"), /circuit = "auto"/);
 });
 
 it("leads a JSON mat on the network to its counts", async () => {

@@ -55,15 +55,17 @@ TEST_F(ArraySetupTest, writes_the_array_that_a_client_describes) {
   EXPECT_NE(answer(R"({"name":"mat","rows":0,"cols":4,"pitch_um":8000,"adc_bits":10})").find("rows"),
             std::string::npos);
   EXPECT_NE(answer(R"({"name":"mat","rows":3,"cols":4,"pitch_um":8000})").find("adc_bits"), std::string::npos);
-  std::ofstream("there.toml") << "mine";
+  std::filesystem::create_directory("there");
+  std::ofstream("there/array.toml") << "mine";
   EXPECT_NE(answer(R"({"name":"there","rows":3,"cols":4,"pitch_um":8000,"adc_bits":10})").find("there already"),
             std::string::npos);
-  EXPECT_NE(answer(R"({"name":"mat","rows":3,"cols":4,"pitch_um":8000,"adc_bits":10})").find("mat.toml"),
+  EXPECT_NE(answer(R"({"name":"mat","rows":3,"cols":4,"pitch_um":8000,"adc_bits":10})").find("mat/array.toml"),
             std::string::npos);
   work.join();
 
   EXPECT_EQ(described.from, "sim:idle?rate=100&rows=3&cols=4");
-  EXPECT_EQ(described.model, "mat.toml");
+  EXPECT_EQ(described.model, "mat/array.toml");
+  EXPECT_TRUE(described.is_new);
   const Result<ArrayDescription> array = bytes::files::read_array(described.model);
   ASSERT_TRUE(array) << array.error().message;
   EXPECT_EQ(array->name, "mat");
@@ -153,7 +155,7 @@ TEST_F(ArraySetupTest, serves_an_array_from_last_time_at_the_source_that_a_clien
   StreamClient client((*setup)->port());
   EXPECT_EQ(client.call("/array/use", R"({"file":"old.toml"})"), "choose where the array is first");
   const std::string known = client.call("/array/known", "{}");
-  EXPECT_NE(known.find(R"({"file":"old.toml","name":"old","rows":16,"cols":16,"calibrated":false})"), std::string::npos)
+  EXPECT_NE(known.find(R"({"file":"old.toml","name":"old","rows":16,"cols":16,"calibrated":false,"from":""})"), std::string::npos)
       << known;
   EXPECT_EQ(known.find("unrelated"), std::string::npos);
   EXPECT_EQ(client.call("/source/open", R"({"simulation":"contacts"})"), R"({"from":"sim:contacts?rate=100"})");
@@ -166,6 +168,32 @@ TEST_F(ArraySetupTest, serves_an_array_from_last_time_at_the_source_that_a_clien
   work.join();
   EXPECT_EQ(described.from, "sim:contacts?rate=100");
   EXPECT_EQ(described.model, "old.toml");
+}
+
+TEST_F(ArraySetupTest, finds_an_array_of_last_time_by_one_call) {
+  ArrayDescription array;
+  array.name = "mat";
+  array.rows = array.cols = 16;
+  array.row_pitch_m = array.col_pitch_m = 0.01;
+  array.readout.circuit = Circuit::automatic;
+  array.readout.adc_bits = 12;
+  std::filesystem::create_directory("mat");
+  ASSERT_TRUE(bytes::files::write_array("mat/array.toml", array));
+  std::ofstream("mat/source.toml") << "from = \"sim:contacts?rate=100\"\n";
+  const auto setup = ArraySetup::create("", any_port(), {});
+  ASSERT_TRUE(setup) << setup.error().message;
+  StreamClient client((*setup)->port());
+  const std::string known = client.call("/array/known", "{}");
+  EXPECT_NE(known.find(R"("file":"mat/array.toml","name":"mat")"), std::string::npos) << known;
+  EXPECT_NE(known.find(R"("from":"sim:contacts?rate=100")"), std::string::npos) << known;
+  const std::atomic<bool> stop = false;
+  DescribedArray described;
+  std::thread work([&] { described = (*setup)->run(stop); });
+  EXPECT_EQ(client.call("/array/use", R"({"file":"mat/array.toml"})"), R"({"file":"mat/array.toml"})");
+  work.join();
+  EXPECT_EQ(described.from, "sim:contacts?rate=100");
+  EXPECT_EQ(described.model, "mat/array.toml");
+  EXPECT_FALSE(described.is_new);
 }
 
 TEST_F(ArraySetupTest, goes_back_to_the_choice_of_a_source) {
@@ -187,7 +215,7 @@ TEST_F(ArraySetupTest, writes_nothing_of_an_array_whose_source_sends_no_frame) {
   const std::string answer =
       client.call("/array/describe", R"({"name":"mat","rows":5,"cols":4,"pitch_um":8000,"adc_bits":10})");
   EXPECT_NE(answer.find("check rows and cols"), std::string::npos) << answer;
-  EXPECT_FALSE(std::filesystem::exists("mat.toml"));
+  EXPECT_FALSE(std::filesystem::exists("mat"));
 }
 
 TEST_F(ArraySetupTest, offers_no_ports_where_the_device_was_named_or_others_reach_the_server) {
