@@ -111,7 +111,7 @@ function faultsOfBoxes() {
     boxes.push({ ...part, owner });
   };
   const isLeftOut = (target) =>
-    target.closest(".only-spoken, .suit-room, .uplot, dialog, option, [hidden]") !== null ||
+    target.closest(".only-spoken, .messages, .suit-room, .uplot, dialog, option, [hidden]") !== null ||
     style(target).visibility === "hidden";
   const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   for (let text = texts.nextNode(); text !== null; text = texts.nextNode()) {

@@ -38,7 +38,14 @@ export class App implements ViewContext {
   readonly #thresholds = makeThresholds(this.stream);
   readonly #take = new TakeDialog(this);
   readonly #room = element("main");
-  readonly #notice = element("p", { class: "notice message", role: "status", "data-role": "notice", hidden: true });
+  readonly #notice = element("p", {
+    class: "notice message",
+    role: "status",
+    "data-role": "notice",
+    title: "Click to put it away",
+    hidden: true,
+    onclick: () => setHidden(this.#notice, true),
+  });
   #shown: View | undefined;
   readonly #drawNext = (nowMs: number): void => this.#draw(nowMs);
   #noticeTimer = 0;

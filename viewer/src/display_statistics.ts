@@ -7,7 +7,7 @@ const KEPT = 240;
 export class DisplayStatistics {
   /** Frames of the array view. */
   framesDrawn = 0;
-  /** Of the screen, whatever they show. */
+  /** Frames of the screen, whatever they show. */
   pictures = 0;
   readonly #latencies = new Float64Array(KEPT);
   readonly #sorted = new Float64Array(KEPT);

@@ -11,7 +11,7 @@ export function fixed(value: number, digits: number): string {
   return value < 0 && Number(text) !== 0 ? MINUS + text : text;
 }
 
-const MOST_DIGITS = 3;
+const MOST_DIGITS = 2;
 
 /** A value and its standard deviation, with so many digits that the latter has two that say something: 8.5 and 1.6. */
 export function measured(value: number, sigma: number): [value: string, sigma: string] {

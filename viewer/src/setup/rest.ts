@@ -3,7 +3,7 @@
 
 /** A rest that was wrong, because something lay there at first, is forgotten after about so many pictures. */
 const FORGOTTEN_AFTER = 300;
-/** Of the noise: what is nearer to rest than this is nothing. */
+/** So many times the noise is nothing. */
 const NOISE_FLOOR = 8;
 const LEAST_FLOOR = 16;
 const LEAST_RANGE = 200;

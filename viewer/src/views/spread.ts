@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
-/** What stands in a column: where it wants to begin, and how high it is, in CSS pixels. */
+/** A label in a column: where it wants to begin, and how high it is, in CSS pixels. */
 export interface Standing {
   top: number;
   height: number;

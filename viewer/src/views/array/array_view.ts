@@ -293,7 +293,13 @@ class ArrayView implements View {
     if (rows === 0 || this.#array === undefined) return;
     const known = this.#feeds.frames[FORCE]!.statuses;
     const areKnown = this.#array?.calibrated === true && known.length === statuses.length;
-    this.#maps.setValues(index, rows, cols, shownOf(index, frame, this.#array), areKnown ? known : statuses);
+    this.#maps.setValues(
+      index,
+      rows,
+      cols,
+      shownOf(index, frame, this.#array, this.#feeds.frames[FORCE]!),
+      areKnown ? known : statuses,
+    );
     this.#mapsDue = true;
     this.#textDue = true;
   }

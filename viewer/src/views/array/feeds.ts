@@ -6,7 +6,7 @@ import type { Stream } from "../../stream/stream";
 import type { ArrayDescription } from "../../suit";
 import { HeldValues, type TimeShare } from "./held_values";
 import { STALE_S } from "./picture";
-import { FORCE, PRESSURE, QUANTITIES, RAW, taxelAreaM2 } from "./quantities";
+import { CONDUCTANCE, FORCE, PRESSURE, QUANTITIES, RAW, taxelAreaM2 } from "./quantities";
 
 /** One topic: its newest messages, decoded when they are drawn, and what is held of all that came. */
 interface Feed {
@@ -139,16 +139,19 @@ function read(index: number, message: DataView, frame: GridFrame): void {
   (index === RAW ? readCounts : readGrid)(message, frame);
 }
 
-/** Of the range of the ADC: what idle readings have. */
+/** Idle readings have so much of the range of the ADC. */
 const IDLE_SHARE = 1 / 256;
 
-/** What a map shows of a frame: nothing where there is no more than noise. */
-export function shownOf(index: number, { values, sigmas }: GridFrame, array: ArrayDescription): Float32Array {
+/** The values as a map shows them: 0 where there is no more than noise. A conductance is at rest where the
+ *  force is noise. */
+export function shownOf(index: number, frame: GridFrame, array: ArrayDescription, force = frame): Float32Array {
   const leastCounts = array.full_scale_counts * IDLE_SHARE;
-  return values.map((value, taxel) => {
-    const floor = index === RAW ? leastCounts : COUNTED_SIGMAS * sigmas[taxel]!;
-    return value < floor && floor !== Infinity ? 0 : value;
-  });
+  const isNoise = ({ values, sigmas }: GridFrame, taxel: number): boolean =>
+    values[taxel]! < COUNTED_SIGMAS * sigmas[taxel]! && sigmas[taxel] !== Infinity;
+  const ruling = index === CONDUCTANCE ? force : frame;
+  return frame.values.map((value, taxel) =>
+    (index === RAW ? value < leastCounts : isNoise(ruling, taxel)) ? 0 : value,
+  );
 }
 
 /** The highest value of the taxels with a reading; 0 where there are none. */

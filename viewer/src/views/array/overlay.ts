@@ -69,7 +69,9 @@ export class Overlay {
   readonly canvas: HTMLCanvasElement;
   readonly #pen: CanvasRenderingContext2D;
   #seriesColors: string[] = [];
-  #plateText = "";
+  #text = "";
+  /** Round what is in the colours of contacts. */
+  #rim = "";
 
   constructor(canvas: HTMLCanvasElement) {
     this.canvas = canvas;
@@ -78,7 +80,8 @@ export class Overlay {
 
   readColors(): void {
     this.#seriesColors = Array.from({ length: SLOTS }, (_, index) => cssColor(`--series-${index + 1}`));
-    this.#plateText = cssColor("--text");
+    this.#text = cssColor("--text");
+    this.#rim = cssColor("--surface");
   }
 
   resize(width: number, height: number, pixelRatio: number): void {
@@ -166,7 +169,7 @@ export class Overlay {
     const labels = touching.map((contact) => {
       const [x, y] = pointOn(area, array, contact.x, contact.y);
       const slot = live.slots.indexOf(contact.id);
-      const color = this.#seriesColors[slot] ?? this.#plateText;
+      const color = this.#seriesColors[slot] ?? this.#text;
       return { contact, slot, color, x, y, top: y - 0.5 * LABEL_HEIGHT, height: LABEL_HEIGHT };
     });
     pen.save();
@@ -219,9 +222,9 @@ export class Overlay {
     pen.moveTo(left, middle);
     pen.lineTo(area.left + area.width + 3, middle);
     pen.lineTo(x, y);
-    pen.setLineDash([1, 3]);
-    this.#strokeTwice(() => pen.stroke(), 1, color);
-    pen.setLineDash([]);
+    pen.strokeStyle = color;
+    pen.lineWidth = 1;
+    pen.stroke();
     pen.fillStyle = color;
     pen.fillRect(left, top + 1, 4, LABEL_HEIGHT - 2);
     pen.font = FONT;
@@ -230,13 +233,13 @@ export class Overlay {
     pen.fillText(labelText(contact), left + 8, middle + 0.5, LABEL_MARGIN - LABEL_GAP - 10);
   }
 
-  /** Dark below light or colour: seen on every colour of the map. */
-  #strokeTwice(stroke: () => void, width: number, color = INK): void {
+  /** Dark below light, or a rim below a colour: seen on every colour of the map. */
+  #strokeTwice(stroke: () => void, width: number, color?: string): void {
     const pen = this.#pen;
-    pen.strokeStyle = HALO;
+    pen.strokeStyle = color === undefined ? HALO : this.#rim;
     pen.lineWidth = width + 2;
     stroke();
-    pen.strokeStyle = color;
+    pen.strokeStyle = color ?? INK;
     pen.lineWidth = width;
     stroke();
   }

@@ -78,7 +78,7 @@ export class TaxelTable {
   readonly #pins = Array.from({ length: MOST_PINS }, (_, index) => new Row(`pin-${index + 1}`));
 
   constructor() {
-    const heads = ["Taxel", "Counts", "Resistance", "Conductance", "Force", "1 \u03c3", "Pressure", "Status"];
+    const heads = ["Taxel", "Counts", "Resist.", "Conduct.", "Force", "\u00b1", "Pressure", "Status"];
     const body = element("tbody", {}, this.#cursor.element, ...this.#pins.map((row) => row.element));
     const room = table(heads, "taxel-table", body);
     room.append(this.#none);

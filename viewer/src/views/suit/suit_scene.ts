@@ -74,7 +74,7 @@ export class SuitScene {
   readonly #forces = new Float64Array(MOST_ARROWS);
   readonly #sight = new three.Raycaster();
   readonly #heading = new Heading();
-  /** What is seen of it is told by its normals: it is upright. */
+  /** An upright suit is turned; one that lies flat is seen whole from above. */
   #isUpright = false;
   #arrowCount = 0;
   /** Moves of each array, from its place in /suit.json to its present one. */
@@ -237,24 +237,26 @@ export class SuitScene {
     return mean.divideScalar(Math.max(1, normals.length));
   }
 
-  /** The corners of the boxes round the parts of the body. */
+  /** The corners of the boxes round what carries the arrays: of the links of a body, or of a mannequin. */
   #bodyCorners(): three.Vector3[] {
     const corners: three.Vector3[] = [];
-    const dressed = this.#body?.group ?? this.#mannequin;
-    dressed?.updateMatrixWorld(true);
-    dressed?.traverse((part) => {
-      if (!(part instanceof three.Mesh)) return;
-      const geometry = part.geometry as three.BufferGeometry;
-      geometry.computeBoundingBox();
-      const { min, max } = geometry.boundingBox!;
-      for (const x of [min.x, max.x])
-        for (const y of [min.y, max.y])
-          for (const z of [min.z, max.z]) corners.push(new three.Vector3(x, y, z).applyMatrix4(part.matrixWorld));
-    });
+    const carriers = new Set((this.#suit?.arrays ?? []).flatMap(({ link }) => (link === undefined ? [] : [link])));
+    const dressed = this.#body?.partsOf(carriers) ?? (this.#mannequin === undefined ? [] : [this.#mannequin]);
+    for (const part of dressed) part.updateWorldMatrix(true, true);
+    for (const whole of dressed)
+      whole.traverse((part) => {
+        if (!(part instanceof three.Mesh)) return;
+        const geometry = part.geometry as three.BufferGeometry;
+        geometry.computeBoundingBox();
+        const { min, max } = geometry.boundingBox!;
+        for (const x of [min.x, max.x])
+          for (const y of [min.y, max.y])
+            for (const z of [min.z, max.z]) corners.push(new three.Vector3(x, y, z).applyMatrix4(part.matrixWorld));
+      });
     return corners;
   }
 
-  /** As near as all taxels and the whole body can be seen, and room for arrows and names around them. */
+  /** As near as all taxels and what carries them can be seen, and room for arrows and names around them. */
   #fit(direction: three.Vector3): void {
     const target = this.#controls.target.copy(this.#centre);
     const point = new three.Vector3();

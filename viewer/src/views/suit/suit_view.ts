@@ -38,7 +38,7 @@ class ArrayLabel {
 
 /** An arrow is not longer than the scale. */
 function forceText(newtons: number, scaleEnd: number): string {
-  return `${fixed(newtons, 1)} N${newtons > scaleEnd ? " (beyond the scale)" : ""}`;
+  return `${fixed(newtons, 1)} N${newtons > scaleEnd ? " (beyond)" : ""}`;
 }
 
 /** The middle of what these points of an array are on the picture. */
@@ -100,7 +100,7 @@ class SuitView implements View {
         class: "panel suit-room",
         tabindex: 0,
         role: "application",
-        "aria-label": "The suit. Arrow keys turn it, plus and minus bring it nearer, Home shows all of it.",
+        "aria-label": "The suit. Arrow keys turn it, plus and minus bring it nearer, Home shows all arrays.",
         "data-role": "suit",
       },
       this.#canvas,
