@@ -22,8 +22,10 @@ import {
 
 const SIZES = [
   { width: 390, height: 844 },
+  { width: 768, height: 1024 },
   { width: 1280, height: 720 },
   { width: 1440, height: 900 },
+  { width: 1920, height: 1080 },
 ];
 const ARRAYS = ["chest", "back", "left_arm", "right_arm", "left_shoulder"];
 const CONTACTS = 12;
@@ -109,7 +111,7 @@ function faultsOfBoxes() {
     boxes.push({ ...part, owner });
   };
   const isLeftOut = (target) =>
-    target.closest(".only-spoken, .suit-room, .uplot, dialog, option, [hidden]") !== null ||
+    target.closest(".only-spoken, .messages, .suit-room, .uplot, dialog, option, [hidden]") !== null ||
     style(target).visibility === "hidden";
   const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   for (let text = texts.nextNode(); text !== null; text = texts.nextNode()) {
@@ -133,7 +135,7 @@ function faultsOfBoxes() {
   if (map !== null && Math.min(map.clientWidth, map.clientHeight) < 150)
     faults.push(`the map has ${map.clientWidth}x${map.clientHeight} px`);
   const { scrollHeight } = document.documentElement;
-  if (innerWidth > 700 && scrollHeight > innerHeight) faults.push(`the page is ${scrollHeight} px high`);
+  if (innerWidth > 1000 && scrollHeight > innerHeight) faults.push(`the page is ${scrollHeight} px high`);
   if (document.documentElement.scrollWidth > innerWidth)
     faults.push(`the page is ${document.documentElement.scrollWidth} px wide`);
   return [...new Set(faults)];
@@ -143,7 +145,11 @@ function faultsOfBoxes() {
 function keepLabels() {
   window.labels = [];
   const pen = CanvasRenderingContext2D.prototype;
-  const { clearRect, fillText } = pen;
+  const { clearRect, fillText, rect } = pen;
+  pen.rect = function (...area) {
+    window.map = area;
+    return rect.apply(this, area);
+  };
   pen.clearRect = function (...area) {
     window.labels = [];
     return clearRect.apply(this, area);
@@ -159,6 +165,9 @@ function keepLabels() {
 function faultsOfLabels() {
   const { labels } = window;
   if (labels.length < 4) return [`${labels.length} contacts have labels`];
+  const [mapLeft, , mapWidth] = window.map;
+  const over = labels.find(({ left }) => left < mapLeft + mapWidth);
+  if (over !== undefined) return [`${over.text} lies over the map`];
   return labels.flatMap((one, index) =>
     labels.slice(index + 1).flatMap((other) => {
       const width = Math.min(one.right, other.right) - Math.max(one.left, other.left);

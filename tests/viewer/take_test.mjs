@@ -146,14 +146,45 @@ function heldFrames() {
   return bench.path("held.mcap");
 }
 
+/** In the page: where its parts are. */
+function boxesOfThePage() {
+  const parts = [".bar", ".bar *", ".toolbar", ".maps", ".map-plot", ".readouts > *"];
+  return parts.flatMap((part) =>
+    [...document.querySelectorAll(part)].map((one) => {
+      const { x, y, width, height } = one.getBoundingClientRect();
+      return `${part} ${[x, y, width, height].map(Math.round).join(" ")}`;
+    }),
+  );
+}
+
+/** In the page: keeps all that the button says. */
+function hearTareButton() {
+  const button = document.querySelector("[data-role=tare]");
+  window.said = [];
+  new MutationObserver(() => window.said.push(button.textContent)).observe(button, {
+    subtree: true,
+    childList: true,
+    characterData: true,
+  });
+}
+
 it("refuses a tare under a load, takes it where that is said again, and takes it back", async () => {
   await served(["--from", heldFrames()], async (page) => {
     const force = async () => parseFloat(await part(page, "total-force").innerText());
     await eventually(page, () => parseFloat(document.querySelector("[data-role=total-force]").textContent) > 1);
     const before = await force();
+    const boxes = await page.evaluate(boxesOfThePage);
+    await page.evaluate(hearTareButton);
     await part(page, "tare").click();
     await words(page, "tare-refused", /^Not tared\. small: .* reads? .* N: take it off and tare again$/);
-    await page.locator("[data-role=tare][aria-pressed=false]").waitFor();
+    await page.locator("[data-role=tare][aria-pressed=false]", { hasText: /^Tare$/ }).waitFor();
+    assert.deepEqual(await page.evaluate(boxesOfThePage), boxes);
+    assert.ok(!(await page.evaluate(() => window.said)).includes("Tared"), "before the server agreed");
+    assert.equal(await page.getByText(/take it off and tare again/).count(), 1);
+    await part(page, "tare-leave").click();
+    await part(page, "tare-banner").waitFor({ state: "hidden" });
+    await part(page, "tare").click();
+    await part(page, "tare-banner").waitFor();
     assert.ok(Math.abs((await force()) - before) < 0.05 * before);
     await part(page, "tare-force").click();
     await words(page, "notice", /small was tared by .*: the tare takes .* N on .* as zero/);

@@ -12,7 +12,7 @@ import { TakeDialog } from "./take/take_dialog";
 import { Theme } from "./theme";
 import { Bar } from "./ui/bar";
 import { makeHelp } from "./ui/help";
-import { makeTareBanner } from "./ui/tare_banner";
+import { isOfRefusedTare, makeTareBanner } from "./ui/tare_banner";
 import { makeThreatBanner } from "./ui/threat_banner";
 import { makeThresholds } from "./ui/thresholds";
 import { makeTokenForm } from "./ui/token_form";
@@ -38,7 +38,14 @@ export class App implements ViewContext {
   readonly #thresholds = makeThresholds(this.stream);
   readonly #take = new TakeDialog(this);
   readonly #room = element("main");
-  readonly #notice = element("p", { class: "notice", role: "status", "data-role": "notice", hidden: true });
+  readonly #notice = element("p", {
+    class: "notice message",
+    role: "status",
+    "data-role": "notice",
+    title: "Click to put it away",
+    hidden: true,
+    onclick: () => setHidden(this.#notice, true),
+  });
   #shown: View | undefined;
   readonly #drawNext = (nowMs: number): void => this.#draw(nowMs);
   #noticeTimer = 0;
@@ -76,12 +83,16 @@ export class App implements ViewContext {
       this.#bar.element,
       makeTokenForm(this.stream),
       ...makeArraySetup(this.stream, this.suit, this.theme),
-      this.#notice,
-      makeThreatBanner(this.live.threats, this.stream),
-      makeTareBanner(this.stream),
       this.#room,
       this.#transport.marks.element,
       this.#transport.element,
+      element(
+        "div",
+        { class: "messages" },
+        makeThreatBanner(this.live.threats, this.stream),
+        makeTareBanner(this.stream),
+        this.#notice,
+      ),
       this.#help,
       this.#thresholds,
       this.#take.element,
@@ -147,6 +158,7 @@ export class App implements ViewContext {
   }
 
   #showNotice(level: number, message: string): void {
+    if (isOfRefusedTare(message)) return; // the page says it at length
     window.clearTimeout(this.#noticeTimer);
     setText(this.#notice, message);
     setHidden(this.#notice, message === "");

@@ -5,7 +5,10 @@ const KEPT = 240;
 
 /** How quickly frames reach the screen: from their time to the frame of the screen after the one they were drawn in. */
 export class DisplayStatistics {
+  /** Frames of the array view. */
   framesDrawn = 0;
+  /** Frames of the screen, whatever they show. */
+  pictures = 0;
   readonly #latencies = new Float64Array(KEPT);
   readonly #sorted = new Float64Array(KEPT);
   #count = 0;
@@ -18,6 +21,7 @@ export class DisplayStatistics {
 
   /** At the beginning of each frame of the screen. */
   presented(utcS: number): void {
+    this.pictures += 1;
     if (Number.isNaN(this.#drawnStampS)) return;
     this.#latencies[this.#count % KEPT] = utcS - this.#drawnStampS;
     this.#count += 1;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { describe, expect, it } from "vitest";
-import { clock, engineering, fixed } from "./format";
+import { clock, dayAndTime, engineering, fixed, measured } from "./format";
 
 describe("numbers", () => {
   it("have the prefix of their size and four digits", () => {
@@ -11,6 +11,17 @@ describe("numbers", () => {
     expect(engineering(1.5e-5, "s")).toBe("15.00 \u00b5s");
     expect(engineering(0, "S")).toBe("0 S");
     expect(engineering(Infinity, "\u2126")).toBe("\u221e \u2126");
+  });
+
+  it("have no more digits than two of their standard deviation, and at most hundredths", () => {
+    expect(measured(8.4512, 1.573)).toEqual(["8.5", "1.6"]);
+    expect(measured(131.2, 15.7)).toEqual(["131", "16"]);
+    expect(measured(0.45123, 0.0157)).toEqual(["0.45", "0.02"]);
+    expect(measured(NaN, NaN)).toEqual(["\u2013", "\u2013"]);
+  });
+
+  it("of a day and its time have the form of the server's log", () => {
+    expect(dayAndTime(0)).toBe("1970-01-01 00:00:00 UTC");
   });
 
   it("have no sign where they are zero, and a dash where they are none", () => {

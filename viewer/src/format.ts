@@ -11,6 +11,15 @@ export function fixed(value: number, digits: number): string {
   return value < 0 && Number(text) !== 0 ? MINUS + text : text;
 }
 
+const MOST_DIGITS = 2;
+
+/** A value and its standard deviation, with so many digits that the latter has two that say something: 8.5 and 1.6. */
+export function measured(value: number, sigma: number): [value: string, sigma: string] {
+  const digits = sigma > 0 && Number.isFinite(sigma) ? 1 - Math.floor(Math.log10(sigma)) : 2;
+  const kept = Math.min(MOST_DIGITS, Math.max(0, digits));
+  return [fixed(value, kept), fixed(sigma, kept)];
+}
+
 const PREFIXES: readonly (readonly [number, string])[] = [
   [1e6, "M"],
   [1e3, "k"],
@@ -50,6 +59,11 @@ export function withUnit(value: number, unit: string): string {
 /** Seconds since 1970, or since a recording began, as hh:mm:ss.mmm of the day (UTC). */
 export function timeOfDay(seconds: number): string {
   return new Date(1000 * seconds).toISOString().slice(11, 23);
+}
+
+/** As the server's log has it: "2026-11-30 05:21:35 UTC". */
+export function dayAndTime(seconds: number): string {
+  return `${new Date(1000 * seconds).toISOString().slice(0, 19).replace("T", " ")} UTC`;
 }
 
 /** The words of what was thrown. */

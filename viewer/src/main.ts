@@ -3,6 +3,7 @@
 import { errorText } from "./format";
 import "./styles/tokens.css";
 import "./styles/page.css";
+import "./styles/controls.css";
 import { App } from "./app";
 
 try {

@@ -59,7 +59,7 @@ Colour from_oklch(double lightness, double chroma, double hue_degrees) {
 
 /// Where in the palette a share of the scale lies.
 double palette_place(double share) {
-  if (share < kToeShare) return share * kToeColours / kToeShare;
+  if (share < kToeShare) return kToeColours * std::pow(share / kToeShare, 3.0);
   return kToeColours + (share - kToeShare) * (1.0 - kToeColours) / (1.0 - kToeShare);
 }
 

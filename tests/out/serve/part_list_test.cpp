@@ -118,6 +118,7 @@ TEST_F(Parameters, begin_with_the_defaults) {
                                                           {"/tare/force", false},
                                                           {"/tare/log", std::string()},
                                                           {"/tare/refused", std::string()},
+                                                          {"/tare/taken", false},
                                                           {"/tare/undo", false}};
   EXPECT_EQ(all(), expected);
 }
@@ -168,6 +169,7 @@ TEST_F(Parameters, the_tare_of_the_suit_is_that_of_all_its_arrays) {
   EXPECT_EQ(all().at("/tare"), ParameterValue(false));
   EXPECT_EQ(set("/right/tare", true), "");
   EXPECT_EQ(all().at("/tare"), ParameterValue(true));
+  EXPECT_EQ(all().at("/tare/taken"), ParameterValue(false)) << "no frame has come of which it could be";
   EXPECT_EQ(set("/tare", false), "");
   EXPECT_EQ(all().at("/left/tare"), ParameterValue(false));
 }

@@ -28,6 +28,11 @@ const KIND_WORDS: Readonly<Record<Kind, string>> = {
   "to calibrate": "To calibrate",
 };
 
+/** Where the hub is, without the key that opens it: "hub.local:4222" of nats://hub.local:4222?key=/etc/fleet.pem. */
+function hubName(address: string): string {
+  return address.replace(/[?#].*$/, "").replace(/^\w+:\/+/, "");
+}
+
 /** The robots of a hub, asked for again and again. */
 export class FleetPage {
   readonly #theme = new Theme();
@@ -154,7 +159,8 @@ export class FleetPage {
 
   #take(fleet: FleetDocument): void {
     this.#isThere = true;
-    setText(this.#hub, fleet.hub);
+    setText(this.#hub, hubName(fleet.hub));
+    this.#hub.title = fleet.hub;
     this.#robots = fleet.robots.map(robotOf);
     if (fleet.error === "") this.#say("good", "Live", "");
     else this.#say("bad", "No hub", `${fleet.error}. The table is as the hub told it last.`);

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import "../styles/tokens.css";
 import "../styles/page.css";
+import "../styles/controls.css";
 import { FleetPage } from "./fleet_page";
 
 new FleetPage().begin();

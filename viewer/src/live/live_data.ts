@@ -15,15 +15,39 @@ import { Marks } from "./marks";
 import { RegionForce } from "./region_force";
 import { ThreatBoard } from "./threat_board";
 
+/** Half a second of contacts, and those that begin and end between the frames that are streamed. */
+const MOST_RECENT = 64;
+
 /** The data of one array, whatever is shown. */
 export class ArrayLive {
   readonly contacts = new ContactsFrame();
   /** Rises with each message. */
   version = 0;
+  /** The newest messages, by which a map finds the contacts of its frame. */
+  readonly #recent: { stampS: number; message: DataView }[] = [];
   readonly total = new ForceHistory();
   readonly slots = new ContactSlots();
   /** Where the centre of pressure has been in the last two seconds, as long as something touches. */
   readonly centre = new Trail();
+
+  receive(message: DataView): void {
+    readContacts(message, this.contacts);
+    const { stampS } = this.contacts;
+    if (stampS < (this.#recent.at(-1)?.stampS ?? stampS)) this.#recent.length = 0;
+    this.#recent.push({ stampS, message });
+    if (this.#recent.length > MOST_RECENT) this.#recent.shift();
+  }
+
+  has(stampS: number): boolean {
+    return this.#recent.some((one) => one.stampS === stampS);
+  }
+
+  /** False: there are no contacts of this very frame. */
+  readAt(stampS: number, frame: ContactsFrame): boolean {
+    const found = this.#recent.findLast((one) => one.stampS === stampS);
+    if (found !== undefined) readContacts(found.message, frame);
+    return found !== undefined;
+  }
 
   /** The force of each contact, at its place: as /contacts gives it for the suit, in the plane of the array. */
   addCentre(): void {
@@ -118,7 +142,7 @@ export class LiveData {
     if (array === undefined) return;
     const { contacts } = array;
     const beforeS = contacts.stampS;
-    readContacts(message, contacts);
+    array.receive(message);
     array.total.add(contacts.stampS, contacts.totalForceN);
     const isRewound = contacts.stampS < Math.min(beforeS, this.latestS) - 1; // an array may lag behind the others
     if (isRewound) this.events.rewind(contacts.stampS);

@@ -24,7 +24,7 @@ export function regionName({ rows, cols }: Region): string {
 }
 
 /** Least force of a counted taxel in standard deviations: forces are cut at zero, so noise of others would add up. */
-const COUNTED_SIGMAS = 3;
+export const COUNTED_SIGMAS = 3;
 
 /** The force on the region that the user has drawn, from then on, whatever is shown. Faulty taxels have none. */
 export class RegionForce {

@@ -42,6 +42,11 @@ function resize(frame: GridFrame, rows: number, cols: number): void {
   frame.statuses = new Uint8Array(rows * cols);
 }
 
+/** The time of any message with a header. */
+export function stampOf(message: DataView): number {
+  return reader.begin(message).header();
+}
+
 /** sensor_msgs/msg/Image of counts: 16UC1 or 32FC1. */
 export function readCounts(message: DataView, frame: GridFrame): void {
   frame.stampS = reader.begin(message).header();

@@ -48,6 +48,12 @@ describe("the colour map", () => {
     expect(cssGradient(true)).toContain(`${colorOf(0.01, true)} 1.00%`);
   });
 
+  it("shows nothing of noise, a quarter of the first percent, dark and light", () => {
+    const justSeen = 0.02;
+    for (const fromLight of [false, true])
+      expect(distance(oklab(0.0025, fromLight), oklab(0, fromLight))).toBeLessThan(justSeen / 4);
+  });
+
   it("leaves a sheet at rest the white of its panel in the light theme", () => {
     expect(rgbOf(0, true)).toEqual([1, 1, 1]);
     expect(rgbOf(TOE_SHARE, true)).toEqual(

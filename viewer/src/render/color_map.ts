@@ -18,14 +18,22 @@ export const COEFFICIENTS: readonly (readonly [number, number, number])[] = [
   [8.755, 7.6851, 9.9848],
 ];
 
-/** A light press differs from nothing: so much of the colours lies between 0 and the first percent of the scale. */
+/**
+ * So much of the colours lies between 0 and the first percent of the scale: a light press differs from nothing. They rise
+ * by the cube of the share: noise, which is a small part of that percent, looks like nothing.
+ */
 export const TOE_SHARE = 0.01;
 export const TOE_COLORS = 0.1;
+
+/** How far the first percent is left behind, 0 to 1, as the eye is to see it. */
+function leftToe(inside: number): number {
+  return Math.min(1, inside / TOE_SHARE) ** 3;
+}
 
 function toed(share: number): number {
   const inside = Math.min(1, Math.max(0, share));
   return inside < TOE_SHARE
-    ? (inside * TOE_COLORS) / TOE_SHARE
+    ? TOE_COLORS * leftToe(inside)
     : TOE_COLORS + ((inside - TOE_SHARE) * (1 - TOE_COLORS)) / (1 - TOE_SHARE);
 }
 
@@ -41,7 +49,7 @@ function channel(share: number, index: 0 | 1 | 2): number {
  */
 export function rgbOf(share: number, fromLight = false): [number, number, number] {
   const place = fromLight ? 1 - Math.max(toed(share), TOE_COLORS) : toed(share);
-  const white = fromLight ? Math.max(0, 1 - Math.max(0, share) / TOE_SHARE) : 0;
+  const white = fromLight ? 1 - leftToe(Math.max(0, share)) : 0;
   const mixed = (index: 0 | 1 | 2): number => channel(place, index) * (1 - white) + white;
   return [mixed(0), mixed(1), mixed(2)];
 }
@@ -53,7 +61,7 @@ export function colorOf(share: number, fromLight = false): string {
 
 /** The scale from left to right. */
 export function cssGradient(fromLight: boolean): string {
-  const shares = [0, TOE_SHARE, ...Array.from({ length: 24 }, (_, index) => (index + 1) / 24)];
+  const shares = [0, 0.5 * TOE_SHARE, TOE_SHARE, ...Array.from({ length: 24 }, (_, index) => (index + 1) / 24)];
   const stops = shares.map((share) => `${colorOf(share, fromLight)} ${(100 * share).toFixed(2)}%`);
   return `linear-gradient(to right, ${stops.join(", ")})`;
 }
@@ -70,9 +78,10 @@ export function shaderSource(): string {
 
 vec3 color_map(float share) {
   float inside = clamp(share, 0.0, 1.0);
-  float x = inside < ${TOE_SHARE} ? inside * ${slope(TOE_COLORS / TOE_SHARE)} : ${TOE_COLORS} + (inside - ${TOE_SHARE}) * ${slope((1 - TOE_COLORS) / (1 - TOE_SHARE))};
+  float left_toe = pow(min(1.0, inside / ${TOE_SHARE}), 3.0);
+  float x = inside < ${TOE_SHARE} ? ${TOE_COLORS} * left_toe : ${TOE_COLORS} + (inside - ${TOE_SHARE}) * ${slope((1 - TOE_COLORS) / (1 - TOE_SHARE))};
   if (from_light) x = 1.0 - max(x, ${TOE_COLORS});
-  float white = from_light ? max(0.0, 1.0 - inside / ${TOE_SHARE}) : 0.0;
+  float white = from_light ? 1.0 - left_toe : 0.0;
   return mix(clamp(${horner}, 0.0, 1.0), vec3(1.0), white);
 }
 

@@ -90,9 +90,11 @@ void main() {
     bool on_corner = status > 0u && inside.x + inside.y < (discs ? 0.75 : 0.45) * smaller;
     if (on_dot || on_corner) shade = vec3(opposite(shade));
   }
-  bool on_line = !interpolated && !discs && min(cell_pixels.x, cell_pixels.y) > 6.0 * pixel_ratio &&
+  bool on_line = !interpolated && min(cell_pixels.x, cell_pixels.y) > 6.0 * pixel_ratio &&
                  min(inside.x, inside.y) < pixel_ratio;
-  color = vec4(on_line ? mix(shade, line, 0.6) : shade, 1.0);
+  vec2 from_border = min(pixel, area.zw - pixel);
+  bool on_border = min(from_border.x, from_border.y) < pixel_ratio;
+  color = vec4(!discs && (on_line || on_border) ? mix(shade, line, 0.6) : shade, 1.0);
 }`;
 
 export type Rgb = readonly [number, number, number];

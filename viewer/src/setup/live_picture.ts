@@ -5,10 +5,8 @@ import { fixed } from "../format";
 import { rgbOf } from "../render/color_map";
 import type { Theme } from "../theme";
 import { sentPlace, type WayRound } from "./corners";
+import { Rest } from "./rest";
 import type { Shape, Touch } from "./touch_feed";
-
-/** Noise alone is not spread over all colours. */
-const LEAST_RANGE = 50;
 
 /** The counts as they come, before anybody has described their array. */
 export class LivePicture {
@@ -18,8 +16,7 @@ export class LivePicture {
   readonly #dot = element("span", { class: "touch-dot", hidden: true });
   readonly #room = element("div", { class: "touch-picture" }, this.#canvas, this.#dot);
   readonly #words = element("p", { class: "dim", "data-role": "live-words" });
-  #lowest = Infinity;
-  #highest = -Infinity;
+  #rest = new Rest();
 
   constructor(theme: Theme) {
     this.#theme = theme;
@@ -32,8 +29,7 @@ export class LivePicture {
   }
 
   forget(): void {
-    this.#lowest = Infinity;
-    this.#highest = -Infinity;
+    this.#rest = new Rest();
     setHidden(this.element, true);
   }
 
@@ -44,28 +40,25 @@ export class LivePicture {
     if (known.length === 0) return;
     const lowest = known.reduce((one, other) => Math.min(one, other));
     const highest = known.reduce((one, other) => Math.max(one, other));
-    this.#lowest = Math.min(this.#lowest, lowest);
-    this.#highest = Math.max(this.#highest, highest);
     setText(this.#words, `Now: ${fixed(lowest, 0)} to ${fixed(highest, 0)} counts`);
-    this.#draw(counts, sent, way);
+    this.#draw(this.#rest.sharesOf(counts), sent, way);
     setHidden(this.#dot, touched === null);
     if (touched === null) return;
     this.#dot.style.top = `${(100 * (touched[0] + 0.5)) / sent.rows}%`;
     this.#dot.style.left = `${(100 * (touched[1] + 0.5)) / sent.cols}%`;
   }
 
-  #draw(counts: readonly (number | null)[], sent: Shape, way: WayRound): void {
+  #draw(shares: readonly (number | null)[], sent: Shape, way: WayRound): void {
     const { rows, cols } = way.transpose ? { rows: sent.cols, cols: sent.rows } : sent;
     this.#room.style.aspectRatio = `${cols} / ${rows}`;
     [this.#canvas.width, this.#canvas.height] = [cols, rows];
     const picture = new ImageData(cols, rows);
-    const range = Math.max(LEAST_RANGE, this.#highest - this.#lowest);
     for (let row = 0; row < rows; ++row) {
       for (let col = 0; col < cols; ++col) {
         const place = sentPlace([row, col], { rows, cols }, way);
-        const count = counts[place[0] * sent.cols + place[1]];
-        if (count === null || count === undefined) continue;
-        const color = rgbOf((count - this.#lowest) / range, this.#theme.shown.value === "light");
+        const share = shares[place[0] * sent.cols + place[1]];
+        if (share === null || share === undefined) continue;
+        const color = rgbOf(share, this.#theme.shown.value === "light");
         picture.data.set([...color.map((channel) => 255 * channel), 255], 4 * (row * cols + col));
       }
     }

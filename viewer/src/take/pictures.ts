@@ -5,6 +5,8 @@ import { element } from "../dom";
 import { emptyGrid, type GridFrame, readCounts, readGrid } from "../messages/grids";
 import type { Stream } from "../stream/stream";
 import type { ArrayDescription } from "../suit";
+import { shownOf } from "../views/array/feeds";
+import { FORCE, RAW } from "../views/array/quantities";
 import { drawPicture, highest, pictureSize, roundEnd } from "./frame_picture";
 
 const FRAME_MS = 100;
@@ -24,16 +26,19 @@ interface Source {
   /** The end of the scale is at least this: noise alone looks like nothing. */
   leastEnd: number;
   read: (message: DataView, frame: GridFrame) => void;
+  /** A place in QUANTITIES. */
+  quantity: number;
 }
 
 function sourceOf({ name, calibrated }: ArrayDescription): Source {
   return calibrated
-    ? { topic: `/${name}/force`, unit: "N", leastEnd: 1, read: readGrid }
-    : { topic: `/${name}/raw`, unit: "counts", leastEnd: 100, read: readCounts };
+    ? { topic: `/${name}/force`, unit: "N", leastEnd: 1, read: readGrid, quantity: FORCE }
+    : { topic: `/${name}/raw`, unit: "counts", leastEnd: 100, read: readCounts, quantity: RAW };
 }
 
 /** Frames of an array as they come, every tenth of a second. Equal frames are kept once. */
-async function collect(stream: Stream, { topic, read }: Source, seconds: number): Promise<GridFrame[]> {
+async function collect(stream: Stream, array: ArrayDescription, source: Source, seconds: number): Promise<GridFrame[]> {
+  const { topic, read, quantity } = source;
   const frames: GridFrame[] = [];
   let newest: DataView | undefined;
   const end = stream.subscribe(topic, (message) => (newest = message));
@@ -44,6 +49,7 @@ async function collect(stream: Stream, { topic, read }: Source, seconds: number)
       if (newest !== undefined) {
         const frame = emptyGrid();
         read(newest, frame);
+        frame.values.set(shownOf(quantity, frame, array));
         frames.push(frame);
       }
       const passedMs = performance.now() - beganMs;
@@ -67,7 +73,7 @@ function canvasFor(frame: GridFrame): [HTMLCanvasElement, CanvasRenderingContext
 /** The newest frame as PNG. */
 export async function takePicture(stream: Stream, array: ArrayDescription): Promise<Picture> {
   const source = sourceOf(array);
-  const frame = (await collect(stream, source, 0)).at(-1)!;
+  const frame = (await collect(stream, array, source, 0)).at(-1)!;
   const [canvas, context] = canvasFor(frame);
   drawPicture(context, {
     array: array.name,
@@ -83,7 +89,7 @@ export async function takePicture(stream: Stream, array: ArrayDescription): Prom
 /** The frames of the next seconds as a moving picture, with one scale for all. */
 export async function takeFilm(stream: Stream, array: ArrayDescription, seconds: number): Promise<Picture> {
   const source = sourceOf(array);
-  const frames = await collect(stream, source, seconds);
+  const frames = await collect(stream, array, source, seconds);
   const [canvas, context] = canvasFor(frames[0]!);
   const end = roundEnd(Math.max(source.leastEnd, ...frames.map(highest)));
   const film = GIFEncoder();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { button, element, setHidden, setText } from "../dom";
-import { errorText } from "../format";
+import { dayAndTime, errorText } from "../format";
 import { KeyedRows, type Row } from "../keyed_rows";
 import type { Stream } from "../stream/stream";
 import { sizeText } from "./save_file";
@@ -54,7 +54,7 @@ class RecordingRow implements Row<Entry> {
 
   show({ bytes, changed_s, isWritten, isPlayable }: Entry): void {
     setText(this.#size, sizeText(bytes));
-    setText(this.#changed, isWritten ? "is being recorded" : new Date(1000 * changed_s).toLocaleString());
+    setText(this.#changed, isWritten ? "is being recorded" : dayAndTime(changed_s));
     setHidden(this.#play, isWritten || !isPlayable);
     setHidden(this.#save, isWritten);
   }

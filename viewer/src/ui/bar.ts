@@ -177,9 +177,9 @@ function makeTare({ stream, suit }: ViewContext, actions: BarActions): HTMLEleme
   suit.description.follow(enable);
   stream.parameters.follow((parameters) => {
     enable();
-    const isOn = parameters.get("/tare") === true;
-    tare.setAttribute("aria-pressed", String(isOn));
-    setText(tare, isOn ? "Tared" : "Tare");
+    const isTaken = parameters.get("/tare/taken") === true;
+    tare.setAttribute("aria-pressed", String(isTaken));
+    setText(tare, isTaken ? "Tared" : parameters.get("/tare") === true ? "Taring \u2026" : "Tare");
   });
   return tare;
 }

@@ -14,7 +14,7 @@ const KEYS: readonly (readonly [string, string])[] = [
   ["M", "mark this moment"],
   ["Arrows", "on the maps: move the cursor; on the suit: turn it"],
   ["Enter", "on the maps: pin the taxel, or set a corner of the region"],
-  ["+  \u2212  Home", "on the suit: nearer, farther, all of it"],
+  ["+  \u2212  Home", "on the suit: nearer, farther, all arrays"],
   ["N  B  Enter", "calibration: skip to the next press, back to the last one, save"],
   ["K", "recording: play, pause"],
   ["J  L", "recording: a second back, forward"],

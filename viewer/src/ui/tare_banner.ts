@@ -5,21 +5,24 @@ import type { Stream } from "../stream/stream";
 import "./banners.css";
 
 const UNDO_MS = 60_000; // docs/stream.md
+const REFUSED_MS = 60_000;
 
-/** Why no zero was taken, and what can be done about it. */
+/** Why no zero was taken, and what can be done about it; for a minute. */
 export function makeTareBanner(stream: Stream): HTMLElement {
   const words = element("p", { "data-role": "tare-refused" });
+  const leave = (): void => setHidden(banner, true);
   const banner = element(
     "section",
-    { class: "tare-banner", role: "alert", "aria-label": "Tare", "data-role": "tare-banner", hidden: true },
+    { class: "tare-banner message", role: "alert", "aria-label": "Tare", "data-role": "tare-banner", hidden: true },
     words,
     button("Tare anyway", () => stream.setParameter("/tare/force", true), {
       "data-role": "tare-force",
       title: "What lies there reads 0 N from then on",
     }),
-    button("Leave it", () => setHidden(banner, true)),
+    button("Leave it", leave, { "data-role": "tare-leave" }),
   );
   let last: unknown = "";
+  let timer = 0;
   stream.parameters.follow((parameters) => {
     const refusal = parameters.get("/tare/refused");
     if (refusal === last) return;
@@ -27,8 +30,15 @@ export function makeTareBanner(stream: Stream): HTMLElement {
     const isRefused = typeof refusal === "string" && refusal !== "";
     if (isRefused) setText(words, `Not tared. ${refusal}`);
     setHidden(banner, !isRefused);
+    window.clearTimeout(timer);
+    if (isRefused) timer = window.setTimeout(leave, REFUSED_MS);
   });
   return banner;
+}
+
+/** Whether a line of the server's log says again that a tare was refused. */
+export function isOfRefusedTare(line: string): boolean {
+  return line.includes(" was not tared, as ");
 }
 
 /** Takes the last tare back, as long as that is possible. */

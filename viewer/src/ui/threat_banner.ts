@@ -16,7 +16,13 @@ export function makeThreatBanner(board: ThreatBoard, stream: Stream): HTMLElemen
   const reset = button("Reset", () => void resetThreats(stream), { "data-role": "reset-threats" });
   const banner = element(
     "section",
-    { class: "threat-banner", role: "alert", "aria-label": "Threats", "data-role": "threat-banner", hidden: true },
+    {
+      class: "threat-banner message",
+      role: "alert",
+      "aria-label": "Threats",
+      "data-role": "threat-banner",
+      hidden: true,
+    },
     element("ul", {}, ...rows, more),
     reset,
   );

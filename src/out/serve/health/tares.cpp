@@ -15,6 +15,7 @@ namespace dermis::out::serve {
 namespace {
 
 constexpr std::chrono::minutes kUndoFor{1};
+constexpr std::chrono::minutes kRefusedFor{1};
 
 }  // namespace
 
@@ -41,6 +42,7 @@ std::vector<LiveParameter> Tares::parameters() {
       {.name = "/tare/undo",
        .value = locked([this] { return std::any_of(zeros_.begin(), zeros_.end(), can_be_undone); }),
        .set_switch = command(&Tares::undo)},
+      {.name = "/tare/taken", .value = locked([this] { return std::all_of(zeros_.begin(), zeros_.end(), is_taken); })},
       {.name = "/tare/refused", .value = locked([this] { return refusals(); })},
       {.name = "/tare/log", .value = locked([this] { return fmt::format("{}", fmt::join(log_, "\n")); })}};
   for (std::size_t k = 0; k < zeros_.size(); ++k) {
@@ -69,7 +71,7 @@ LiveParameter Tares::tare_of(const std::string& name, std::size_t first, std::si
 std::string Tares::refusals() const {
   std::vector<std::string> refusals;
   for (const Zero& zero : zeros_) {
-    if (!zero.refusal.empty()) refusals.push_back(zero.refusal);
+    if (!zero.refusal.empty() && Clock::now() - zero.refused <= kRefusedFor) refusals.push_back(zero.refusal);
   }
   return fmt::format("{}", fmt::join(refusals, "; "));
 }
@@ -97,6 +99,10 @@ void Tares::reset(std::size_t array, const std::string& client) {
   zeros_[array] = {};
   zeros_[array].seen = seen;
   log(fmt::format("{} got back the zero of its calibration by {}", suit_.arrays[array].name, client));
+}
+
+bool Tares::is_taken(const Zero& zero) {
+  return zero.is_tared && zero.client.empty();
 }
 
 bool Tares::can_be_undone(const Zero& zero) {
@@ -133,6 +139,7 @@ void Tares::end(std::size_t array, const touch::pipeline::Tare& tare) {
   if (tare.state == touch::pipeline::Tare::State::refused) {
     zero.is_tared = zero.was_tared;
     zero.refusal = fmt::format("{}: {}", name, load);
+    zero.refused = Clock::now();
     log(fmt::format("{} was not tared, as {} asked: {}", name, zero.client, load));
   } else {
     zero.taken = Clock::now();

@@ -49,6 +49,7 @@ class Tares final : public Part {
     std::uint64_t seen = 0;                  // Tare::number of the last that has ended, 0 while one is taken
     std::string client;                      // who asked for the last; empty: it has ended
     std::string refusal;                     // of the last; empty: it was not refused
+    Clock::time_point refused;               // when that was
     std::optional<Clock::time_point> taken;  // by the last, which was not undone
   };
 
@@ -60,6 +61,7 @@ class Tares final : public Part {
   void undo(const std::string& client);
   void end(std::size_t array, const touch::pipeline::Tare& tare);
   void log(const std::string& what);
+  [[nodiscard]] static bool is_taken(const Zero& zero);
   [[nodiscard]] static bool can_be_undone(const Zero& zero);
 
   const ServedSuit& suit_;

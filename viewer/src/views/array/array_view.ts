@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { button, element, setData, setHidden, setText } from "../../dom";
 import { fixed, statusWord } from "../../format";
+import type { ArrayLive } from "../../live/live_data";
 import { regionName } from "../../live/region_force";
 import { type Area, HeatMaps } from "../../render/heat_maps";
 import { Signal } from "../../signal";
@@ -10,12 +11,13 @@ import { rgbColor } from "../../theme";
 import type { View, ViewContext, ViewFactory } from "../../view";
 import { drawAxes } from "./axes";
 import { ContactTable } from "./contact_table";
-import { Feeds } from "./feeds";
-import { fitMap, sharesOf, taxelAt, taxelName } from "./geometry";
+import { Feeds, shownOf } from "./feeds";
+import { fitMap, LABEL_MARGIN, sharesOf, taxelAt, taxelName } from "./geometry";
 import { MapPanel } from "./map_panel";
 import { MapPointer } from "./map_pointer";
 import { MapChoices, makeMapToolbar } from "./map_toolbar";
 import { Overlay } from "./overlay";
+import { Picture } from "./picture";
 import { FORCE, QUANTITIES, RAW } from "./quantities";
 import { Summary } from "./summary";
 import { TaxelTable } from "./taxel_table";
@@ -43,7 +45,7 @@ class ArrayView implements View {
   readonly #taxels = new TaxelTable();
   readonly #contacts = new ContactTable();
   readonly #summary = new Summary();
-  readonly #narrow = window.matchMedia("(max-width: 700px)");
+  readonly #narrow = window.matchMedia("(max-width: 1279px)");
   readonly #uncalibrated: HTMLElement;
   readonly #resizing = new ResizeObserver(() => (this.#layoutDue = true));
   #isShown = false;
@@ -52,8 +54,9 @@ class ArrayView implements View {
   #layoutDue = true;
   #mapsDue = true;
   #overlayDue = true;
-  /** By the ids of contacts: labels say the same. */
-  #forcesInTable = new Map<number, number>();
+  /** Maps, rings, labels and tables are drawn from this one. */
+  readonly #picture = new Picture();
+  #keyInTable = "";
   #textDue = true;
   #contactsVersion = -1;
   #textMs = 0;
@@ -111,13 +114,22 @@ class ArrayView implements View {
     const array = this.#array;
     if (array === undefined) return;
     if (this.#layoutDue) this.#layOut(array);
-    this.#decode(array);
-    if (this.#mapsDue) {
-      this.#maps.draw();
-      this.#mapsDue = false;
-    }
-    if (this.#textDue && nowMs - this.#textMs >= TEXT_PERIOD_MS) this.#showText(array, nowMs);
-    this.#drawContacts(array);
+    const shown = this.#context.live.arrays[this.#context.suit.indexOf(array.name)];
+    this.#decode(array, shown);
+    if (shown !== undefined) this.#take(shown);
+    if (this.#mapsDue) this.#maps.draw();
+    this.#mapsDue = false;
+    if (this.#overlayDue) this.#drawMarks(array, shown);
+    const isOther = this.#picture.key !== this.#keyInTable;
+    if (isOther || (this.#textDue && nowMs - this.#textMs >= TEXT_PERIOD_MS)) this.#showText(array, shown, nowMs);
+  }
+
+  /** Where there is a newer map, or news of the contacts. */
+  #take(shown: ArrayLive): void {
+    if (shown.version === this.#contactsVersion && !this.#mapsDue && !this.#overlayDue) return;
+    this.#contactsVersion = shown.version;
+    this.#picture.take(shown, this.#feeds.frames[FORCE]!.stampS);
+    this.#overlayDue = this.#textDue = true;
   }
 
   key(event: KeyboardEvent): boolean {
@@ -185,7 +197,7 @@ class ArrayView implements View {
           "Maps of the array. Arrow keys move the cursor, Enter pins the taxel, Escape takes the cursor away.",
         "data-role": "maps",
       },
-      ...this.#panels.map((panel) => panel.element),
+      ...this.#panels.map((panel) => panel.element).reverse(), // the force first
       this.#uncalibrated,
       this.#maps.canvas,
       this.#axes,
@@ -252,7 +264,11 @@ class ArrayView implements View {
       const plot = panel.plot.getBoundingClientRect();
       const area = panel.element.hidden
         ? NOWHERE
-        : fitMap({ left: plot.left - left, top: plot.top - top, width: plot.width, height: plot.height }, array);
+        : fitMap(
+            { left: plot.left - left, top: plot.top - top, width: plot.width, height: plot.height },
+            array,
+            index >= FORCE ? LABEL_MARGIN : 0,
+          );
       this.#maps.place(index, area);
       return area;
     });
@@ -263,8 +279,8 @@ class ArrayView implements View {
     this.#textDue = true;
   }
 
-  #decode(array: ArrayDescription): void {
-    const fresh = this.#feeds.decode(array);
+  #decode(array: ArrayDescription, shown: ArrayLive | undefined): void {
+    const fresh = this.#feeds.decode(array, (stampS) => shown?.has(stampS) === true);
     for (const index of fresh) this.#upload(index);
     if (fresh.includes(FORCE)) this.#context.display.drawn(this.#feeds.frames[FORCE]!.stampS);
     const steps = fresh.filter((index) => this.#panels[index]!.see(this.#feeds.frames[index]!));
@@ -272,39 +288,43 @@ class ArrayView implements View {
   }
 
   #upload(index: number): void {
-    const { rows, cols, values, statuses } = this.#feeds.frames[index]!;
-    if (rows === 0) return;
+    const frame = this.#feeds.frames[index]!;
+    const { rows, cols, statuses } = frame;
+    if (rows === 0 || this.#array === undefined) return;
     const known = this.#feeds.frames[FORCE]!.statuses;
     const areKnown = this.#array?.calibrated === true && known.length === statuses.length;
-    this.#maps.setValues(index, rows, cols, values, areKnown ? known : statuses);
+    this.#maps.setValues(
+      index,
+      rows,
+      cols,
+      shownOf(index, frame, this.#array, this.#feeds.frames[FORCE]!),
+      areKnown ? known : statuses,
+    );
     this.#mapsDue = true;
     this.#textDue = true;
   }
 
-  #drawContacts(array: ArrayDescription): void {
-    const { live, suit } = this.#context;
-    const shown = live.arrays[suit.indexOf(array.name)];
-    const hasNews = shown !== undefined && shown.version !== this.#contactsVersion;
-    if (!hasNews && !this.#overlayDue) return;
-    this.#contactsVersion = shown?.version ?? -1;
+  #drawMarks(array: ArrayDescription, shown: ArrayLive | undefined): void {
     this.#overlayDue = false;
-    if (hasNews) this.#textDue = true;
     const { contacts, centre, load } = this.#choices;
+    const { touching, isOnMap } = this.#picture;
+    const ringed = shown !== undefined && contacts.value && isOnMap ? touching : [];
+    setData(this.element, "rings", ringed.map(({ id }) => id).join(" "));
     this.#overlay.draw(this.#areas, array, {
       load: this.#areas[load] ?? NOWHERE,
-      contacts: contacts.value ? shown : undefined,
-      forces: this.#forcesInTable,
+      contacts: shown,
+      touching: ringed,
       centre: centre.value ? shown?.centre : undefined,
-      region: this.#pointer.preview ?? live.region.region.value,
+      region: this.#pointer.preview ?? this.#context.live.region.region.value,
       cursor: this.#pointer.cursor,
       pins: this.#pointer.pins,
     });
   }
 
-  #showText(array: ArrayDescription, nowMs: number): void {
+  #showText(array: ArrayDescription, shown: ArrayLive | undefined, nowMs: number): void {
     this.#textMs = nowMs;
     this.#textDue = false;
-    const { live, suit, display } = this.#context;
+    const { live, display } = this.#context;
     const [raw, conductance, force] = this.#feeds.frames;
     this.#taxels.show(
       array,
@@ -314,13 +334,10 @@ class ArrayView implements View {
     );
     setData(this.element, "stamp", fixed(force!.stampS, 6));
     setData(this.element, "frames", String(display.framesDrawn));
-    const shown = live.arrays[suit.indexOf(array.name)];
     if (shown === undefined) return;
-    const { contacts, count } = shown.contacts;
-    this.#forcesInTable = new Map(contacts.slice(0, count).map(({ id, forceN }) => [id, forceN]));
-    this.#overlayDue = true;
-    this.#contacts.show(shown, array.calibrated);
-    this.#summary.show(array, shown, array.calibrated ? force! : raw!);
+    this.#keyInTable = this.#picture.key;
+    this.#contacts.show(this.#picture, shown.slots, array.calibrated);
+    this.#summary.show(array, this.#picture, shown.centre, array.calibrated ? force! : raw!);
     this.#summary.showRegion(live.region.region.value?.array === array.name ? live.region : undefined);
   }
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { element, panel, setData, setHidden, setText, table } from "../../dom";
-import { fixed } from "../../format";
-import { SLOTS } from "../../live/contact_slots";
-import type { ArrayLive } from "../../live/live_data";
-import { type Contact, ContactPhase } from "../../messages/contacts";
+import { fixed, measured } from "../../format";
+import { type ContactSlots, SLOTS } from "../../live/contact_slots";
+import type { Contact } from "../../messages/contacts";
+import type { Picture } from "./picture";
 
-const HEADS = ["Id", "Force", "1 \u03c3", "x", "y", "Area", "Peak", "Held"];
+const HEADS = ["Id", "Force", "\u00b1", "x", "y", "Area", "Peak", "Held"];
 const UNITS = ["", "N", "N", "mm", "mm", "mm\u00b2", "kPa", "s"];
 
 class Row {
@@ -29,8 +29,9 @@ class Row {
     setText(this.#id, String(contact.id));
     const color = slot >= 0 ? `var(--series-${slot + 1})` : "var(--text-dim)";
     if (this.#swatch.style.background !== color) this.#swatch.style.background = color;
-    this.#set(0, fixed(contact.forceN, 2));
-    this.#set(1, fixed(contact.sigmaForceN, 2));
+    const [force, sigma] = measured(contact.forceN, contact.sigmaForceN);
+    this.#set(0, force);
+    this.#set(1, sigma);
     this.#set(2, fixed(1e3 * contact.x, 2));
     this.#set(3, fixed(1e3 * contact.y, 2));
     this.#set(4, fixed(1e6 * contact.areaM2, 0));
@@ -60,17 +61,14 @@ export class ContactTable {
     this.element = panel("Contacts", {}, room);
   }
 
-  show({ contacts: frame, slots }: ArrayLive, isCalibrated: boolean): void {
-    let used = 0;
-    let hidden = 0;
-    for (let index = 0; index < frame.count; ++index) {
-      const contact = frame.contacts[index]!;
-      if (contact.phase === ContactPhase.release) continue;
-      if (used < SLOTS) this.#rows[used++]!.show(contact, slots.indexOf(contact.id), frame.stampS);
-      else hidden += 1;
-    }
-    this.#rows.forEach((row, index) => setHidden(row.element, index >= used));
-    const none = isCalibrated ? "Nothing touches this array." : "Touches are found by their forces: calibrate first.";
-    setText(this.#more, used === 0 ? none : hidden > 0 ? `and ${hidden} more` : "");
+  show({ contacts, touching }: Picture, slots: ContactSlots, isCalibrated: boolean): void {
+    const listed = touching.slice(0, SLOTS);
+    listed.forEach((contact, index) => this.#rows[index]!.show(contact, slots.indexOf(contact.id), contacts.stampS));
+    this.#rows.forEach((row, index) => setHidden(row.element, index >= listed.length));
+    const hidden = touching.length - listed.length;
+    const none = isCalibrated
+      ? "Nothing touches this array. Press it: each touch gets a line here."
+      : "Touches are found by their forces: calibrate first.";
+    setText(this.#more, listed.length === 0 ? none : hidden > 0 ? `and ${hidden} more` : "");
   }
 }

@@ -6,6 +6,8 @@ import type { ArrayDescription, FreePlace } from "../../suit";
 /** Around a map, for the numbers of its rows and columns. */
 export const AXIS_LEFT = 26;
 export const AXIS_BOTTOM = 18;
+/** At the right of a map of forces, for the labels of its contacts. */
+export const LABEL_MARGIN = 96;
 
 const SMALLEST_WHOLE_CELL = 4;
 
@@ -25,8 +27,8 @@ export function boundsOf(places: readonly FreePlace[]): Area {
 }
 
 /** The largest place inside `room` with the proportions of the array, and cells of whole pixels where it is a grid. */
-export function fitMap(room: Area, array: ArrayDescription): Area {
-  const width = Math.max(1, room.width - AXIS_LEFT);
+export function fitMap(room: Area, array: ArrayDescription, margin = 0): Area {
+  const width = Math.max(1, room.width - AXIS_LEFT - margin);
   const height = Math.max(1, room.height - AXIS_BOTTOM);
   const [rowPitch, colPitch] = array.pitch_m;
   const bounds = array.places && boundsOf(array.places);

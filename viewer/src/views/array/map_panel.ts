@@ -49,7 +49,7 @@ export class MapPanel {
     }
     this.element = panel(
       [element("h2", {}, quantity.title), this.#unit, this.#said, this.#select],
-      { class: "map-panel", "aria-label": `${quantity.title} map` },
+      { class: "map-panel", "data-quantity": quantity.name, "aria-label": `${quantity.title} map` },
       this.plot,
       element("div", { class: "scale" }, strip, ticks),
     );

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
+import { measured } from "../../format";
 import { SLOTS, type Trail } from "../../live/contact_slots";
 import type { ArrayLive } from "../../live/live_data";
 import { type Region, regionName } from "../../live/region_force";
-import { type Contact, ContactPhase } from "../../messages/contacts";
+import type { Contact } from "../../messages/contacts";
 import type { Area } from "../../render/heat_maps";
 import type { ArrayDescription } from "../../suit";
 import { cssColor } from "../../theme";
-import { type LabelBox, LabelRoom } from "../label_room";
-import { AXIS_LEFT, boundsOf, boxOf, cellOf, pointOn } from "./geometry";
+import { type Standing, spread } from "../spread";
+import { boundsOf, boxOf, cellOf, LABEL_MARGIN, pointOn } from "./geometry";
 
 const TURN = 2 * Math.PI;
 const CENTRE_PIXELS = 7;
 const LABEL_HEIGHT = 18;
-/** Size of a contact's middle, which no label may hide. */
-const MIDDLE_PIXELS = 14;
+const LABEL_GAP = 12;
 const HALO = "rgb(0 0 0 / 70%)";
 const INK = "#ffffff";
 const FONT = '600 12px "Inter", "Segoe UI", Roboto, "Helvetica Neue", "Liberation Sans", Arial, sans-serif';
@@ -24,8 +24,8 @@ export interface Marks {
   /** The map of forces or pressures, which alone has contacts and their centre. */
   readonly load: Area;
   readonly contacts: ArrayLive | undefined;
-  /** [N] by the ids of contacts, as the table shows them; others have their own. */
-  readonly forces: ReadonlyMap<number, number>;
+  /** Those of the frame that the map shows. */
+  readonly touching: readonly Contact[];
   readonly centre: Trail | undefined;
   readonly region: Region | undefined;
   /** -1: nowhere. */
@@ -39,6 +39,18 @@ interface Scale {
   readonly originY: number;
   readonly pixelsX: number;
   readonly pixelsY: number;
+}
+
+/** The label of a contact that is drawn at x and y. */
+interface ContactLabel extends Standing {
+  readonly contact: Contact;
+  readonly color: string;
+  readonly x: number;
+  readonly y: number;
+}
+
+function labelText({ id, forceN, sigmaForceN }: Contact): string {
+  return `#${id}  ${measured(forceN, sigmaForceN)[0]} N`;
 }
 
 function scaleOf(area: Area, array: ArrayDescription): Scale {
@@ -57,8 +69,9 @@ export class Overlay {
   readonly canvas: HTMLCanvasElement;
   readonly #pen: CanvasRenderingContext2D;
   #seriesColors: string[] = [];
-  #plate = "";
-  #plateText = "";
+  #text = "";
+  /** Round what is in the colours of contacts. */
+  #rim = "";
 
   constructor(canvas: HTMLCanvasElement) {
     this.canvas = canvas;
@@ -67,8 +80,8 @@ export class Overlay {
 
   readColors(): void {
     this.#seriesColors = Array.from({ length: SLOTS }, (_, index) => cssColor(`--series-${index + 1}`));
-    this.#plate = cssColor("--surface");
-    this.#plateText = cssColor("--text");
+    this.#text = cssColor("--text");
+    this.#rim = cssColor("--surface");
   }
 
   resize(width: number, height: number, pixelRatio: number): void {
@@ -80,28 +93,24 @@ export class Overlay {
   draw(
     areas: readonly Area[],
     array: ArrayDescription,
-    { load, contacts, forces, centre, region, cursor, pins }: Marks,
+    { load, contacts, touching, centre, region, cursor, pins }: Marks,
   ): void {
     this.#pen.save();
     this.#pen.resetTransform();
     this.#pen.clearRect(0, 0, this.canvas.width, this.canvas.height);
     this.#pen.restore();
-    const room = new LabelRoom(load.width, load.height);
     for (const area of areas) {
       if (area.width === 0) continue;
       pins.forEach((taxel, index) => this.#drawPin(area, array, taxel, index + 1));
       if (cursor >= 0) this.#drawCursor(area, array, cursor);
-      if (region?.array !== array.name) continue;
-      const label = this.#drawRegion(area, array, region);
-      if (area === load) room.take(label);
+      if (region?.array === array.name) this.#drawRegion(area, array, region);
     }
     if (load.width === 0) return;
-    if (contacts !== undefined) this.#drawContacts(load, array, contacts, forces, room);
+    if (contacts !== undefined) this.#drawContacts(load, array, contacts, touching);
     if (centre !== undefined && array.places === undefined) this.#drawCentre(centre, scaleOf(load, array));
   }
 
-  /** Returns where its name is on the map. */
-  #drawRegion(area: Area, array: ArrayDescription, region: Region): LabelBox {
+  #drawRegion(area: Area, array: ArrayDescription, region: Region): void {
     const { left, top, width, height } = boxOf(area, array, region.rows, region.cols);
     const pen = this.#pen;
     pen.setLineDash([7, 4]);
@@ -110,15 +119,7 @@ export class Overlay {
     pen.font = FONT;
     pen.textAlign = "left";
     pen.textBaseline = "bottom";
-    const bottom = top + height - 3;
-    this.#textTwice(regionName(region), left + 4, bottom);
-    const textWidth = pen.measureText(regionName(region)).width;
-    return {
-      x: left + 4 + 0.5 * textWidth - area.left,
-      y: bottom - 0.5 * LABEL_HEIGHT - area.top,
-      width: textWidth,
-      height: LABEL_HEIGHT,
-    };
+    this.#textTwice(regionName(region), left + 4, top + height - 3);
   }
 
   /** A cross in a ring, and the way that led there. */
@@ -161,49 +162,29 @@ export class Overlay {
     this.#textTwice(String(label), left + 3, top + 2);
   }
 
-  #drawContacts(
-    area: Area,
-    array: ArrayDescription,
-    live: ArrayLive,
-    forces: ReadonlyMap<number, number>,
-    room: LabelRoom,
-  ): void {
+  /** Rings on the map, and their labels beside it, all in the colours of the table. */
+  #drawContacts(area: Area, array: ArrayDescription, live: ArrayLive, touching: readonly Contact[]): void {
     const { originX, originY, pixelsX, pixelsY } = scaleOf(area, array);
     const pen = this.#pen;
+    const labels = touching.map((contact) => {
+      const [x, y] = pointOn(area, array, contact.x, contact.y);
+      const slot = live.slots.indexOf(contact.id);
+      const color = this.#seriesColors[slot] ?? this.#text;
+      return { contact, slot, color, x, y, top: y - 0.5 * LABEL_HEIGHT, height: LABEL_HEIGHT };
+    });
     pen.save();
     pen.beginPath();
-    pen.rect(area.left - AXIS_LEFT, area.top, area.width + 2 * AXIS_LEFT, area.height);
+    pen.rect(area.left, area.top, area.width, area.height);
     pen.clip();
-    const touching = live.contacts.contacts
-      .slice(0, live.contacts.count)
-      .filter(({ phase }) => phase !== ContactPhase.release);
-    for (const contact of touching) {
-      if (array.places === undefined)
-        this.#drawTrail(live, live.slots.indexOf(contact.id), originX, originY, pixelsX, pixelsY);
-      const [x, y] = pointOn(area, array, contact.x, contact.y);
-      this.#drawOutline(contact, x, y, pixelsX, pixelsY);
-      const middle = { x: x - area.left, y: y - area.top };
-      room.take({ ...middle, width: MIDDLE_PIXELS, height: MIDDLE_PIXELS });
-      room.avoid({ ...middle, radius: Math.sqrt(contact.areaM2 / Math.PI) * Math.max(pixelsX, pixelsY) });
-    }
-    for (const contact of touching) {
-      const reach = 0.75 * Math.sqrt(contact.areaM2 / Math.PI);
-      const [middleX, middleY] = pointOn(area, array, contact.x, contact.y);
-      const [x, y] = [middleX + reach * pixelsX + 4, middleY - reach * pixelsY - 22];
-      this.#drawLabel(
-        contact,
-        forces.get(contact.id) ?? contact.forceN,
-        live.slots.indexOf(contact.id),
-        x,
-        y,
-        area,
-        room,
-      );
+    for (const { contact, slot, color, x, y } of labels) {
+      if (array.places === undefined) this.#drawTrail(live, slot, color, { originX, originY, pixelsX, pixelsY });
+      this.#drawOutline(contact, color, x, y, pixelsX, pixelsY);
     }
     pen.restore();
+    for (const label of spread(labels, area.top, area.top + area.height)) this.#drawLabel(label, area);
   }
 
-  #drawTrail(live: ArrayLive, slot: number, originX: number, originY: number, pixelsX: number, pixelsY: number): void {
+  #drawTrail(live: ArrayLive, slot: number, color: string, { originX, originY, pixelsX, pixelsY }: Scale): void {
     const trail = live.slots.slots[slot]?.trail;
     if (trail === undefined || trail.length < 2) return;
     const pen = this.#pen;
@@ -212,13 +193,13 @@ export class Overlay {
       pen.beginPath();
       pen.moveTo(originX + trail.x(point - 1) * pixelsX, originY + trail.y(point - 1) * pixelsY);
       pen.lineTo(originX + trail.x(point) * pixelsX, originY + trail.y(point) * pixelsY);
-      this.#strokeTwice(() => pen.stroke(), 1.25);
+      this.#strokeTwice(() => pen.stroke(), 1.25, color);
     }
     pen.globalAlpha = 1;
   }
 
   /** An ellipse of the area of the contact, in its proportions; inside, where it is with 95 %: two sigmas. */
-  #drawOutline(contact: Contact, x: number, y: number, pixelsX: number, pixelsY: number): void {
+  #drawOutline(contact: Contact, color: string, x: number, y: number, pixelsX: number, pixelsY: number): void {
     const pen = this.#pen;
     const slenderness = contact.minorAxisM > 0 ? Math.min(4, contact.majorAxisM / contact.minorAxisM) : 1;
     const major = Math.sqrt((contact.areaM2 / Math.PI) * slenderness) * pixelsX;
@@ -228,44 +209,37 @@ export class Overlay {
       pen.ellipse(x, y, Math.max(1, radiusX), Math.max(1, radiusY), angle, 0, TURN);
       pen.stroke();
     };
-    this.#strokeTwice(() => ellipse(major, minor, contact.angleRad), 1.5);
-    this.#strokeTwice(() => ellipse(2 * contact.sigmaX * pixelsX, 2 * contact.sigmaY * pixelsY, 0), 1.5);
+    this.#strokeTwice(() => ellipse(major, minor, contact.angleRad), 2, color);
+    this.#strokeTwice(() => ellipse(2 * contact.sigmaX * pixelsX, 2 * contact.sigmaY * pixelsY, 0), 1.5, color);
   }
 
-  /** With its corner at x and y or where there is room near it; without any, its line in the table has to do. */
-  #drawLabel(contact: Contact, forceN: number, slot: number, x: number, y: number, area: Area, room: LabelRoom): void {
+  /** In the margin at the right of the map, with a line to its contact. */
+  #drawLabel({ contact, color, x, y, top }: ContactLabel, area: Area): void {
     const pen = this.#pen;
-    const text = `#${contact.id}  ${forceN.toFixed(forceN < 10 ? 2 : 1)} N`;
+    const left = area.left + area.width + LABEL_GAP;
+    const middle = top + 0.5 * LABEL_HEIGHT;
+    pen.beginPath();
+    pen.moveTo(left, middle);
+    pen.lineTo(area.left + area.width + 3, middle);
+    pen.lineTo(x, y);
+    pen.strokeStyle = color;
+    pen.lineWidth = 1;
+    pen.stroke();
+    pen.fillStyle = color;
+    pen.fillRect(left, top + 1, 4, LABEL_HEIGHT - 2);
     pen.font = FONT;
-    const width = pen.measureText(text).width + 16;
-    const place = room.place({
-      x: x - area.left + 0.5 * width,
-      y: y - area.top + 0.5 * LABEL_HEIGHT,
-      width,
-      height: LABEL_HEIGHT,
-    });
-    if (place === undefined) return;
-    const left = area.left + place.x - 0.5 * width;
-    const top = area.top + place.y - 0.5 * LABEL_HEIGHT;
-    pen.fillStyle = this.#plate;
-    pen.globalAlpha = 0.92;
-    pen.fillRect(left, top, width, LABEL_HEIGHT);
-    pen.globalAlpha = 1;
-    pen.fillStyle = this.#seriesColors[slot] ?? this.#plateText;
-    pen.fillRect(left, top, 4, LABEL_HEIGHT);
-    pen.fillStyle = this.#plateText;
     pen.textAlign = "left";
     pen.textBaseline = "middle";
-    pen.fillText(text, left + 9, top + 9.5);
+    pen.fillText(labelText(contact), left + 8, middle + 0.5, LABEL_MARGIN - LABEL_GAP - 10);
   }
 
-  /** Dark below light: seen on every colour of the map. */
-  #strokeTwice(stroke: () => void, width: number): void {
+  /** Dark below light, or a rim below a colour: seen on every colour of the map. */
+  #strokeTwice(stroke: () => void, width: number, color?: string): void {
     const pen = this.#pen;
-    pen.strokeStyle = HALO;
+    pen.strokeStyle = color === undefined ? HALO : this.#rim;
     pen.lineWidth = width + 2;
     stroke();
-    pen.strokeStyle = INK;
+    pen.strokeStyle = color ?? INK;
     pen.lineWidth = width;
     stroke();
   }

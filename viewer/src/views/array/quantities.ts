@@ -17,6 +17,7 @@ export interface Quantity {
 
 /** Places in QUANTITIES. */
 export const RAW = 0;
+export const CONDUCTANCE = 1;
 export const FORCE = 2;
 export const PRESSURE = 3;
 

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { element, panel, setData, setText } from "../../dom";
-import { fixed, statusWord } from "../../format";
-import type { ArrayLive } from "../../live/live_data";
+import { fixed, measured, statusWord } from "../../format";
+import type { Trail } from "../../live/contact_slots";
 import { type RegionForce, regionName } from "../../live/region_force";
-import { type Contact, ContactPhase } from "../../messages/contacts";
 import { type GridFrame, TaxelStatus } from "../../messages/grids";
 import type { ArrayDescription } from "../../suit";
 import { taxelName } from "./geometry";
+import type { Picture } from "./picture";
 
 /** Words and data-role. */
 const FIGURES = [
   ["Contacts", "contacts"],
   ["Highest", "highest-taxel"],
-  ["Sum", "sum-of-taxels"],
+  ["Whole array", "sum-of-taxels"],
   ["Faulty", "faulty-taxels"],
   ["Centre", "centre"],
   ["Region", "region"],
@@ -29,7 +29,7 @@ export class Summary {
   constructor() {
     const pairs = FIGURES.flatMap(([words], index) => [element("dt", {}, words), this.#values[index]!]);
     this.element = panel(
-      "Total of contacts",
+      "Force of contacts",
       { class: "summary", "aria-label": "Total" },
       element("p", { class: "total" }, this.#total, element("span", { class: "total-unit" }, "N"), this.#sigma),
       element("dl", { class: "pairs" }, ...pairs),
@@ -37,20 +37,22 @@ export class Summary {
   }
 
   /** `shown`: the forces, or the counts of an array without a model. */
-  show(array: ArrayDescription, { contacts, centre }: ArrayLive, shown: GridFrame): void {
+  show(array: ArrayDescription, { contacts, touching }: Picture, centre: Trail, shown: GridFrame): void {
     const { highest, faulty, worst } = survey(shown);
     if (!array.calibrated) {
       this.#showCounts(array, shown, highest);
       return;
     }
-    setText(this.#total, fixed(contacts.totalForceN, 2));
-    setText(this.#sigma, `\u00b1 ${fixed(contacts.sigmaTotalN, 2)}`);
-    setText(this.#values[0]!, String(touching(contacts.contacts, contacts.count)));
+    const [total, sigma] = measured(contacts.totalForceN, contacts.sigmaTotalN);
+    const [sum, sigmaSum] = measured(contacts.sumN, contacts.sigmaSumN);
+    setText(this.#total, total);
+    setText(this.#sigma, `\u00b1 ${sigma}`);
+    setText(this.#values[0]!, String(touching.length));
     setText(
       this.#values[1]!,
       highest < 0 ? fixed(NaN, 0) : `${fixed(shown.values[highest]!, 2)} N  ${taxelName(highest, array)}`,
     );
-    setText(this.#values[2]!, `${fixed(contacts.sumN, 2)} \u00b1 ${fixed(contacts.sigmaSumN, 2)} N`);
+    setText(this.#values[2]!, `${sum} \u00b1 ${sigmaSum} N`);
     setText(this.#values[3]!, faulty === 0 ? "none" : `${faulty}, ${statusWord(worst)}`);
     const last = centre.length - 1;
     setText(
@@ -71,12 +73,6 @@ export class Summary {
     for (const value of this.#values) setText(value, fixed(NaN, 0));
     if (highest >= 0) setText(this.#values[1]!, `${fixed(values[highest]!, 0)}  ${taxelName(highest, array)}`);
   }
-}
-
-function touching(contacts: readonly Contact[], count: number): number {
-  let number = 0;
-  for (let index = 0; index < count; ++index) if (contacts[index]!.phase !== ContactPhase.release) number += 1;
-  return number;
 }
 
 function survey({ values, statuses }: GridFrame): { highest: number; faulty: number; worst: number } {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element, panel, setData, setText, table } from "../../dom";
+import { element, panel, setData, setHidden, setText, table } from "../../dom";
 import { engineering, fixed, statusWord } from "../../format";
 import type { GridFrame } from "../../messages/grids";
 import type { ArrayDescription } from "../../suit";
@@ -57,13 +57,6 @@ class Row {
     this.#set("status", "not calibrated");
   }
 
-  clear(label: string): void {
-    setText(this.#name, label);
-    delete this.element.dataset.taxel;
-    delete this.element.dataset.status;
-    for (const column of COLUMNS) this.#set(column, "");
-  }
-
   #set(column: string, text: string): void {
     setText(this.#cells.get(column)!, text);
   }
@@ -77,21 +70,25 @@ function valueAt(frame: GridFrame, taxel: number): number {
 export class TaxelTable {
   readonly element: HTMLElement;
   readonly #cursor = new Row("cursor");
+  readonly #none = element(
+    "p",
+    { class: "dim note" },
+    "Point at a taxel to read it here. A click keeps it, up to six.",
+  );
   readonly #pins = Array.from({ length: MOST_PINS }, (_, index) => new Row(`pin-${index + 1}`));
 
   constructor() {
-    const heads = ["Taxel", "Counts", "Resistance", "Conductance", "Force", "1 \u03c3", "Pressure", "Status"];
+    const heads = ["Taxel", "Counts", "Resist.", "Conduct.", "Force", "\u00b1", "Pressure", "Status"];
     const body = element("tbody", {}, this.#cursor.element, ...this.#pins.map((row) => row.element));
-    this.element = panel(
-      [element("h2", {}, "Taxels"), element("span", { class: "dim" }, "click to pin, up to six")],
-      { "aria-label": "Taxels" },
-      table(heads, "taxel-table", body),
-    );
+    const room = table(heads, "taxel-table", body);
+    room.append(this.#none);
+    this.element = panel("Taxels", {}, room);
   }
 
   show(array: ArrayDescription, frames: Frames, cursor: number, pins: readonly number[]): void {
+    setHidden(this.#cursor.element, cursor < 0);
+    setHidden(this.#none, cursor >= 0 || pins.length > 0);
     if (cursor >= 0) this.#cursor.show(taxelName(cursor, array), cursor, array, frames);
-    else this.#cursor.clear("cursor");
     this.#pins.forEach((row, index) => {
       const taxel = pins[index];
       row.element.hidden = taxel === undefined;

@@ -92,7 +92,7 @@ class HealthView implements View {
   readonly #faults = element("ul", { class: "faults", "data-role": "faults" });
   readonly #figures = element("dl", { class: "pairs", "data-role": "page-figures" });
   readonly #unfollow: (() => void)[] = [];
-  #seen = { ms: 0, frames: 0, messages: 0, bytes: 0 };
+  #seen = { ms: 0, pictures: 0, messages: 0, bytes: 0 };
 
   constructor(context: ViewContext) {
     this.#context = context;
@@ -131,7 +131,7 @@ class HealthView implements View {
     const pairs: [string, string][] = [
       ["Time of frame to screen, p50", known(1e3 * display.latency(0.5), 1, "ms")],
       ["p99", known(1e3 * display.latency(0.99), 1, "ms")],
-      ["Maps drawn", known(rate(display.framesDrawn, this.#seen.frames), 0, "a second")],
+      ["Pictures of this page", known(rate(display.pictures, this.#seen.pictures), 0, "a second")],
       ["Messages", known(rate(stream.messages, this.#seen.messages), 0, "a second")],
       ["Received", known(rate(stream.bytes, this.#seen.bytes) / 1024, 1, "KiB/s")],
       ["Connections lost", count(Math.max(0, stream.reconnects))],
@@ -141,7 +141,7 @@ class HealthView implements View {
       ["Recording", recordingWords(server)],
     ];
     this.#showPairs(pairs);
-    this.#seen = { ms: nowMs, frames: display.framesDrawn, messages: stream.messages, bytes: stream.bytes };
+    this.#seen = { ms: nowMs, pictures: display.pictures, messages: stream.messages, bytes: stream.bytes };
   }
 
   #showPairs(pairs: [string, string][]): void {

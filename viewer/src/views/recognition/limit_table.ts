@@ -51,7 +51,7 @@ export class LimitTable {
   readonly #none = element(
     "p",
     { class: "dim note" },
-    "No limits are watched: write them (docs/threats.md) and serve them (dermis serve --threats).",
+    "No limits are watched. Write them into a file, and serve it: dermis serve --threats limits.toml.",
   );
 
   constructor() {
@@ -79,6 +79,10 @@ export class ThreatLog {
   }
 
   show(log: readonly Threat[]): void {
+    if (log.length === 0) {
+      this.#list.replaceChildren(element("li", { class: "dim" }, "Nothing has happened since this page was opened."));
+      return;
+    }
     this.#list.replaceChildren(
       ...log.map((threat) =>
         element(

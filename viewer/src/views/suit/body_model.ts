@@ -88,6 +88,12 @@ export class BodyModel {
       .catch((error: unknown) => failed(`${visual.name ?? file}: ${errorText(error)}`));
   }
 
+  /** Those of the links; all where none is of the body. */
+  partsOf(names: ReadonlySet<string>): readonly three.Object3D[] {
+    const parts = [...this.#links].flatMap(([name, link]) => (names.has(name) ? [link] : []));
+    return parts.length > 0 ? parts : [this.group];
+  }
+
   move(name: string, pose: PlacedPose): void {
     const link = this.#links.get(name);
     if (link !== undefined) put(link, pose);

@@ -7,10 +7,13 @@ import type { PointsFrame } from "../../messages/grids";
 import type { Transform } from "../../messages/transforms";
 import type { PlacedPose, SuitDescription } from "../../suit";
 import { cssColor, rgbColor } from "../../theme";
+import { touchingIn } from "../array/picture";
 import { limitedZones } from "../array/zones";
 import { BodyModel, type FetchFile } from "./body_model";
 import { ContactArrows, LONGEST_SHARE, MOST_ARROWS } from "./contact_arrows";
+import { Heading } from "./heading";
 import { mannequinOf } from "./mannequin";
+import { columnPx } from "./side_labels";
 import { nearestNeighbour, TaxelCloud } from "./taxel_cloud";
 
 const TURN_STEP = 0.12;
@@ -23,8 +26,8 @@ const CORNERS = [
   [1, -1],
   [1, 1],
 ] as const;
-/** Share of the picture's height and width. */
-const FIT_SHARE = 0.8;
+/** Share of the picture's height that the suit fills, and of what the labels leave of its width. */
+const FIT_SHARE = 0.92;
 /** Clicks this near to a taxel mean its array, as a share of the suit's size. */
 const CLICK_SHARE = 0.03;
 
@@ -70,6 +73,9 @@ export class SuitScene {
   readonly #tails = Array.from({ length: MOST_ARROWS }, () => new three.Vector3());
   readonly #forces = new Float64Array(MOST_ARROWS);
   readonly #sight = new three.Raycaster();
+  readonly #heading = new Heading();
+  /** An upright suit is turned; one that lies flat is seen whole from above. */
+  #isUpright = false;
   #arrowCount = 0;
   /** Moves of each array, from its place in /suit.json to its present one. */
   #moves: three.Matrix4[] = [];
@@ -203,8 +209,10 @@ export class SuitScene {
   /** Looks at the whole suit from before and a little above; lying flat, from above. */
   home(): void {
     this.#isTurned = false;
+    this.#heading.stop();
     const facing = this.#meanNormal();
     const liesFlat = Math.abs(facing.z) > 0.6;
+    this.#isUpright = !liesFlat;
     this.#camera.up.set(0, liesFlat ? 1 : 0, liesFlat ? 0 : 1);
     if (!liesFlat) facing.setZ(0);
     if (facing.length() < 0.35) facing.set(1, 0, 0);
@@ -229,24 +237,26 @@ export class SuitScene {
     return mean.divideScalar(Math.max(1, normals.length));
   }
 
-  /** The corners of the boxes round the parts of the body. */
+  /** The corners of the boxes round what carries the arrays: of the links of a body, or of a mannequin. */
   #bodyCorners(): three.Vector3[] {
     const corners: three.Vector3[] = [];
-    const dressed = this.#body?.group ?? this.#mannequin;
-    dressed?.updateMatrixWorld(true);
-    dressed?.traverse((part) => {
-      if (!(part instanceof three.Mesh)) return;
-      const geometry = part.geometry as three.BufferGeometry;
-      geometry.computeBoundingBox();
-      const { min, max } = geometry.boundingBox!;
-      for (const x of [min.x, max.x])
-        for (const y of [min.y, max.y])
-          for (const z of [min.z, max.z]) corners.push(new three.Vector3(x, y, z).applyMatrix4(part.matrixWorld));
-    });
+    const carriers = new Set((this.#suit?.arrays ?? []).flatMap(({ link }) => (link === undefined ? [] : [link])));
+    const dressed = this.#body?.partsOf(carriers) ?? (this.#mannequin === undefined ? [] : [this.#mannequin]);
+    for (const part of dressed) part.updateWorldMatrix(true, true);
+    for (const whole of dressed)
+      whole.traverse((part) => {
+        if (!(part instanceof three.Mesh)) return;
+        const geometry = part.geometry as three.BufferGeometry;
+        geometry.computeBoundingBox();
+        const { min, max } = geometry.boundingBox!;
+        for (const x of [min.x, max.x])
+          for (const y of [min.y, max.y])
+            for (const z of [min.z, max.z]) corners.push(new three.Vector3(x, y, z).applyMatrix4(part.matrixWorld));
+      });
     return corners;
   }
 
-  /** As near as all taxels and the whole body can be seen, and room for arrows and names around them. */
+  /** As near as all taxels and what carries them can be seen, and room for arrows and names around them. */
   #fit(direction: three.Vector3): void {
     const target = this.#controls.target.copy(this.#centre);
     const point = new three.Vector3();
@@ -281,7 +291,8 @@ export class SuitScene {
         .addScaledVector(this.#right, point.x * height * this.#camera.aspect)
         .addScaledVector(this.#up, point.y * height);
       extent.getSize(point);
-      distance *= Math.max(0.3, (0.5 * Math.max(point.x, point.y)) / FIT_SHARE);
+      const width = 1 - (2 * columnPx(this.#width)) / this.#width;
+      distance *= Math.max(0.3, (0.5 * Math.max(point.x / width, point.y)) / FIT_SHARE);
     }
     this.#camera.position.copy(target).addScaledVector(direction, distance);
     this.#controls.update();
@@ -336,6 +347,21 @@ export class SuitScene {
     }
     this.#arrows.end();
     this.#isDue = true;
+    this.#look(frames);
+  }
+
+  /** Turns itself, until somebody has turned it, so that what is touched is seen. */
+  #look(frames: readonly ContactsFrame[]): void {
+    if (this.#isTurned || !this.#isUpright) return;
+    const pressed = frames
+      .flatMap(touchingIn)
+      .map(({ normal, forceN }) => ({ normal: new three.Vector3().fromArray(normal), forceN }));
+    this.#heading.see(pressed, this.#direction(), this.#camera.up, performance.now());
+  }
+
+  /** From the suit to the eye. */
+  #direction(): three.Vector3 {
+    return this.#camera.position.clone().sub(this.#controls.target).normalize();
   }
 
   #addArrow(contact: Contact, scaleEnd: number): void {
@@ -409,6 +435,11 @@ export class SuitScene {
 
   /** True where something was drawn. */
   draw(): boolean {
+    const turned = this.#isTurned
+      ? undefined
+      : this.#heading.step(this.#direction(), this.#camera.up, performance.now());
+    if (turned !== undefined) this.#fit(turned);
+    this.#isDue ||= turned !== undefined;
     if (!this.#isDue) return false;
     this.#isDue = false;
     this.#renderer.render(this.#scene, this.#camera);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { button, element, setData, setHidden, setText } from "../../dom";
+import { button, element, setData, setText } from "../../dom";
 import { fixed } from "../../format";
 import { type PointsFrame, readPoints } from "../../messages/grids";
 import { readTransforms } from "../../messages/transforms";
 import { setting } from "../../settings";
 import type { View, ViewContext, ViewFactory } from "../../view";
-import { LabelRoom } from "../label_room";
 import { asOnMap, isLoneAndFlat } from "./as_on_map";
 import { OrientationGizmo } from "./orientation_gizmo";
+import { SideLabels } from "./side_labels";
 import type { SuitScene } from "./suit_scene";
 import "./suit.css";
 
@@ -38,35 +38,23 @@ class ArrayLabel {
 
 /** An arrow is not longer than the scale. */
 function forceText(newtons: number, scaleEnd: number): string {
-  return `${fixed(newtons, 1)} N${newtons > scaleEnd ? " (beyond the scale)" : ""}`;
+  return `${fixed(newtons, 1)} N${newtons > scaleEnd ? " (beyond)" : ""}`;
 }
 
-/** Puts a label where there is room, so that its middle is at `at` or near it. */
-function putInto(room: LabelRoom, label: HTMLElement, at: [number, number] | undefined, share: number): void {
-  setHidden(label, at === undefined);
-  if (at === undefined) return;
-  const [width, height] = [label.offsetWidth, label.offsetHeight];
-  const box = room.place({ x: at[0], y: at[1] - share * height, width, height });
-  setHidden(label, box === undefined);
-  if (box !== undefined)
-    label.style.transform = `translate(${(box.x - 0.5 * width).toFixed(1)}px, ${(box.y - 0.5 * height).toFixed(1)}px)`;
-}
-
-/** Above the middle of what is seen of these points of an array. */
-function above(
+/** The middle of what these points of an array are on the picture. */
+function middleOf(
   scene: SuitScene,
   array: number,
   points: readonly [number, number, number][],
 ): [number, number] | undefined {
-  let top = Infinity;
-  let sum = 0;
+  const sum: [number, number] = [0, 0];
   for (const point of points) {
     const at = scene.project(...scene.placeOf(array, point));
     if (at === undefined) return undefined;
-    top = Math.min(top, at[1]);
-    sum += at[0];
+    sum[0] += at[0] / points.length;
+    sum[1] += at[1] / points.length;
   }
-  return [sum / points.length, top];
+  return sum;
 }
 
 class SuitView implements View {
@@ -83,11 +71,12 @@ class SuitView implements View {
   readonly #forces = Array.from({ length: MOST_FORCES }, () =>
     element("span", { class: "force-label figure", hidden: true, "aria-hidden": "true" }),
   );
+  readonly #sides = new SideLabels();
   readonly #gizmo = new OrientationGizmo();
   readonly #arrowShaft = element("span", { class: "arrow-length" });
   readonly #arrowForce = element("span", { class: "figure" });
   #labels: ArrayLabel[] = [];
-  /** The taxels at the border of each array, one of which is the highest on the screen. */
+  /** Some taxels of each array, with its middle in their middle. */
   #anchors: [number, number, number][][] = [];
   #scene: SuitScene | undefined;
   #isLoading = false;
@@ -111,10 +100,11 @@ class SuitView implements View {
         class: "panel suit-room",
         tabindex: 0,
         role: "application",
-        "aria-label": "The suit. Arrow keys turn it, plus and minus bring it nearer, Home shows all of it.",
+        "aria-label": "The suit. Arrow keys turn it, plus and minus bring it nearer, Home shows all arrays.",
         "data-role": "suit",
       },
       this.#canvas,
+      this.#sides.lines,
       ...this.#forces,
       element("p", { class: "arrow-scale" }, this.#arrowShaft, this.#arrowForce),
       this.#gizmo.element,
@@ -271,13 +261,15 @@ class SuitView implements View {
   }
 
   #placeLabels(scene: SuitScene): void {
-    const room = new LabelRoom(this.#room.clientWidth, this.#room.clientHeight);
-    this.#labels.forEach((label, index) =>
-      putInto(room, label.element, above(scene, index, this.#anchors[index]!), 0.7),
-    );
-    this.#forces.forEach((label, index) =>
-      putInto(room, label, index < scene.arrowCount ? scene.arrowPlace(index) : undefined, 0),
-    );
+    const arrays = this.#labels.map(({ element }, index) => ({
+      label: element,
+      at: middleOf(scene, index, this.#anchors[index]!),
+    }));
+    const forces = this.#forces.map((label, index) => ({
+      label,
+      at: index < scene.arrowCount ? scene.arrowPlace(index) : undefined,
+    }));
+    this.#sides.place([...arrays, ...forces], this.#room.clientWidth, this.#room.clientHeight);
     this.#gizmo.show(scene.axes());
     this.#arrowShaft.style.width = `${scene.longestArrow.toFixed(1)}px`;
   }
