@@ -84,6 +84,10 @@ void ArrayWorker::set_zero(ZeroRequest zero) {
   request([&](Changes& changes) { changes.zero = zero; });
 }
 
+void ArrayWorker::use_zero(std::vector<double> offsets) {
+  request([&](Changes& changes) { changes.offsets = std::move(offsets); });
+}
+
 Status ArrayWorker::set_model(const touch::pipeline::Model& model) {
   const ArrayDescription& present = array_.model->array;
   const ArrayDescription& next = model.array;
@@ -114,6 +118,7 @@ void ArrayWorker::take_requests() {
   settings_ = asked.settings.value_or(settings_);
   tracker_.set_options(settings_.contacts);
   pipeline_->drift().set_options(settings_.drift);
+  if (!asked.offsets.empty()) pipeline_->drift().use_offsets(asked.offsets);
   set_zero_now(asked.zero);
 }
 
@@ -252,6 +257,8 @@ void ArrayWorker::publish(Nanos now) {
   const auto faults = pipeline_->line_faults().faults();
   published_.statistics.faults.assign(faults.begin(), faults.end());
   published_.statistics.tare = pipeline_->last_tare();
+  const std::span<const double> offsets = pipeline_->drift().offsets();
+  published_.statistics.zero.assign(offsets.begin(), offsets.end());
   published_.statistics.standing = standing_load();
   published_.statistics.temperature_celsius = results_.temperature_celsius;
   published_.statistics.supply_v = results_.supply_v;

@@ -42,6 +42,7 @@ class ArrayWorker {
 
   void set_settings(const LiveSettings& settings);
   void set_zero(ZeroRequest request);
+  void use_zero(std::vector<double> offsets);
   [[nodiscard]] Status set_model(const touch::pipeline::Model& model);
   [[nodiscard]] ArrayStatistics statistics() const;
 
@@ -50,6 +51,7 @@ class ArrayWorker {
   struct Changes {
     std::optional<LiveSettings> settings;
     ZeroRequest zero = ZeroRequest::keep;
+    std::vector<double> offsets;  // empty: as they are
     std::unique_ptr<touch::pipeline::Pipeline> pipeline;
     std::optional<touch::pipeline::StandingLoadWatch> standing;  // with the pipeline
   };

@@ -138,6 +138,10 @@ void LiveSuit::reset_tare(std::optional<std::size_t> array) {
   implementation_->set_zero(array, ZeroRequest::reset);
 }
 
+void LiveSuit::use_zero(std::size_t array, std::vector<double> offsets) {
+  implementation_->at(array).use_zero(std::move(offsets));
+}
+
 Status LiveSuit::set_model(std::size_t array, const std::shared_ptr<const touch::pipeline::Model>& model) {
   assert(model);
   return implementation_->at(array).set_model(*model);

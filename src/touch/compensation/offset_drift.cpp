@@ -45,6 +45,7 @@ class OffsetDrift::Implementation {
   void correct(ConductanceFrame& frame) const noexcept;
   void tare() noexcept;
   void undo_tare() noexcept;
+  void use_offsets(std::span<const double> offsets) noexcept;
   void reset() noexcept;
   void set_options(const OffsetDriftOptions& options) noexcept;
 
@@ -173,6 +174,16 @@ void OffsetDrift::Implementation::tare() noexcept {
 void OffsetDrift::Implementation::undo_tare() noexcept {
   taring_ = false;
   zero_ = former_;
+  begin_at_zero();
+  forget_history();
+}
+
+void OffsetDrift::Implementation::use_offsets(std::span<const double> offsets) noexcept {
+  assert(offsets.size() == zero_.offset.size());
+  taring_ = false;
+  corrects_ = true;
+  std::copy(offsets.begin(), offsets.end(), zero_.offset.begin());
+  zero_.tared = zero_.offset;
   begin_at_zero();
   forget_history();
 }
@@ -379,6 +390,10 @@ const TareStep& OffsetDrift::tare_step() const noexcept {
 
 bool OffsetDrift::taring() const noexcept {
   return implementation_->taring();
+}
+
+void OffsetDrift::use_offsets(std::span<const double> offsets) noexcept {
+  implementation_->use_offsets(offsets);
 }
 
 void OffsetDrift::reset() noexcept {

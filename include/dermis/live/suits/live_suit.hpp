@@ -58,6 +58,7 @@ struct ArrayStatistics {
   std::string error;           ///< why; empty where it just ended.
   std::vector<touch::compensation::LineFault> faults;
   touch::pipeline::Tare tare;  ///< The last one.
+  std::vector<double> zero;    ///< The offsets that are subtracted now [taxels] [S].
   /// Has stood there since the first frame, or for a minute.
   std::optional<touch::pipeline::StandingLoad> standing;
   std::optional<double> temperature_celsius;  ///< Of the last frame,
@@ -113,6 +114,8 @@ class LiveSuit {
   void undo_tare(std::optional<std::size_t> array = {});
   /// Back to the zero of the calibration.
   void reset_tare(std::optional<std::size_t> array = {});
+  /// The zero of an array as it was earlier, by the same model [taxels] [S].
+  void use_zero(std::size_t array, std::vector<double> offsets);
   /// Another model for an array that is at work, of the same size and pitch: after a calibration. Contacts keep their
   /// ids, faults and tare begin anew.
   [[nodiscard]] Status set_model(std::size_t array, const std::shared_ptr<const touch::pipeline::Model>& model);

@@ -70,6 +70,8 @@ class OffsetDrift {
   [[nodiscard]] const TareStep& tare_step() const noexcept;
   /// Back to the offsets before the last tare that has ended; also ends a tare in progress.
   void undo_tare() noexcept;
+  /// Begins at the offsets of an earlier tare [taxels] [S], which are finite.
+  void use_offsets(std::span<const double> offsets) noexcept;
   /// Back to the offsets of the calibration; also ends a tare in progress.
   void reset() noexcept;
 

@@ -20,7 +20,21 @@ constexpr std::chrono::minutes kRefusedFor{1};
 }  // namespace
 
 Tares::Tares(const ServedSuit& suit, live::suits::LiveSuit& live, Notify notify)
-    : suit_(suit), live_(live), notify_(std::move(notify)), zeros_(suit.arrays.size()) {}
+    : suit_(suit), live_(live), notify_(std::move(notify)), zeros_(suit.arrays.size()) {
+  for (const ServedArray& array : suit.arrays) kept_.emplace_back(suit, array);
+}
+
+Status Tares::prepare() {
+  const std::lock_guard lock(mutex_);
+  for (std::size_t k = 0; k < zeros_.size(); ++k) {
+    std::vector<double> offsets = kept_[k].read();
+    if (offsets.empty()) continue;
+    live_.use_zero(k, std::move(offsets));
+    zeros_[k].is_tared = true;
+    log(fmt::format("{} has its zero of {}", suit_.arrays[k].name, kept_[k].taken_at()));
+  }
+  return Done{};
+}
 
 std::vector<LiveParameter> Tares::parameters() {
   const auto locked = [this](auto value) {
@@ -98,6 +112,7 @@ void Tares::reset(std::size_t array, const std::string& client) {
   const std::uint64_t seen = zeros_[array].seen;
   zeros_[array] = {};
   zeros_[array].seen = seen;
+  kept_[array].remove();
   log(fmt::format("{} got back the zero of its calibration by {}", suit_.arrays[array].name, client));
 }
 
@@ -116,23 +131,26 @@ void Tares::undo(const std::string& client) {
     live_.undo_tare(k);
     zero.is_tared = zero.was_tared;
     zero.taken.reset();
+    kept_[k].remove();
     log(fmt::format("{} got back the zero before its tare by {}", suit_.arrays[k].name, client));
   }
 }
 
 std::vector<std::string> Tares::follow() {
   for (std::size_t k = 0; k < zeros_.size(); ++k) {
-    const touch::pipeline::Tare tare = live_.statistics(k).tare;
+    const live::suits::ArrayStatistics statistics = live_.statistics(k);
+    const touch::pipeline::Tare& tare = statistics.tare;
     const std::lock_guard lock(mutex_);
     const bool is_news = tare.has_ended() && tare.number != zeros_[k].seen;
     zeros_[k].seen = tare.has_ended() ? tare.number : 0;
-    if (is_news && !zeros_[k].client.empty()) end(k, tare);
+    if (is_news && !zeros_[k].client.empty()) end(k, statistics);
   }
   const std::lock_guard lock(mutex_);
   return std::exchange(news_, {});
 }
 
-void Tares::end(std::size_t array, const touch::pipeline::Tare& tare) {
+void Tares::end(std::size_t array, const live::suits::ArrayStatistics& statistics) {
+  const touch::pipeline::Tare& tare = statistics.tare;
   Zero& zero = zeros_[array];
   const std::string& name = suit_.arrays[array].name;
   const std::string load = touch::pipeline::describe(tare, suit_.arrays[array].model->array);
@@ -144,6 +162,9 @@ void Tares::end(std::size_t array, const touch::pipeline::Tare& tare) {
   } else {
     zero.taken = Clock::now();
     log(fmt::format("{} was tared by {}{}{}", name, zero.client, load.empty() ? "" : ": ", load));
+    if (Status kept = kept_[array].write(statistics.zero); !kept) {
+      log(fmt::format("the zero of {} is not kept: {}", name, kept.error().message));
+    }
   }
   zero.client.clear();
 }
@@ -164,6 +185,7 @@ void Tares::tick(std::int64_t /*tick*/) {
 void Tares::model_changed(std::size_t array) {
   const std::lock_guard lock(mutex_);
   zeros_[array] = {};
+  kept_[array].remove();
 }
 
 Result<std::unique_ptr<Part>> make_tares(Host& host) {

@@ -15,6 +15,7 @@
 #include "dermis/live/suits/live_suit.hpp"
 #include "dermis/out/serve/served_suit.hpp"
 #include "dermis/touch/frames/result.hpp"
+#include "out/serve/health/kept_zero.hpp"
 #include "out/serve/parts/part.hpp"
 
 namespace dermis::out::serve {
@@ -32,6 +33,8 @@ class Tares final : public Part {
 
   /// "/tare", "/tare/force", ... and "/chest/tare" of each array.
   [[nodiscard]] std::vector<LiveParameter> parameters() override;
+  /// Arrays begin at the zeros that were kept of them.
+  [[nodiscard]] Status prepare() override;
   void tick(std::int64_t tick) override;
   /// It begins at its own zero.
   void model_changed(std::size_t array) override;
@@ -59,7 +62,7 @@ class Tares final : public Part {
   void force(const std::string& client);
   void reset(std::size_t array, const std::string& client);
   void undo(const std::string& client);
-  void end(std::size_t array, const touch::pipeline::Tare& tare);
+  void end(std::size_t array, const live::suits::ArrayStatistics& statistics);
   void log(const std::string& what);
   [[nodiscard]] static bool is_taken(const Zero& zero);
   [[nodiscard]] static bool can_be_undone(const Zero& zero);
@@ -69,6 +72,7 @@ class Tares final : public Part {
   const Notify notify_;
   mutable std::mutex mutex_;       // of the following
   std::vector<Zero> zeros_;        // of each array
+  std::vector<KeptZero> kept_;     // the same, in its folder
   std::deque<std::string> log_;    // the newest first
   std::vector<std::string> news_;  // that follow() has not returned yet
 };
