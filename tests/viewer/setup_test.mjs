@@ -5,7 +5,7 @@
 // where nothing reads them.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
-import { readdirSync, readFileSync, rmSync, symlinkSync } from "node:fs";
+import { readdirSync, readFileSync, renameSync, rmSync, symlinkSync } from "node:fs";
 import { join } from "node:path";
 import { describe, it } from "node:test";
 import {
@@ -220,13 +220,14 @@ describe("an array of which nothing is written", { concurrency: true }, () => {
       await server.stop();
       mat.close();
     }
-    const written = readFileSync(join(folder, "turned.toml"), "utf8");
+    const written = readFileSync(join(folder, "turned/array.toml"), "utf8");
     assert.match(written, /rows = 12\ncols = 10\n/);
     assert.match(written, /transpose = true\nflip_rows = true\n/);
   });
 
-  it("lists the serial ports where no device is named, and opens the one that is chosen", async (test) => {
+  it("lists the serial ports where no device is named, and finds the board at another one the next day", async (test) => {
     const port = `/dev/ttyACM_of_test_${process.pid}`;
+    const otherPort = `${port}_b`;
     const board = spawn(
       process.argv[2],
       ["emulate", "--in", "sim:idle?rate=50&rows=3&cols=4", "--protocol", "dermis", "--to", "pty:"],
@@ -262,9 +263,20 @@ describe("an array of which nothing is written", { concurrency: true }, () => {
       await becomes(page, "live");
       assertUnhurt(page);
       await page.close();
+      await server.stop();
+
+      renameSync(port, otherPort);
+      server = await serveEmpty();
+      const nextDay = await openPage(browser, server.url);
+      await nextDay.locator('[data-known="board/array.toml"]').click();
+      await part(nextDay, "uncalibrated").waitFor();
+      await becomes(nextDay, "live");
+      assert.match(readFileSync(join(folder, "board/source.toml"), "utf8"), new RegExp(`from = "serial://${otherPort}"`));
+      assertUnhurt(nextDay);
+      await nextDay.close();
     } finally {
       await server?.stop();
-      rmSync(port, { force: true });
+      for (const path of [port, otherPort]) rmSync(path, { force: true });
       board.kill();
     }
   });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <map>
@@ -12,6 +13,7 @@
 #include "dermis/bytes/models/model_file.hpp"
 #include "dermis/bytes/recordings/marks.hpp"
 #include "dermis/bytes/recordings/recording.hpp"
+#include "dermis/live/dds/publisher.hpp"
 #include "out/serve/session_at_work.hpp"
 #include "out/serve/small_suit.hpp"
 #include "out/serve/stream_client.hpp"
@@ -136,6 +138,29 @@ TEST(PlayedResults, marks_are_there_after_the_page_and_edited_beside_the_recordi
     if (mark.event.empty()) labels += mark.label;
   }
   EXPECT_EQ(labels, "lift");
+  EXPECT_TRUE(work.end());
+}
+
+TEST(Marks, are_labels_of_ros_too) {
+  const std::atomic<bool> never = false;
+  SessionOptions options = options_with();
+  options.dds =
+      live::dds::PublisherOptions{.domain = 100U + static_cast<std::uint32_t>(::getpid() % 100), .loopback_only = true};
+  Result<std::unique_ptr<Session>> session = Session::create(small_suit({"chest"}, never), options);
+  if (!session) GTEST_SKIP() << session.error().message;
+  Work work(*std::move(session));
+  const auto publisher = live::dds::Publisher::create(*options.dds);
+  ASSERT_TRUE(publisher) << publisher.error().message;
+  const bytes::ros_messages::MessageType text{"std_msgs/msg/String", "string data\n", ""};
+  const Result<live::dds::TopicId> topic = (*publisher)->add_topic({.name = "/mark", .type = text});
+  ASSERT_TRUE(topic) << topic.error().message;
+  const std::vector<std::uint8_t> lift = {0, 1, 0, 0, 5, 0, 0, 0, 'l', 'i', 'f', 't', 0};
+  StreamClient client(work.port());
+  std::string marks;
+  while (marks.find("\"label\":\"lift\",\"by\":\"/mark\"") == std::string::npos) {
+    (*publisher)->publish(*topic, lift);
+    marks = client.call("/marks/list", "{}");
+  }
   EXPECT_TRUE(work.end());
 }
 

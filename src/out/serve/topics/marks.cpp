@@ -6,11 +6,13 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "dermis/live/dds/subscriber.hpp"
 #include "out/serve/parts/part_makers.hpp"
 #include "out/serve/recording/suit_recorder.hpp"
 #include "out/serve/requests/json_request.hpp"
@@ -22,6 +24,8 @@ namespace {
 using bytes::ros_messages::Mark;
 using nlohmann::ordered_json;
 
+constexpr const char* kTopic = "/mark";
+constexpr const char* kTextType = "std_msgs::msg::dds_::String_";
 constexpr const char* kMilliseconds = "a whole number of milliseconds since 1970";
 constexpr std::uint64_t kMostMilliseconds = 9'000'000'000'000;  // the year 2255; Nanos end soon after
 constexpr Nanos kLastMinute = std::chrono::minutes(1);
@@ -43,7 +47,7 @@ class Marks final : public Part {
   }
 
   [[nodiscard]] Status prepare() override {
-    if (!host_.suit.playback) return Done{};
+    if (!host_.suit.playback) return hear_topic();
     Result<std::vector<Mark>> marks =
         bytes::recordings::read_marks(host_.suit.playback->path(), host_.suit.playback->start());
     if (!marks) return marks.error();
@@ -59,6 +63,21 @@ class Marks final : public Part {
   }
 
  private:
+  /// Labels of ROS 2, where it hears the server, too.
+  [[nodiscard]] Status hear_topic() {
+    if (!host_.options.dds) return Done{};
+    const auto heard = [this](const live::dds::Sample& sample) {
+      const Result<std::string_view> label = bytes::ros_messages::decode_text(sample.message);
+      if (!label || label->size() > bytes::recordings::kMostLabelBytes) return;
+      host_.marks.add({.time = host_.now(), .label = std::string(*label), .by = kTopic}, host_.now());
+    };
+    Result<std::unique_ptr<live::dds::Subscriber>> subscriber =
+        live::dds::Subscriber::create(*host_.options.dds, {std::string("rt") + kTopic, kTextType, heard});
+    if (!subscriber) return subscriber.error();
+    subscriber_ = *std::move(subscriber);
+    return Done{};
+  }
+
   /// {"label": "grasp", "by": "anna", "at_ms": 1764480000500}; without a time it is now.
   [[nodiscard]] Result<std::string> add(const JsonRequest& request) {
     const Result<std::string> label = request.text("label", bytes::recordings::kMostLabelBytes);
@@ -109,7 +128,8 @@ class Marks final : public Part {
   }
 
   Host& host_;
-  std::string recording_;  // that goes on
+  std::string recording_;                              // that goes on
+  std::unique_ptr<live::dds::Subscriber> subscriber_;  // null: without DDS
 };
 
 }  // namespace
