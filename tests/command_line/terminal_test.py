@@ -222,6 +222,8 @@ class Terminal(SmallArray):
             dermis("doctor", "check", "--model", array, "--in", frames, "--weight", weight).stdout
             for weight in ("0.2 kg", "200g", "1.96133", "1.96133 N")
         }
+        said = dermis("doctor", "check", "--model", array, "--in", frames, "--weight", "200 g").stderr
+        self.assertIn("--weight: 200 g, taken for 1.961 N\n", said)
         self.assertEqual(len(told), 1)
         self.assertRegex(told.pop(), r"^weight +1.961 N, put on 3 times\n")
         self.refuse(
@@ -244,6 +246,14 @@ class Terminal(SmallArray):
             *self.calibrate_arguments(self.work / "grams", loads=self.written("g.csv", "\n".join(grams) + "\n"))
         )
         self.assertIn("loads 0.5 to 50 N", text)
+
+    def test_loads_in_kilograms_are_told_by_the_name_of_their_column(self):
+        lines = [line.split(",") for line in (self.calibration / "loads.csv").read_text().splitlines()[1:]]
+        kilograms = [",".join([*line[:3], repr(float(line[3]) / 9.80665)]) for line in lines]
+        loads = self.written("kg.csv", "\n".join(["frame,kind,where,kg", *kilograms]) + "\n")
+        result = dermis(*self.calibrate_arguments(self.work / "kilograms", loads=loads))
+        self.assertIn("loads 0.5 to 50 N", result.stdout)
+        self.assertRegex(result.stderr, rf"{loads}: \S+ kg, taken for \S+ N\n")
 
     def test_nothing_on_the_terminal_is_written_as_in_a_program(self):
         said = [
