@@ -134,9 +134,7 @@ class Terminal(SmallArray):
             self.assertEqual(self.succeed("help", *command), dermis(*command, "--help").stdout)
         self.refuse(("help", "evalute"), ["unknown command 'evalute'; did you mean 'evaluate'?"])
         self.refuse(("help", "run", "fast"), ["'fast' is one argument too many"])
-        self.assertRegex(
-            self.succeed("help"), r"(?m)^At work:\n  serve {3,}(.*\n)*dermis help COMMAND: .*guides: .*\n\Z"
-        )
+        self.assertRegex(self.succeed("help"), r"(?m)^Begin:\n  serve {3,}(.*\n)*dermis help COMMAND: .*guides: .*\n\Z")
 
     def test_a_command_below_another_is_named(self):
         self.refuse(("recover", "a.mcap"), ["unknown command 'recover'; there is 'dermis info recover'"])
@@ -242,10 +240,10 @@ class Terminal(SmallArray):
             ",".join(line if k == 0 or line[1] != "force" else [*line[:3], f"{float(line[3]) / 0.00980665!r} g"])
             for k, line in enumerate(loads)
         ]
-        text = self.succeed(
-            *self.calibrate_arguments(self.work / "grams", loads=self.written("g.csv", "\n".join(grams) + "\n"))
-        )
-        self.assertIn("loads 0.5 to 50 N", text)
+        loads = self.written("g.csv", "\n".join(grams) + "\n")
+        result = dermis(*self.calibrate_arguments(self.work / "grams", loads=loads))
+        self.assertIn("loads 0.5 to 50 N", result.stdout)
+        self.assertIn(f"{loads}: 50.98581064889641 g, taken for 0.5 N\n", result.stderr)
 
     def test_loads_in_kilograms_are_told_by_the_name_of_their_column(self):
         lines = [line.split(",") for line in (self.calibration / "loads.csv").read_text().splitlines()[1:]]

@@ -76,7 +76,7 @@ std::string taken_for(std::string_view text, const Load& load, std::string_view 
   std::string taken(text);
   if (is_number) taken += " " + std::string(unit);
   taken += ", taken for ";
-  append_number(taken, is_force ? load.value : load.value / kPascalPerKilopascal);
+  append_number(taken, static_cast<float>(is_force ? load.value : load.value / kPascalPerKilopascal));
   return taken + (is_force ? " N" : " kPa");
 }
 
