@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # CI runs these targets (.ci/run). Each installs what it needs.
 
-.PHONY: build setup demo live python wheels test lint numerics sanitize fuzz check-all bench profile docs bare package package-test site campaigns clean
+.PHONY: build setup demo live python wheels reference test lint numerics sanitize fuzz check-all bench profile docs bare package package-test site campaigns clean
 
 build: setup
 	cmake --preset release
@@ -74,6 +74,10 @@ profile: setup
 	cmake --preset release -D DERMIS_BUILD_BENCHMARKS=ON
 	cmake --build --preset release --target pipeline_benchmark contacts_benchmark live_benchmark
 	scripts/profile
+
+# What the help says, as documents.
+reference: build
+	cp -r build/release/share/doc/dermis/. docs
 
 docs: setup
 	/usr/bin/python3 scripts/check_docs.py

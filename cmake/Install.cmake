@@ -24,7 +24,7 @@ if(TARGET dermis_cnats)
 endif()
 if(TARGET dermis_cli)
   install(TARGETS dermis_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-  install(DIRECTORY ${PROJECT_BINARY_DIR}/share/ DESTINATION ${CMAKE_INSTALL_DATADIR})
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/share/ DESTINATION ${CMAKE_INSTALL_DATADIR} PATTERN doc EXCLUDE)  # docs/ has them
 endif()
 install(DIRECTORY include/dermis ${PROJECT_BINARY_DIR}/include/dermis DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT dermis-targets NAMESPACE dermis:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/dermis)

@@ -193,6 +193,7 @@ def judge(binary, fault, mode, seed, presses, folder):
         folder / "loads.csv",
         "--out",
         folder / "model",
+        "--verbose",
     )
     (folder / "calibrate.txt").write_text(said)
     if code != 0:

@@ -4,7 +4,6 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <map>
@@ -12,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calibration_input.hpp"
+#include "calibration_text.hpp"
 #include "commands.hpp"
 #include "dermis/bytes/files/content_hash.hpp"
 #include "dermis/bytes/files/loads_csv.hpp"
@@ -36,16 +36,11 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-constexpr double kPoorFit = 0.1;  // relative error
-// Single presses hide what is wrong with circuit and ADC: each law takes it in.
-constexpr const char* kProofPresses =
-    "fewer than eight presses on two to six taxels: whether circuit and ADC are as described is not told; add some, "
-    "such as twenty of a known weight over two to four taxels of a row";
-
 struct CalibrateOptions {
   CalibrationFiles files;
   std::string out;
   bool json = false;
+  bool is_verbose = false;
 };
 
 Status add_hashes(const CalibrateOptions& options, std::map<std::string, std::string>& provenance) {
@@ -61,33 +56,6 @@ Status add_hashes(const CalibrateOptions& options, std::map<std::string, std::st
   }
   provenance["dermis version"] = DERMIS_VERSION;
   return Done{};
-}
-
-void print_text(const CalibrationReport& report, const ArrayDescription& array) {
-  const learn::calibration::TrainingReport& training = report.training;
-  fmt::print("{} labelled frames, {} rejected{}\n", report.frames, report.frames_rejected,
-             report.frames_rejected > 0 ? " (" + report.first_rejection + ")" : "");
-  for (const std::string& remark : report.remarks) fmt::print("{}\n", remark);
-  for (const std::string& doubt : report.doubts) fmt::print("{}\n", doubt);
-  if (report.lacks_proof && report.doubts.empty()) fmt::print("{}\n", kProofPresses);
-  for (const std::string& statement : report.circuit) fmt::print("{}\n", statement);
-  fmt::print("{}\n", training.choice);
-  if (!report.memory.empty()) fmt::print("{}\n", report.memory);
-  fmt::print("loads {:.3g} to {:.3g} N", training.lightest_newtons, training.heaviest_newtons);
-  if (training.uses_temperature) fmt::print(", {:.1f} to {:.1f} C", training.lowest_celsius, training.highest_celsius);
-  fmt::print("\nfit: {}\n", learn::calibration::describe_fit(training, array));
-  fmt::print("1-sigma: {}\n", learn::calibration::describe(report.uncertainty, array));
-  if (std::max(training.median_fit_error, training.shared_leave_one_out_error) > kPoorFit) {
-    fmt::print(stderr,
-               "warning: a poor fit; do frames and loads belong together, and are circuit and polarity right?\n");
-  }
-  for (const std::size_t taxel : training.dead_taxels) {
-    fmt::print("dead taxel {}: it does not answer to its loads\n", array.taxel_name(taxel));
-  }
-  fmt::print("time:");
-  for (const learn::calibration::StageTime& stage : report.stages)
-    fmt::print(" {} {:.2f} s", stage.stage, stage.seconds);
-  fmt::print("\n");
 }
 
 nlohmann::ordered_json taxel_names(const std::vector<std::size_t>& taxels, const ArrayDescription& array) {
@@ -156,6 +124,7 @@ void print_json(const CalibrationReport& report, const ArrayDescription& array,
   for (const learn::calibration::StageTime& stage : report.stages) json["seconds"][stage.stage] = stage.seconds;
   const learn::calibration::UncertaintyReport& uncertainty = report.uncertainty;
   json["adc_noise_counts"] = uncertainty.adc_noise_counts.value_or(array.readout.adc_noise_counts);
+  if (report.unseen) json["unseen"] = {{"median", report.unseen->median}, {"p95", report.unseen->p95}};
   add_if_known("relative_sigma", uncertainty.relative_sigma, json);
   add_if_known("relative_sigma_of_shared", uncertainty.relative_sigma_of_shared, json);
   if (!report.memory.empty()) json["memory"] = report.memory;
@@ -194,11 +163,13 @@ Status calibrate(const CalibrateOptions& options) {
   if (Status hashed = add_hashes(options, calibration->model.provenance); !hashed) return hashed;
   if (Status kept = keep_earlier_model(options.out); !kept) return kept;
   if (Status written = bytes::models::write_model(options.out, calibration->model); !written) return written;
-  options.json ? print_json(calibration->report, array, database->circuit_fit) : print_text(calibration->report, array);
-  if (!options.json && calibration->model.strip) {
-    fmt::print("positions along the strip: learned from {} touches, \u00b1 {:.2f} mm\n", positions->size(),
-               1e3 * calibration->model.strip->sigma_m);
+  if (options.json) {
+    print_json(calibration->report, array, database->circuit_fit);
+    return Done{};
   }
+  const CalibrationText text{*calibration, options.out, positions->size()};
+  text.print_summary();
+  if (options.is_verbose) text.print_details();
   return Done{};
 }
 
@@ -209,6 +180,7 @@ void add_calibrate(Command& command) {
   options->files.add(command);
   command.output_model("--out", options->out, "Model file to write (safetensors)").required();
   command.flag("--json", options->json, "Print the report as JSON");
+  command.flag("--verbose", options->is_verbose, "Print also how labels, circuit, networks and noise were judged");
   command.action([options] {
     end_when_interrupted();
     return calibrate(*options);

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "dermis/bytes/files/array_toml.hpp"
-#include "dermis/bytes/files/loads_csv.hpp"
 #include "dermis/live/sources/open_source.hpp"
+#include "labelled_recording.hpp"
 #include "seconds.hpp"
 #include "source_options.hpp"
 #include "writable.hpp"
@@ -28,7 +28,7 @@ Result<CalibrationInput> CalibrationInput::read(const CalibrationFiles& files, c
   if (Status writable = out.empty() ? Done{} : check_writable(out); !writable) return writable.error();
   Result<std::vector<RawFrame>> frames = live::sources::read_frames(files.frames, source_options(&*array));
   if (!frames) return frames.error();
-  Result<std::vector<Load>> loads = bytes::files::read_loads(files.loads, *array, frames->size());
+  Result<std::vector<Load>> loads = read_told_loads(files.loads, *array, frames->size());
   if (!loads) return loads.error();
   return CalibrationInput{*std::move(array), *settle, *std::move(frames), *std::move(loads)};
 }

@@ -7,10 +7,12 @@
 
 #include "commands.hpp"
 #include "dermis/bytes/files/force_text.hpp"
+#include "dermis/bytes/files/text.hpp"
 #include "dermis/learn/health/weight_check.hpp"
 #include "dermis/live/forces/operation.hpp"
 #include "process_all.hpp"
 #include "source_options.hpp"
+#include "status_line.hpp"
 
 namespace dermis::app {
 namespace {
@@ -41,6 +43,9 @@ Result<int> check(const CheckOptions& options) {
   const Result<double> weight_n = bytes::files::parse_force(options.weight);
   if (!weight_n) return bad_input("--weight: " + weight_n.error().message);
   if (!(*weight_n > 0.0 && *weight_n <= 1e6)) return bad_input("--weight: must be above 0 and at most 1e6 N");
+  if (double newtons = 0.0; !bytes::files::parse_number(options.weight, newtons)) {
+    print_notice(fmt::format("--weight: {}, taken for {:.4g} N", options.weight, *weight_n));
+  }
   const Result<std::unique_ptr<Operation>> operation =
       live::forces::open_operation(options.model, options.in, source_options());
   if (!operation) return operation.error();

@@ -12,27 +12,25 @@
 #include <array>
 #include <charconv>
 #include <cstdint>
-#include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <system_error>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "dermis/bytes/files/force_text.hpp"
+#include "command_texts.hpp"
 #include "dermis/bytes/files/safetensors.hpp"
 #include "dermis/bytes/files/text.hpp"
 #include "dermis/bytes/models/model_file.hpp"
 #include "dermis/learn/recognition/classes_file.hpp"
-#include "dermis/touch/frames/nearest_name.hpp"
 #include "dermis/touch/frames/version.hpp"
 #include "dermis/touch/pipeline/model.hpp"
 #include "reference.hpp"
 #include "status_line.hpp"
+#include "usage_error.hpp"
 
 namespace dermis::app {
 namespace {
@@ -82,81 +80,6 @@ std::function<std::string(std::string)> stream_for_dash(const std::string& strea
 
 std::string refuse_dash(const std::string& name) {
   return name == "-" ? "'-' is no file; name one" : "";
-}
-
-std::string first_line(const std::string& text) {
-  return text.substr(0, text.find('\n'));
-}
-
-std::set<std::string> options_of(const CLI::App& command) {
-  std::set<std::string> names;
-  for (const CLI::Option* option : command.get_options()) {
-    for (const std::string& name : option->get_lnames()) names.insert("--" + name);
-  }
-  return names;
-}
-
-std::set<std::string> commands_of(const CLI::App& command) {
-  std::set<std::string> names;
-  for (const CLI::App* each : command.get_subcommands(nullptr)) names.insert(each->get_name());
-  return names;
-}
-
-/// The last command that was named.
-const CLI::App& chosen_command(const CLI::App& app) {
-  const std::vector<CLI::App*> named = app.get_subcommands();
-  return named.empty() ? app : chosen_command(*named.back());
-}
-
-/// The commands at and below `command` that do so, by their whole names in quotes.
-template <typename Does>
-std::vector<std::string> commands_that(const Does& does, const CLI::App& command, const std::string& name) {
-  std::vector<std::string> found;
-  if (does(command)) found.push_back(bytes::files::in_quotes(name));
-  for (const CLI::App* each : command.get_subcommands(nullptr)) {
-    const std::vector<std::string> below = commands_that(does, *each, name + " " + each->get_name());
-    found.insert(found.end(), below.begin(), below.end());
-  }
-  return found;
-}
-
-/// Names the problem of an unknown argument of a command of `app`. Adds the name that may have been meant, the
-/// command below another that has it, or the few commands that take such an option.
-std::string unknown(const std::string& argument, const CLI::App& command, const CLI::App& app) {
-  const bool is_option = argument.starts_with('-');
-  const std::set<std::string> known = is_option ? options_of(command) : commands_of(command);
-  if (known.empty()) return fmt::format("'{}' is one argument too many", argument);
-  const std::string name = argument.substr(0, argument.find('='));
-  const std::string nearest = nearest_name(name, known);
-  std::string what = fmt::format("unknown {} '{}'", is_option ? "option" : "command", name);
-  const auto has_name = [&](const CLI::App& each) { return each.get_name() == name; };
-  const auto takes_it = [&](const CLI::App& each) { return each.get_option_no_throw(name) != nullptr; };
-  const std::vector<std::string> named =
-      is_option ? std::vector<std::string>() : commands_that(has_name, app, app.get_name());
-  if (!named.empty()) return fmt::format("{}; there is {}", what, fmt::join(named, " and "));
-  if (!nearest.empty()) return fmt::format("{}; did you mean '{}'?", what, nearest);
-  constexpr std::size_t kFew = 2;
-  const std::vector<std::string> takers =
-      is_option ? commands_that(takes_it, app, app.get_name()) : std::vector<std::string>();
-  if (takers.empty() || takers.size() > kFew) return what;
-  return fmt::format("{}; it is one of {}", what, fmt::join(takers, " and "));
-}
-
-/// The mend where somebody wrote a force as two arguments, "200 g"; else empty.
-std::string force_in_two(const std::string& argument, std::span<char* const> arguments) {
-  const auto found = std::find(arguments.begin() + 1, arguments.end(), argument);
-  if (found == arguments.end()) return "";
-  const std::string number = *std::prev(found);
-  const bool is_number = check_number(number).empty() && !check_number(argument).empty();
-  if (!is_number || !bytes::files::parse_force(number + argument)) return "";
-  return fmt::format("; write '{0} {1}' in quotes, or {0}{1}", number, argument);
-}
-
-std::string message_of(const CLI::ParseError& error, const CLI::App& app, std::span<char* const> arguments) {
-  const std::vector<std::string> nobody_took = app.remaining(true);
-  if (nobody_took.empty()) return first_line(error.what());
-  const std::string& first = nobody_took.front();
-  return unknown(first, chosen_command(app), app) + force_in_two(first, arguments);
 }
 
 /// "simulate, calibrate, ... or serve"
@@ -222,6 +145,30 @@ void add_reference(CLI::App& app, Action& chosen) {
   });
 }
 
+/// Shows options group by group.
+class GroupedFormatter : public CLI::Formatter {
+ public:
+  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
+    std::string text = make_description(app) + make_usage(app, std::move(name)) + make_positionals(app);
+    for (const std::string& group : option_groups(*app)) {
+      const std::vector<const CLI::Option*> options = app->get_options(
+          [&](const CLI::Option* option) { return option->get_group() == group && option->nonpositional(); });
+      if (!options.empty()) text += make_group(group, false, options);
+    }
+    return text + make_subcommands(app, mode) + "\n" + make_footer(app);
+  }
+};
+
+/// Texts below the options of all commands, and --help behind their own options.
+void finish_help(CLI::App& app, const std::string& name) {
+  for (CLI::App* command : app.get_subcommands(nullptr)) {
+    const std::string whole = name + " " + command->get_name();
+    command->footer(help_text(command_text(whole)));
+    command->set_help_flag("-h,--help", "Print this help");
+    finish_help(*command, whole);
+  }
+}
+
 }  // namespace
 
 Option Option::required() const {
@@ -259,9 +206,17 @@ Option Option::needs(Option other) const {
   return *this;
 }
 
+void Command::heading(const std::string& name) {
+  heading_ = name;
+}
+
+CLI::Option* Command::below_heading(CLI::Option* option, const char* usual) const {
+  return option->group(heading_.empty() ? usual : heading_);
+}
+
 template <typename Value>
 Option Command::option(const std::string& name, Value& value, const std::string& help) {
-  CLI::Option* const option = app_.add_option(name, value, help);
+  CLI::Option* const option = below_heading(app_.add_option(name, value, help), kOptions);
   check_text(*option, value);
   return Option(option);
 }
@@ -276,17 +231,17 @@ template Option Command::option(const std::string&, std::optional<double>&, cons
 template Option Command::option(const std::string&, std::optional<std::uint64_t>&, const std::string&);
 
 Option Command::flag(const std::string& name, bool& value, const std::string& help) {
-  return Option(app_.add_flag(name, value, help));
+  return Option(below_heading(app_.add_flag(name, value, help), kOptions));
 }
 
 Option Command::flag(const std::string& name, std::string& value, const std::string& usual, const std::string& help) {
-  return Option(app_.add_flag(name + "{" + usual + "}", value, help));
+  return Option(below_heading(app_.add_flag(name + "{" + usual + "}", value, help), kOptions));
 }
 
 template <typename Value>
 Option Command::input(const std::string& name, Value& value, const std::string& help) {
   places_->files.add_input(name, value);
-  CLI::Option* const option = app_.add_option(name, value, help);
+  CLI::Option* const option = below_heading(app_.add_option(name, value, help), kReads);
   option->transform(stream_for_dash(kStandardInput));
   return Option(option);
 }
@@ -296,20 +251,21 @@ template Option Command::input(const std::string&, std::vector<std::string>&, co
 
 Option Command::input_file(const std::string& name, std::string& path, const std::string& help) {
   places_->files.add_input(name, path);
-  CLI::Option* const option = app_.add_option(name, path, help);
+  CLI::Option* const option = below_heading(app_.add_option(name, path, help), kReads);
   option->check(refuse_dash);
   return Option(option);
 }
 
 void Command::add_force() {
   if (places_->files.has_outputs()) return;
-  flag("--force", places_->is_forced, "Replace a recording, model, description or dataset that exists");
+  const std::string help = "Replace a recording, model, description or dataset that exists";
+  below_heading(app_.add_flag("--force", places_->is_forced, help), kWrites);
 }
 
 Option Command::output(const std::string& name, std::string& path, const std::string& help) {
   add_force();
   places_->files.add_output(name, path);
-  CLI::Option* const option = app_.add_option(name, path, help);
+  CLI::Option* const option = below_heading(app_.add_option(name, path, help), kWrites);
   option->transform(stream_for_dash(kStandardOutput));
   return Option(option);
 }
@@ -321,7 +277,7 @@ void Command::outputs_beside(const std::string& name, std::function<std::vector<
 Option Command::output_model(const std::string& name, std::string& path, const std::string& help) {
   add_force();
   places_->files.add_model_output(name, path);
-  CLI::Option* const option = app_.add_option(name, path, help);
+  CLI::Option* const option = below_heading(app_.add_option(name, path, help), kWrites);
   option->check(refuse_dash);
   return Option(option);
 }
@@ -330,7 +286,7 @@ Option Command::output_folder(const std::string& name, std::string& folder, cons
                               const std::string& help) {
   add_force();
   places_->files.add_output_folder(name, folder, files);
-  CLI::Option* const option = app_.add_option(name, folder, help);
+  CLI::Option* const option = below_heading(app_.add_option(name, folder, help), kWrites);
   option->check(refuse_dash);
   return Option(option);
 }
@@ -370,12 +326,14 @@ Result<Action> parse_command_line(int argc, char** argv, std::span<const Command
   CLI::App app{"dermis: calibrated force (newtons) from resistive tactile arrays", "dermis"};
   app.set_version_flag("--version", DERMIS_VERSION);
   app.require_subcommand(0, 1);
+  app.formatter(std::make_shared<GroupedFormatter>());
   Action chosen;
   add_reference(app, chosen);
   for (const CommandEntry& entry : commands) {
     Command command(*app.add_subcommand(entry.name, entry.summary)->group(entry.group), chosen);
     entry.add(command);
   }
+  finish_help(app, app.get_name());
   add_help(app, chosen);
   app.footer(kMoreHelp);  // after the commands, which would inherit it
   try {

@@ -45,6 +45,9 @@ class Command {
  public:
   Command(CLI::App& app, Action& chosen) : app_(app), chosen_(chosen) {}
 
+  /// The options that follow stand below it in the help, instead of below what they do with files.
+  void heading(const std::string& name);
+
   /// `name`: "--in", or "in" for an argument that is known by its place. For a Value of std::string, double,
   /// std::uint16_t, std::uint64_t, std::vector of double or std::string, or std::optional of double or std::uint64_t.
   template <typename Value>
@@ -81,6 +84,7 @@ class Command {
 
  private:
   void add_force();
+  CLI::Option* below_heading(CLI::Option* option, const char* usual) const;
 
   struct Places {
     FilePlaces files;
@@ -91,6 +95,7 @@ class Command {
   CLI::App& app_;
   Action& chosen_;
   bool has_action_ = false;
+  std::string heading_;
   std::shared_ptr<Places> places_ = std::make_shared<Places>();
 };
 

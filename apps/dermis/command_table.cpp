@@ -37,6 +37,7 @@ OptionRow option_row(const CLI::Option& option) {
   row.choices = choices_of(row.value);
   row.default_value = option.get_default_str();
   row.help = option.get_description();
+  row.group = option.get_group();
   row.needs = names_of(option.get_needs());
   row.excludes = names_of(option.get_excludes());
   row.is_repeated = option.get_expected_max() >= CLI::detail::expected_max_vector_size;
@@ -48,8 +49,12 @@ CommandTable table_of(const CLI::App& app, const std::string& above) {
   CommandTable table;
   table.name = above + app.get_name();
   table.summary = app.get_description();
-  for (const CLI::Option* option : app.get_options()) {
-    (option->get_positional() ? table.arguments : table.options).push_back(option_row(*option));
+  table.group = app.get_group();
+  for (const std::string& group : option_groups(app)) {
+    const auto is_below = [&](const CLI::Option* option) { return option->get_group() == group; };
+    for (const CLI::Option* option : app.get_options(is_below)) {
+      (option->get_positional() ? table.arguments : table.options).push_back(option_row(*option));
+    }
   }
   const auto is_shown = [](const CLI::App* command) { return !command->get_group().empty(); };
   for (const CLI::App* command : app.get_subcommands(is_shown)) {
@@ -60,6 +65,18 @@ CommandTable table_of(const CLI::App& app, const std::string& above) {
 }
 
 }  // namespace
+
+std::vector<std::string> option_groups(const CLI::App& app) {
+  std::vector<std::string> groups = app.get_groups();
+  const auto rank = [](const std::string& group) {
+    if (group == kReads) return 0;
+    if (group == kWrites) return 1;
+    return group == kOptions ? 3 : 2;
+  };
+  std::stable_sort(groups.begin(), groups.end(),
+                   [&](const std::string& a, const std::string& b) { return rank(a) < rank(b); });
+  return groups;
+}
 
 CommandTable command_table(const CLI::App& app) {
   return table_of(app, "");

@@ -10,12 +10,12 @@
 
 #include "commands.hpp"
 #include "dermis/bytes/files/array_toml.hpp"
-#include "dermis/bytes/files/loads_csv.hpp"
 #include "dermis/learn/calibration/turned_lines.hpp"
 #include "dermis/learn/health/examination.hpp"
 #include "dermis/learn/health/raw_examination.hpp"
 #include "dermis/live/forces/operation.hpp"
 #include "dermis/live/sources/open_source.hpp"
+#include "labelled_recording.hpp"
 #include "process_all.hpp"
 #include "source_options.hpp"
 #include "stop_flag.hpp"
@@ -144,7 +144,7 @@ Result<ExaminedCounts> examine_counts(const std::string& from, const ArrayDescri
 
 /// Whether the taxels answer that were pressed.
 Status examine_places(const std::string& path, const ArrayDescription& array, ExaminedCounts& examined) {
-  const Result<std::vector<Load>> loads = bytes::files::read_loads(path, array, examined.frames.size());
+  const Result<std::vector<Load>> loads = read_told_loads(path, array, examined.frames.size());
   if (!loads) return loads.error();
   auto turned = learn::calibration::find_turned_lines(array, examined.frames, *loads);
   if (turned) examined.diagnosis.findings.push_back(*std::move(turned));

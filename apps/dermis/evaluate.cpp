@@ -59,6 +59,7 @@ void add_evaluate(Command& command) {
   auto options = std::make_shared<EvaluateOptions>();
   add_force_evaluation(command, options->forces);
   add_left_out_evaluation(command, options->left_out);
+  command.heading("Classes");
   command.input_file("--classes", options->classes,
                      "Judge the classes of 'dermis recognise learn', not forces, on labelled examples: --in, or "
                      "--frames of tared frames.npy");

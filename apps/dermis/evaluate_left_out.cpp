@@ -95,6 +95,7 @@ void print_text(const std::vector<JudgedPress>& presses) {
 }  // namespace
 
 void add_left_out_evaluation(Command& command, LeftOutEvaluation& evaluation) {
+  command.heading("Presses left out");
   command
       .option("--leave-out", evaluation.leave_out,
               "press: judge calibrations with --frames and --loads, each without a press of theirs, on that press")

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,10 @@
 #include "dermis/touch/pipeline/model.hpp"
 
 namespace dermis::app {
+
+/// Reads loads.csv, and says for what it took values that are not in newtons or kPa.
+[[nodiscard]] Result<std::vector<Load>> read_told_loads(const std::string& path, const ArrayDescription& array,
+                                                        std::size_t frame_count);
 
 /// A model, and frames of its array under known loads.
 struct LabelledRecording {

@@ -23,33 +23,37 @@ constexpr int kExitFailed = 1;
 constexpr int kExitBadInput = 2;
 constexpr int kExitReaderGone = 128 + SIGPIPE;
 
-constexpr const char* kCalibrated = "A calibrated array";
-constexpr const char* kAtWork = "At work";
-constexpr const char* kKept = "Devices and recordings";
+constexpr const char* kBegin = "Begin";
+constexpr const char* kCalibrate = "Calibrate";
+constexpr const char* kUse = "Use";
+constexpr const char* kLookAfter = "Look after";
+constexpr const char* kExchange = "Exchange";
+constexpr const char* kFleets = "Fleets";
 constexpr const char* kDesign = "Design and research";
 
 constexpr std::array kCommands{
-    CommandEntry{"calibrate", "Learn a model from frames with known loads", kCalibrated, add_calibrate},
-    CommandEntry{"run", "Turn raw counts into newtons per taxel, and into contacts", kCalibrated, add_run},
-    CommandEntry{"evaluate", "Measure accuracy on known loads, and compare with look-up tables", kCalibrated,
+    CommandEntry{"serve", "Show an array or a suit live in the browser, calibrate it there, and stream it", kBegin,
+                 add_serve},
+    CommandEntry{"describe", "Write the layout of bytes that dermis does not know", kBegin, add_describe},
+    CommandEntry{"record", "Record a device, or any other source of frames", kBegin, add_record},
+    CommandEntry{"simulate", "Simulate an array: frames.csv and loads.csv (the true loads)", kBegin, add_simulate},
+    CommandEntry{"calibrate", "Learn a model from frames with known loads", kCalibrate, add_calibrate},
+    CommandEntry{"evaluate", "Measure accuracy on known loads, and compare with look-up tables", kCalibrate,
                  add_evaluate},
-    CommandEntry{"doctor", "Check an array and its calibration by its counts or a known weight; mend the gains",
-                 kCalibrated, add_doctor},
-    CommandEntry{"serve", "Show an array or a suit live in the browser and stream it", kAtWork, add_serve},
-    CommandEntry{"top", "Show a live heat map in the terminal, until q or Ctrl-C", kAtWork, add_top},
-    CommandEntry{"watch", "Compare forces with limits, and stop a program if one is crossed", kAtWork, add_watch},
-    CommandEntry{"recognise", "Learn poses or gestures, and name those of a stream, or answer \"unknown\"", kAtWork,
+    CommandEntry{"run", "Turn raw counts into newtons per taxel, and into contacts", kUse, add_run},
+    CommandEntry{"top", "Show a live heat map in the terminal, until q or Ctrl-C", kUse, add_top},
+    CommandEntry{"watch", "Compare forces with limits, and stop a program if one is crossed", kUse, add_watch},
+    CommandEntry{"recognise", "Learn poses or gestures, and name those of a stream, or answer \"unknown\"", kUse,
                  add_recognise},
-    CommandEntry{"fleet", "Keep the frames of many robots on a hub, and see how they do", kAtWork, add_fleet},
-    CommandEntry{"describe", "Write the layout of bytes that dermis does not know", kKept, add_describe},
-    CommandEntry{"record", "Record a device, or any other source of frames", kKept, add_record},
-    CommandEntry{"replay", "Play a recording at the pace of its frames, as counts or newtons", kKept, add_replay},
-    CommandEntry{"emulate", "Play a device from a recording, to develop without hardware", kKept, add_emulate},
-    CommandEntry{"convert", "Convert frames to another file format, by the ending of the name", kKept, add_convert},
-    CommandEntry{"info", "Show what a file of frames or a model holds; repair a recording", kKept, add_info},
-    CommandEntry{"image", "Draw a frame as PNG or SVG, or some seconds as a film (GIF)", kKept, add_image},
-    CommandEntry{"dataset", "Turn recordings into episodes for learning: LeRobot, HDF5, zarr", kKept, add_dataset},
-    CommandEntry{"simulate", "Simulate an array: frames.csv and loads.csv (the true loads)", kDesign, add_simulate},
+    CommandEntry{"doctor", "Check an array and its calibration by its counts or a known weight; mend the gains",
+                 kLookAfter, add_doctor},
+    CommandEntry{"info", "Show what a file of frames or a model holds; repair a recording", kLookAfter, add_info},
+    CommandEntry{"replay", "Play a recording at the pace of its frames, as counts or newtons", kExchange, add_replay},
+    CommandEntry{"convert", "Convert frames to another file format, by the ending of the name", kExchange, add_convert},
+    CommandEntry{"image", "Draw a frame as PNG or SVG, or some seconds as a film (GIF)", kExchange, add_image},
+    CommandEntry{"dataset", "Turn recordings into episodes for learning: LeRobot, HDF5, zarr", kExchange, add_dataset},
+    CommandEntry{"emulate", "Play a device from a recording, to develop without hardware", kExchange, add_emulate},
+    CommandEntry{"fleet", "Keep the frames of many robots on a hub, and see how they do", kFleets, add_fleet},
     CommandEntry{"circuit", "Compute a readout circuit, for people who design one", kDesign, add_circuit},
     CommandEntry{"paper", "Reproduce the paper, and judge its networks beside dermis", kDesign, add_paper},
 };

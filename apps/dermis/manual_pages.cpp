@@ -7,6 +7,7 @@
 #include <cctype>
 #include <string_view>
 
+#include "command_texts.hpp"
 #include "dermis/touch/frames/version.hpp"
 #include "reference.hpp"
 
@@ -59,13 +60,7 @@ std::string usage(const OptionRow& option, bool is_argument) {
 }
 
 std::string entry(const OptionRow& option, bool is_argument) {
-  std::string text = option.help;
-  if (!option.choices.empty()) text += ". One of " + list_of(option.choices);
-  if (option.is_required && !is_argument) text += ". Required";
-  if (!option.default_value.empty()) text += ". Default: " + option.default_value;
-  if (!option.needs.empty()) text += ". Needs " + list_of(option.needs);
-  if (!option.excludes.empty()) text += ". Not with " + list_of(option.excludes);
-  return ".TP\n" + usage(option, is_argument) + "\n" + roff(text) + ".\n";
+  return ".TP\n" + usage(option, is_argument) + "\n" + roff(whole_help(option, is_argument)) + "\n";
 }
 
 std::string entries(const CommandTable& command) {
@@ -109,12 +104,16 @@ std::string closing(const std::vector<std::string>& pages) {
 
 ManualPage page_of(const CommandTable& command) {
   const std::string name = page_name(command.name);
+  const CommandText said = command_text(command.name);
   std::string text = heading(name, command.summary) + ".SH SYNOPSIS\n" + synopsis(command);
   for (const CommandTable& part : command.commands) text += ".br\n" + synopsis(part);
+  if (!said.about.empty()) text += ".SH DESCRIPTION\n" + roff(said.about) + "\n";
   text += ".SH OPTIONS\n" + entries(command);
   for (const CommandTable& part : command.commands) {
-    text += fmt::format(".SS {}\n{}.\n{}", roff(part.name), roff(part.summary), entries(part));
+    const CommandText of_part = command_text(part.name);
+    text += fmt::format(".SS {}\n{}. {}\n{}", roff(part.name), roff(part.summary), roff(of_part.about), entries(part));
   }
+  if (!said.examples.empty()) text += fmt::format(".SH EXAMPLES\n.nf\n{}\n.fi\n", roff(said.examples));
   return {name, text + closing({"dermis"})};
 }
 
@@ -131,6 +130,16 @@ ManualPage main_page(const CommandTable& dermis) {
 }
 
 }  // namespace
+
+std::string whole_help(const OptionRow& option, bool is_argument) {
+  std::string text = option.help;
+  if (!option.choices.empty()) text += ". One of " + list_of(option.choices);
+  if (option.is_required && !is_argument) text += ". Required";
+  if (!option.default_value.empty()) text += ". Default: " + option.default_value;
+  if (!option.needs.empty()) text += ". Needs " + list_of(option.needs);
+  if (!option.excludes.empty()) text += ". Not with " + list_of(option.excludes);
+  return text + ".";
+}
 
 std::vector<ManualPage> manual_pages(const CommandTable& dermis) {
   std::vector<ManualPage> pages{main_page(dermis)};

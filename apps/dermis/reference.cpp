@@ -28,6 +28,9 @@ Status write_reference(const CommandTable& dermis, const std::string& prefix) {
   for (const ManualPage& page : manual_pages(dermis)) {
     if (Status written = write_text(share / "man/man1" / (page.name + ".1"), page.text); !written) return written;
   }
+  for (const ManualPage& page : command_documents(dermis)) {
+    if (Status written = write_text(share / "doc/dermis" / page.name, page.text); !written) return written;
+  }
   const Status bash = write_text(share / "bash-completion/completions/dermis", bash_completion(dermis));
   return bash ? write_text(share / "zsh/site-functions/_dermis", zsh_completion(dermis)) : bash;
 }

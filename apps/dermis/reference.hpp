@@ -9,12 +9,19 @@
 
 namespace dermis::app {
 
-/// A page of manual(1) a command, the whole of `dermis` first; in the order of --help.
 struct ManualPage {
-  std::string name;  ///< "dermis-run"
-  std::string text;  ///< roff
+  std::string name;  ///< "dermis-run", or the file of a document.
+  std::string text;  ///< roff or Markdown
 };
+
+/// A page of manual(1) a command, the whole of `dermis` first; in the order of --help.
 [[nodiscard]] std::vector<ManualPage> manual_pages(const CommandTable& dermis);
+
+/// The same as docs/command-line.md and docs/commands, a page for each group of commands.
+[[nodiscard]] std::vector<ManualPage> command_documents(const CommandTable& dermis);
+
+/// What an option is for, with the values that it takes, its default, and what it goes with.
+[[nodiscard]] std::string whole_help(const OptionRow& option, bool is_argument);
 
 /// The function of a shell that completes commands, options and files.
 [[nodiscard]] std::string bash_completion(const CommandTable& dermis);

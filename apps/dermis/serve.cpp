@@ -174,6 +174,7 @@ void add_serve(Command& command) {
                  "Classes of 'dermis recognise learn', from newtons: name what touches the array");
   command.option("--threats", options->place.threats, "threats.toml: limits for the forces");
   command.option("--record", options->session.record, "Record from the beginning, .mcap");
+  command.heading("Network");
   command.option("--host", options->session.server.host, "Address to serve at; all but loopback need a token")
       .shows_default();
   command.option("--port", options->session.server.port, "Port; 0: any that is free").shows_default();

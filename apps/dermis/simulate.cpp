@@ -194,6 +194,8 @@ void add_simulate(Command& command) {
   command.option("--frames", options->frames, "Length of the scenes multitouch, contacts, idle and touches");
   command.option("--rate", options->rate_hz, "Frames a second of touches, two_weights and a field, 10 to 1000");
   command.option("--taxels", options->taxels, "How many taxels the scene two_weights presses");
+  command.input("--physics", options->physics, "physics.toml: material and surroundings (docs/simulation.md)");
+  command.heading("Material");
   command.option("--memory", options->memory, "What the material remembers; simple: as physics.toml says")
       .one_of({"simple", "rubber"});
   command.option("--creep-per-decade", options->creep_per_decade,
@@ -205,7 +207,6 @@ void add_simulate(Command& command) {
       .takes_list(3);
   command.option("--cover", options->cover_mm,
                  "A cover spreads forces by a Gaussian of so many mm; loads.csv has what stands on it");
-  command.input("--physics", options->physics, "physics.toml: material and surroundings (docs/simulation.md)");
   command.action([options]() -> Status {
     end_when_interrupted();
     if (options->scene.empty() == options->field.empty()) return bad_input("give either --scene or --field");

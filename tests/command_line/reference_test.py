@@ -17,12 +17,14 @@ from support import dermis
 HELP_OPTION = re.compile(r"^  (?:-\w,)?(--[\w-]+)", re.MULTILINE)
 HELP_COMMAND = re.compile(r"^  (\w+) {3,}", re.MULTILINE)
 PAGE_OPTION = re.compile(r"^\.TP\n.*?\\fB(\\-\\-[\w\\-]+)\\fR", re.MULTILINE)
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+MOST_WORDS = 2500
 LINT_OF_NO_DATE = re.compile(r".*WARNING: missing date, using \"\": TH")  # builds at any time have the same bytes
 
 
 def commands_of(*command):
     """Names below the headings of commands in the help of a command."""
-    heading = re.compile(r"^(?:Subcommands|A calibrated array):$", re.MULTILINE)
+    heading = re.compile(r"^(?:Subcommands|Begin):$", re.MULTILINE)
     _, *named = heading.split(dermis(*command, "--help").stdout, maxsplit=1)
     return HELP_COMMAND.findall(named[0]) if named else []
 
@@ -53,6 +55,26 @@ class Reference(unittest.TestCase):
                     expected += options_of(command, part)
                 text = (self.share / f"man/man1/dermis-{command}.1").read_text()
                 self.assertEqual([name.replace("\\", "") for name in PAGE_OPTION.findall(text)], expected)
+
+    def test_every_command_says_more_than_its_options(self):
+        for page in (page for page in self.pages if page.name != "dermis.1"):
+            self.assertIn(".SH DESCRIPTION\n", page.read_text(), page)
+
+    def test_options_stand_below_what_they_are_for(self):
+        shown = dermis("calibrate", "--help").stdout
+        headings = [shown.index(f"\n{name}:\n") for name in ("Reads", "Writes", "Options", "Examples")]
+        self.assertEqual(headings, sorted(headings))
+
+    def test_the_documents_of_commands_are_those_of_the_help(self):
+        written = self.share / "doc/dermis"
+        names = [path.relative_to(written) for path in written.rglob("*.md")]
+        self.assertEqual(
+            {path.name for path in (DOCS / "commands").iterdir()}, {p.name for p in names} - {"command-line.md"}
+        )
+        for name in names:
+            text = (written / name).read_text()
+            self.assertEqual((DOCS / name).read_text(), text, f"docs/{name} is old: make reference")
+            self.assertLessEqual(len(text.split()), MOST_WORDS, name)
 
     def test_pages_are_the_same_in_every_run(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -134,9 +134,7 @@ class Terminal(SmallArray):
             self.assertEqual(self.succeed("help", *command), dermis(*command, "--help").stdout)
         self.refuse(("help", "evalute"), ["unknown command 'evalute'; did you mean 'evaluate'?"])
         self.refuse(("help", "run", "fast"), ["'fast' is one argument too many"])
-        self.assertRegex(
-            self.succeed("help"), r"(?m)^At work:\n  serve {3,}(.*\n)*dermis help COMMAND: .*guides: .*\n\Z"
-        )
+        self.assertRegex(self.succeed("help"), r"(?m)^Begin:\n  serve {3,}(.*\n)*dermis help COMMAND: .*guides: .*\n\Z")
 
     def test_a_command_below_another_is_named(self):
         self.refuse(("recover", "a.mcap"), ["unknown command 'recover'; there is 'dermis info recover'"])
@@ -222,6 +220,8 @@ class Terminal(SmallArray):
             dermis("doctor", "check", "--model", array, "--in", frames, "--weight", weight).stdout
             for weight in ("0.2 kg", "200g", "1.96133", "1.96133 N")
         }
+        said = dermis("doctor", "check", "--model", array, "--in", frames, "--weight", "200 g").stderr
+        self.assertIn("--weight: 200 g, taken for 1.961 N\n", said)
         self.assertEqual(len(told), 1)
         self.assertRegex(told.pop(), r"^weight +1.961 N, put on 3 times\n")
         self.refuse(
@@ -240,10 +240,18 @@ class Terminal(SmallArray):
             ",".join(line if k == 0 or line[1] != "force" else [*line[:3], f"{float(line[3]) / 0.00980665!r} g"])
             for k, line in enumerate(loads)
         ]
-        text = self.succeed(
-            *self.calibrate_arguments(self.work / "grams", loads=self.written("g.csv", "\n".join(grams) + "\n"))
-        )
-        self.assertIn("loads 0.5 to 50 N", text)
+        loads = self.written("g.csv", "\n".join(grams) + "\n")
+        result = dermis(*self.calibrate_arguments(self.work / "grams", loads=loads))
+        self.assertIn("loads 0.5 to 50 N", result.stdout)
+        self.assertIn(f"{loads}: 50.98581064889641 g, taken for 0.5 N\n", result.stderr)
+
+    def test_loads_in_kilograms_are_told_by_the_name_of_their_column(self):
+        lines = [line.split(",") for line in (self.calibration / "loads.csv").read_text().splitlines()[1:]]
+        kilograms = [",".join([*line[:3], repr(float(line[3]) / 9.80665)]) for line in lines]
+        loads = self.written("kg.csv", "\n".join(["frame,kind,where,kg", *kilograms]) + "\n")
+        result = dermis(*self.calibrate_arguments(self.work / "kilograms", loads=loads))
+        self.assertIn("loads 0.5 to 50 N", result.stdout)
+        self.assertRegex(result.stderr, rf"{loads}: \S+ kg, taken for \S+ N\n")
 
     def test_nothing_on_the_terminal_is_written_as_in_a_program(self):
         said = [

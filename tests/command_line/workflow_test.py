@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+import re
 
 import support
 from support import SmallArray, dermis
@@ -159,7 +160,40 @@ class Workflow(SmallArray):
             found = json.loads(self.succeed(*arguments, "--json"))["circuit"]
             self.assertEqual(found["kind"], "divider")
             self.assertEqual(len(found["candidates"]), 6 if "auto" in circuit else 0)
-            self.assertIn("drive_ohm", self.succeed(*arguments) if circuit.startswith("drive") else "drive_ohm")
+            self.assertIn(
+                "drive_ohm", self.succeed(*arguments, "--verbose") if circuit.startswith("drive") else "drive_ohm"
+            )
+
+    def test_a_calibration_says_five_lines_and_all_else_where_it_is_asked(self):
+        model = self.work / "five.safetensors"
+        told = self.succeed(*self.calibrate_arguments(model))
+        lines = [re.split(r" +", line, maxsplit=1) for line in told.splitlines()]
+        self.assertEqual([name for name, _ in lines], ["fitted", "unseen", "doubted", "next", "model"])
+        said = dict(lines)
+        self.assertRegex(
+            said["fitted"], "^a law of its own for each of 20 taxels, from 1500 labelled frames: loads 0.5 to"
+        )
+        self.assertIn("fewer than eight presses on two to six taxels", said["doubted"])
+        self.assertIn("add twenty presses", said["next"])
+        self.assertEqual(said["model"], str(model))
+        detailed = self.succeed(*self.calibrate_arguments(self.work / "more.safetensors"), "--verbose")
+        self.assertEqual(detailed.splitlines()[:3], told.splitlines()[:3])
+        for words in ("fit: median", "1-sigma: ", "have a network of their own", "time: "):
+            self.assertIn(words, detailed)
+            self.assertNotIn(words, told)
+
+    def test_what_a_calibration_says_of_unseen_loads_holds_on_a_second_recording(self):
+        model = self.work / "judged.safetensors"
+        unseen = json.loads(self.succeed(*self.calibrate_arguments(model), "--json"))["unseen"]
+        presses = self.work / "paper"
+        self.succeed("simulate", "--array", self.array, "--scene", "paper", "--seed", 9, "--out", presses)
+        arguments = self.evaluate_arguments(
+            model=self.model, frames=presses / "frames.csv", loads=presses / "loads.csv"
+        )
+        error = json.loads(self.succeed(*arguments, "--json"))["estimators"][0]["median_relative_error"]
+        self.assertLess(unseen["median"], unseen["p95"])
+        self.assertLess(error, 2.0 * unseen["median"])
+        self.assertGreater(error, 0.5 * unseen["median"])
 
     def test_contacts_have_a_line_from_onset_to_release(self):
         scene, out, forces = self.work / "scene", self.work / "contacts.csv", self.work / "forces.csv"
@@ -322,7 +356,7 @@ class Loads(SmallArray):
         loads_csv = self.written("loads.csv", "frame,kind,where,value\n" + "\n".join(lines) + "\n")
         model = self.work / "model.safetensors"
         text = self.succeed(*self.calibrate_arguments(model, frames=frames_csv, loads=loads_csv))
-        self.assertIn("share one network", text)
+        self.assertRegex(text, r"^fitted +one law for 20 taxels, from 200 labelled frames: loads ")
         result = json.loads(
             self.succeed(*self.evaluate_arguments(model=model, frames=frames_csv, loads=loads_csv), "--json")
         )

@@ -71,6 +71,8 @@ async function walk(page, server) {
   const begin = part(page, "start");
   await part(page, "weights").fill("1, x");
   assert.ok(await begin.isDisabled());
+  await part(page, "weights").fill("100 g, 500");
+  assert.match(await part(page, "work").textContent(), /12 presses, .* 100 g, 500 g, taken for 0\.9807, 4\.903 N$/);
   await part(page, "weights").fill("1, 4, 10");
   await part(page, "hold").fill("0.1");
   await part(page, "quiet").fill("0.4");
@@ -224,6 +226,8 @@ it("asks before it forgets presses, and says what the server refuses", async () 
     await part(page, "setup").waitFor();
 
     await part(page, "weights").fill("500");
+    assert.match(await part(page, "work").textContent(), /500 N on a taxel of \S+ cm² is \S+ MPa\. Is it 500 g\?$/);
+    assert.equal(await part(page, "start").textContent(), "Begin all the same");
     await start(page);
     await hears(page, /Put 500 N|Take everything/);
     const second = await openPage(browser, `${server.url}#/calibration`);

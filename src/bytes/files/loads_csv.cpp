@@ -26,12 +26,14 @@ namespace {
 constexpr std::string_view kHeader = "frame,kind,where,value";
 constexpr double kMostValue = 1e6;  // N, kPa or mm
 constexpr double kPascalPerKilopascal = 1000.0;
+constexpr std::string_view kNewtons = "N";
 constexpr double kMetresPerMillimetre = 0.001;
 
 /// A line is a load or a position.
 struct Line {
   std::optional<Load> load;
   TouchPosition position;
+  std::string taken{};  ///< "0.5 kg, taken for 4.903 N" of a value in another unit than newtons and kPa.
 };
 
 Result<LoadKind> parse_kind(std::string_view text, const ArrayDescription& array) {
@@ -53,20 +55,29 @@ Result<std::size_t> parse_frame(std::string_view text, std::size_t frame_count) 
   return frame;
 }
 
-Result<double> parse_value(std::string_view text, LoadKind kind) {
-  double value = 0.0;
-  if (kind == LoadKind::force) {
-    const Result<double> force = parse_force(text);
-    if (!force) return bad_input("value " + force.error().message);
-    value = *force;
-  } else if (!parse_number(text, value)) {
-    return bad_input("value " + in_quotes(text) + " is not a number");
-  }
-  if (!(value >= 0.0 && value <= kMostValue)) {
+/// `unit`: of a force that has none.
+Result<double> parse_value(std::string_view text, LoadKind kind, std::string_view unit) {
+  const bool is_force = kind == LoadKind::force;
+  const Result<double> value = is_force ? parse_force(text, unit) : parse_pressure(text);
+  if (!value) return bad_input("value " + value.error().message);
+  const double most = is_force ? kMostValue : kMostValue * kPascalPerKilopascal;
+  if (!(*value >= 0.0 && *value <= most)) {
     return bad_input("value " + in_quotes(text) + " must be 0 to 1000000 (N or kPa)");
   }
-  if (kind == LoadKind::pressure) value *= kPascalPerKilopascal;
   return value;
+}
+
+/// Where a person wrote something else than a number of newtons or kPa.
+std::string taken_for(std::string_view text, const Load& load, std::string_view unit) {
+  double number = 0.0;
+  const bool is_force = load.kind == LoadKind::force;
+  const bool is_number = parse_number(text, number);
+  if (load.value == 0.0 || (is_number && (unit == kNewtons || !is_force))) return {};
+  std::string taken(text);
+  if (is_number) taken += " " + std::string(unit);
+  taken += ", taken for ";
+  append_number(taken, static_cast<float>(is_force ? load.value : load.value / kPascalPerKilopascal));
+  return taken + (is_force ? " N" : " kPa");
 }
 
 Result<Line> parse_position(std::size_t frame, const TaxelRegion& where, std::string_view text,
@@ -83,7 +94,8 @@ Result<Line> parse_position(std::size_t frame, const TaxelRegion& where, std::st
   return Line{std::nullopt, {frame, kMetresPerMillimetre * millimetres}};
 }
 
-Result<Line> parse_line(std::string_view line, const ArrayDescription& array, std::size_t frame_count) {
+Result<Line> parse_line(std::string_view line, const ArrayDescription& array, std::size_t frame_count,
+                        std::string_view unit) {
   constexpr std::size_t kCells = 4;
   if (const Status right = check_count(line, kCells); !right) return right.error();
   const std::vector<std::string_view> cells = split_cells(line);
@@ -95,20 +107,31 @@ Result<Line> parse_line(std::string_view line, const ArrayDescription& array, st
   const Result<TaxelRegion> where = parse_region(cells[2], {array.rows, array.cols});
   if (!where) return where.error();
   if (is_position) return parse_position(*frame, *where, cells[3], array);
-  const Result<double> value = parse_value(cells[3], *kind);
+  const Result<double> value = parse_value(cells[3], *kind, unit);
   if (!value) return value.error();
-  return Line{Load{*frame, *kind, *where, *value}, {}};
+  const Load load{*frame, *kind, *where, *value};
+  return Line{load, {}, taken_for(cells[3], load, unit)};
 }
 
-Status check_header(CsvReader& csv) {
+/// The unit of forces without one: of the header frame,kind,where,kg or value_kg.
+Result<std::string> read_header(CsvReader& csv) {
   std::string_view line;
   const Result<bool> got_line = csv.next_line(line);
   if (!got_line) return got_line.error();
   if (!*got_line) return csv.error("is empty; expected the header " + std::string(kHeader));
   const std::size_t cell_count = count_cells(line);
-  const bool is_header = cell_count == count_cells(kHeader) && split_cells(line) == split_cells(kHeader);
-  if (!is_header) return csv.error("has the header " + in_quotes(line) + "; expected " + std::string(kHeader));
-  return Done{};
+  std::vector<std::string_view> cells = split_cells(line);
+  std::string_view named = cell_count == count_cells(kHeader) ? cells.back() : "";
+  if (named.starts_with("value_")) named.remove_prefix(std::string_view("value_").size());
+  std::string unit(kNewtons);
+  if (is_force_unit(named)) {
+    unit = named;
+    cells.back() = "value";
+  }
+  if (cells != split_cells(kHeader)) {
+    return csv.error("has the header " + in_quotes(line) + "; expected " + std::string(kHeader));
+  }
+  return unit;
 }
 
 /// visit(line, number) for all lines.
@@ -116,13 +139,14 @@ template <typename Visit>
 Status read_lines(std::istream& in, const std::string& name, const ArrayDescription& array, std::size_t frame_count,
                   Visit visit) {
   CsvReader csv(in, name);
-  if (const Status header = check_header(csv); !header) return header.error();
+  const Result<std::string> unit = read_header(csv);
+  if (!unit) return unit.error();
   while (true) {
     std::string_view text;
     const Result<bool> got_line = csv.next_line(text);
     if (!got_line) return got_line.error();
     if (!*got_line) return Done{};
-    const Result<Line> line = parse_line(text, array, frame_count);
+    const Result<Line> line = parse_line(text, array, frame_count, *unit);
     if (!line) return csv.error(line.error().message);
     visit(*line, csv.line_number());
   }
@@ -180,18 +204,20 @@ class OverlapCheck {
 
 }  // namespace
 
-Result<std::vector<Load>> read_loads(const std::string& path, const ArrayDescription& array, std::size_t frame_count) {
+Result<std::vector<Load>> read_loads(const std::string& path, const ArrayDescription& array, std::size_t frame_count,
+                                     std::string* taken) {
   const Result<std::unique_ptr<std::istream>> in = open_input(path);
   if (!in) return in.error();
-  return read_loads(**in, path, array, frame_count);
+  return read_loads(**in, path, array, frame_count, taken);
 }
 
 Result<std::vector<Load>> read_loads(std::istream& in, const std::string& name, const ArrayDescription& array,
-                                     std::size_t frame_count) {
+                                     std::size_t frame_count, std::string* taken) {
   std::vector<Load> loads;
   std::vector<std::uint32_t> lines;
   const Status read = read_lines(in, name, array, frame_count, [&](const Line& line, std::size_t number) {
     if (!line.load) return;
+    if (taken != nullptr && taken->empty()) *taken = line.taken;
     loads.push_back(*line.load);
     lines.push_back(static_cast<std::uint32_t>(number));
   });

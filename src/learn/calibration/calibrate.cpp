@@ -7,10 +7,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <mutex>
 #include <optional>
 #include <utility>
 
+#include "dermis/touch/frames/quantile.hpp"
 #include "learn/calibration/memory/memory_training.hpp"
 #include "learn/calibration/preparation.hpp"
 #include "learn/calibration/tables/baselines.hpp"
@@ -46,6 +48,10 @@ std::map<std::string, std::string> provenance(const ArrayDescription& array, con
   facts["temperature"] = training.uses_temperature
                              ? fmt::format("{:.1f} to {:.1f} C", training.lowest_celsius, training.highest_celsius)
                              : "not an input (less than 3 C apart, or missing in many frames)";
+  if (report.unseen) {
+    facts["loads left out"] = fmt::format("half of them within {:.2g} %, 19 of 20 within {:.2g} %",
+                                          100.0 * report.unseen->median, 100.0 * report.unseen->p95);
+  }
   if (!report.memory.empty()) facts["memory"] = report.memory;
   if (!report.remarks.empty()) facts["remarks"] = fmt::format("{}", fmt::join(report.remarks, "; "));
   if (!report.doubts.empty()) facts[touch::pipeline::kDoubts] = fmt::format("{}", fmt::join(report.doubts, "; "));
@@ -65,6 +71,20 @@ void remark_unpressed(const ArrayDescription& array, CalibrationReport& report) 
                                                             100.0 * *std::min_element(sigma->begin(), sigma->end())));
 }
 
+/// Of the loads on which forces are judged: less than a fiftieth of the heaviest is no force to rely on.
+std::optional<UnseenErrors> unseen_errors(const ForceTraining& training) {
+  constexpr double kJudgedShare = 1.0 / 50.0;
+  std::vector<double> errors;
+  for (const auto* loads : {&training.tested_own, &training.tested_shared, &training.tested_tables}) {
+    for (const TestedLoad& load : *loads) {
+      const bool is_judged = load.newtons >= kJudgedShare * training.report.heaviest_newtons;
+      if (is_judged) errors.push_back(std::abs(load.error_n) / load.newtons);
+    }
+  }
+  if (errors.empty()) return std::nullopt;
+  return UnseenErrors{upper_median(errors), quantile(errors, 0.95)};
+}
+
 void report_samples(const SampleDatabase& database, CalibrationReport& report) {
   report.frames = database.samples.size();
   report.frames_rejected = database.frames_rejected;
@@ -75,6 +95,7 @@ void report_samples(const SampleDatabase& database, CalibrationReport& report) {
   if (!database.circuit_fit) return;
   report.circuit = database.circuit_fit->statements;
   report.discriminating_presses = database.circuit_fit->discriminating_presses;
+  report.driver_presses = database.circuit_fit->driver_presses;
 }
 
 }  // namespace
@@ -147,6 +168,7 @@ Result<Calibration> calibrate(const SampleDatabase& database, std::span<const Ra
   });
   if (!uncertainty) return uncertainty.error();
   report.uncertainty = *uncertainty;
+  report.unseen = unseen_errors(*training);
   remark_unpressed(database.array, report);
   report.training = std::move(training->report);
   calibration.model.provenance = provenance(database.array, report);

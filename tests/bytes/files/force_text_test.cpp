@@ -21,6 +21,16 @@ TEST(ForceText, units_of_force_and_of_mass_are_newtons) {
   EXPECT_DOUBLE_EQ(*parse_force("0.2kg"), 1.96133);
 }
 
+TEST(ForceText, a_pressure_has_its_own_units) {
+  EXPECT_DOUBLE_EQ(*parse_pressure("20"), 20e3);
+  EXPECT_DOUBLE_EQ(*parse_pressure("20 kPa"), 20e3);
+  EXPECT_DOUBLE_EQ(*parse_pressure("500Pa"), 500.0);
+  EXPECT_DOUBLE_EQ(*parse_pressure("0.1 MPa"), 1e5);
+  EXPECT_EQ(parse_pressure("2 N").error().message,
+            "'2 N' is no pressure; write kPa, or a unit as in 20 kPa, 500 Pa or 0.1 MPa");
+  EXPECT_EQ(parse_force("20 kPa").error().message, "'20 kPa' is a pressure; write a force, as 2 N or 200 g");
+}
+
 TEST(ForceText, anything_else_is_named_with_the_mend) {
   for (const char* const text : {"", "g", "heavy", "200 gram", "2 lb", "1,5 N", "2 n"}) {
     const Result<double> force = parse_force(text);

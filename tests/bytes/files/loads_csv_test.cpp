@@ -119,6 +119,26 @@ TEST(LoadsCsv, refuses_a_value_that_is_no_load) {
   EXPECT_EQ(error_of("0,pressure,all,1e308"), "loads.csv:2: value '1e308' must be 0 to 1000000 (N or kPa)");
 }
 
+TEST(LoadsCsv, takes_the_unit_of_the_column_where_a_force_has_none_and_says_so) {
+  for (const char* const column : {"kg", "value_kg"}) {
+    std::istringstream in("frame,kind,where," + std::string(column) +
+                          "\n0,force,all,0\n1,force,all,0.5\n2,force,all,3 N\n");
+    std::string taken;
+    const auto loads = read_loads(in, "loads.csv", test_array(), 3, &taken);
+    ASSERT_TRUE(loads) << loads.error().message;
+    EXPECT_DOUBLE_EQ((*loads)[1].value, 4.903325);
+    EXPECT_DOUBLE_EQ((*loads)[2].value, 3.0);
+    EXPECT_EQ(taken, "0.5 kg, taken for 4.903325 N");
+  }
+}
+
+TEST(LoadsCsv, says_nothing_of_newtons) {
+  std::istringstream in("frame,kind,where,value\n0,force,all,2\n");
+  std::string taken;
+  ASSERT_TRUE(read_loads(in, "loads.csv", test_array(), 3, &taken));
+  EXPECT_EQ(taken, "");
+}
+
 TEST(LoadsCsv, refuses_loads_that_share_a_taxel_and_names_both_lines) {
   EXPECT_EQ(error_of("4,force,r0c0:r1c1,1\n5,force,r1c1,1\n4,pressure,r1c1:r2c2,1\n"),
             "loads.csv:4: overlaps line 2 at r1c1 of frame 4; name each taxel once per frame");

@@ -42,15 +42,6 @@ TEST(CalibrationPlan, of_a_large_array_is_bounded) {
   EXPECT_FALSE(plan.validate(array));
 }
 
-TEST(CalibrationPlan, presses_every_taxel_with_one_weight_before_the_next) {
-  const CalibrationPlan plan{{5, 10}, {2.0, 5.0}};
-  ASSERT_EQ(plan.press_count(), 4U);
-  EXPECT_EQ(plan.taxel_of(1), 10U);
-  EXPECT_EQ(plan.weight_of(1), 2.0);
-  EXPECT_EQ(plan.taxel_of(2), 5U);
-  EXPECT_EQ(plan.weight_of(2), 5.0);
-}
-
 TEST(CalibrationPlan, asks_for_no_press_where_the_sheet_has_no_taxel) {
   ArrayDescription array = reference_array(4, 4);
   array.absent = {0, 5};

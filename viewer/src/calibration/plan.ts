@@ -23,16 +23,76 @@ export interface StartRequest {
   hold_s: number;
 }
 
-/** "1, 2.5 5" as numbers; undefined where it is no list of 1 to 16 different weights. */
-export function readWeights(text: string): number[] | undefined {
-  const weights = text
-    .split(/[\s,;]+/)
-    .filter((word) => word !== "")
-    .map(Number);
+const GRAVITY = 9.80665;
+const MOST_PASCAL = 2e6; // that rubber bears
+const WEIGHT = /(\d+(?:\.\d*)?|\.\d+)(?:e([+-]?\d+))?\s*([a-z]*)/iy;
+const SEPARATORS = /[\s,;]*/y;
+const NEWTONS = {
+  N: 1,
+  mN: 1e-3,
+  kN: 1e3,
+  g: 1e-3 * GRAVITY,
+  kg: GRAVITY,
+} as const;
+
+/** Area of a taxel [m2], that of the pitch where none is told. */
+function areaOf({ taxel_area_m2, pitch_m }: ArrayDescription): number {
+  return Math.max(taxel_area_m2 ?? 0, pitch_m[0] * pitch_m[1]);
+}
+
+/** "100 g, 500" as [100, "g"] and [500, "g"]: a number has the unit before it, or else the one behind. */
+function withUnits(text: string): [number, string][] | undefined {
+  const weights: [number, string][] = [];
+  SEPARATORS.lastIndex = 0;
+  SEPARATORS.test(text);
+  for (
+    WEIGHT.lastIndex = SEPARATORS.lastIndex;
+    WEIGHT.lastIndex < text.length;
+    WEIGHT.lastIndex = SEPARATORS.lastIndex
+  ) {
+    const found = WEIGHT.exec(text);
+    if (found === null) return undefined;
+    weights.push([Number(`${found[1]}e${found[2] ?? 0}`), found[3] ?? ""]);
+    SEPARATORS.lastIndex = WEIGHT.lastIndex;
+    SEPARATORS.test(text);
+  }
+  let unit = weights.find(([, named]) => named !== "")?.[1] ?? "N";
+  return weights.map(([value, named]) => {
+    unit = named || unit;
+    return [value, unit];
+  });
+}
+
+/** The weights of a text, and what they were taken for where that is not what it says. */
+export interface Weights {
+  newtons: number[];
+  taken: string;
+}
+
+/** "1, 2.5 5", "100 g, 500" or "20 kPa"; undefined where it is no list of 1 to 16 different weights. */
+export function readWeights(text: string, array?: ArrayDescription): Weights | undefined {
+  const units = new Map(Object.entries(NEWTONS));
+  if (array !== undefined) units.set("kPa", 1e3 * areaOf(array));
+  const written = withUnits(text);
+  const newtons = written?.map(([value, unit]) => value * (units.get(unit) ?? Number.NaN)) ?? [];
   const isWeight = (weight: number): boolean => weight >= 0.01 && weight <= 1000;
   const good =
-    weights.length >= 1 && weights.length <= 16 && weights.every(isWeight) && new Set(weights).size === weights.length;
-  return good ? weights : undefined;
+    newtons.length >= 1 && newtons.length <= 16 && newtons.every(isWeight) && new Set(newtons).size === newtons.length;
+  if (!good || written === undefined) return undefined;
+  const isPlain = written.every(([, unit]) => unit === "N");
+  const words = written.map(([value, unit]) => `${value} ${unit}`).join(", ");
+  const taken = `${words}, taken for ${newtons.map((weight) => Number(weight.toPrecision(4))).join(", ")} N`;
+  return { newtons, taken: isPlain ? "" : taken };
+}
+
+/** Asks about a weight that no rubber bears on one taxel. */
+export function questionOn(newtons: readonly number[], array: ArrayDescription): string {
+  const heaviest = Math.max(...newtons);
+  const pascal = heaviest / areaOf(array);
+  if (pascal <= MOST_PASCAL) return "";
+  const cm2 = Number((1e4 * areaOf(array)).toPrecision(2));
+  const likely = pascal * NEWTONS.g <= MOST_PASCAL ? ` Is it ${Number(heaviest.toPrecision(4))} g?` : "";
+  return `${Number(heaviest.toPrecision(4))} N on a taxel of ${cm2} cm² is ${(1e-6 * pascal).toPrecision(2)} MPa.${likely}`;
 }
 
 export function strideOf(choice: TaxelChoice, { rows, cols }: ArrayDescription): number {
@@ -58,6 +118,6 @@ export function describeWork(presses: number): string {
 
 /** The weight of a load of so many newtons, for a kitchen scale. */
 export function inGrams(newtons: number): string {
-  const grams = (newtons * 1000) / 9.80665;
+  const grams = (newtons * 1000) / GRAVITY;
   return grams < 1000 ? `${grams.toFixed(0)} g` : `${(grams / 1000).toFixed(2)} kg`;
 }

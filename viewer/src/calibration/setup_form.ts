@@ -5,12 +5,14 @@ import type { ArrayDescription } from "../suit";
 import {
   DEFAULT_WEIGHTS_N,
   describeWork,
+  questionOn,
   readWeights,
   type StartRequest,
   strideOf,
   TAXEL_CHOICES,
   type TaxelChoice,
   taxelsOf,
+  type Weights,
 } from "./plan";
 
 const SECONDS = { min: 0.05, max: 30, step: "any", required: true } as const;
@@ -66,7 +68,7 @@ export class SetupForm {
         {},
         "Put known weights on single taxels; the page tells which and when. A stamp as large as a taxel, weights and a kitchen scale are enough.",
       ),
-      ...this.#field("Weights [N]", this.#weights),
+      ...this.#field("Weights (N, g, kg or kPa)", this.#weights),
       ...this.#field("Taxels", this.#taxels),
       ...this.#field("Hold [s]", this.#hold),
       ...this.#field("Quiet at the beginning [s]", this.#quiet),
@@ -105,8 +107,12 @@ export class SetupForm {
     return [element("label", { for: input.id }, words), input];
   }
 
+  #written(): Weights | undefined {
+    return readWeights(this.#weights.value, this.#array);
+  }
+
   #request(): StartRequest | undefined {
-    const weights = readWeights(this.#weights.value);
+    const weights = this.#written();
     if (
       this.#array === undefined ||
       weights === undefined ||
@@ -117,7 +123,7 @@ export class SetupForm {
     const choice = this.#taxels.value as TaxelChoice;
     return {
       array: this.#array.name,
-      weights_n: weights,
+      weights_n: weights.newtons,
       taxels: { stride: strideOf(choice, this.#array) },
       unloaded_s: Number(this.#quiet.value),
       hold_s: Number(this.#hold.value),
@@ -125,12 +131,18 @@ export class SetupForm {
   }
 
   #check(): void {
-    const weights = readWeights(this.#weights.value);
+    const weights = this.#written();
+    const question = weights === undefined || this.#array === undefined ? "" : questionOn(weights.newtons, this.#array);
     const isOffered = this.#start.dataset.offered === "true";
     this.#weights.toggleAttribute("aria-invalid", weights === undefined);
     this.#start.disabled = this.#request() === undefined || !isOffered;
+    setText(this.#start, question === "" ? "Begin" : "Begin all the same");
     if (!isOffered) setText(this.#work, "This server offers no calibration: it plays a recording, or it is not there.");
-    else if (weights === undefined) setText(this.#work, "Weights: 1 to 16 different numbers of 0.01 to 1000.");
-    else if (this.#array !== undefined) setText(this.#work, describeWork(weights.length * this.taxels.length));
+    else if (weights === undefined) {
+      setText(this.#work, "Weights: 1 to 16 different ones of 0.01 to 1000 N, as 1, 5, 10 or 100 g, 500 g, 2 kg.");
+    } else if (this.#array !== undefined) {
+      const work = describeWork(weights.newtons.length * this.taxels.length);
+      setText(this.#work, [work, weights.taken, question].filter((words) => words !== "").join(". "));
+    }
   }
 }

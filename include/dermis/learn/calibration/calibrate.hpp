@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,6 +24,12 @@ struct StageTime {
   double seconds = 0.0;
 };
 
+/// Relative errors on loads that were left out of the networks' training, one at a time.
+struct UnseenErrors {
+  double median = 0.0;
+  double p95 = 0.0;
+};
+
 /// The course of a calibration and its fit to its own samples.
 struct CalibrationReport {
   std::size_t frames = 0;  ///< Labelled frames used.
@@ -33,8 +40,10 @@ struct CalibrationReport {
   bool lacks_proof = false;                       ///< SampleDatabase::lacks_proof.
   std::vector<std::string> circuit;               ///< The findings on an unknown circuit; empty where all was given.
   std::vector<PressPair> discriminating_presses;  ///< Would distinguish the remaining circuits; see CircuitFit.
+  std::vector<PressPair> driver_presses;          ///< Would determine drivers that are uncertain; see CircuitFit.
   std::string memory;  ///< A sentence on the memory of the material; empty: nothing was learned.
   TrainingReport training;
+  std::optional<UnseenErrors> unseen;  ///< Empty where no load could be left out.
   UncertaintyReport uncertainty;
   std::vector<StageTime> stages;
 };

@@ -12,17 +12,14 @@
 
 namespace dermis::learn::calibration {
 
-/// The presses that a person is asked for: every taxel with the first weight, then every taxel with the second, ...
+/// The presses that a person is asked for: every taxel with every weight, spread so that any beginning covers both.
 struct CalibrationPlan {
-  std::vector<std::size_t> taxels;                ///< Row-major, none twice, in the order in which they are pressed.
-  std::vector<double> weights_n;                  ///< 1 ... 16 weights of 0.01 ... 1000 N, in their order.
+  std::vector<std::size_t> taxels;                ///< Row-major, none twice.
+  std::vector<double> weights_n;                  ///< 1 ... 16 weights of 0.01 ... 1000 N.
   Nanos unloaded_time = std::chrono::seconds(3);  ///< Quiet time at the beginning, 0.2 ... 60 s.
   Nanos hold_time = std::chrono::seconds(1);  ///< Time of every press, after a quarter of it to settle, 0.05 ... 30 s.
 
   [[nodiscard]] std::size_t press_count() const noexcept { return taxels.size() * weights_n.size(); }
-
-  [[nodiscard]] std::size_t taxel_of(std::size_t press) const { return taxels[press % taxels.size()]; }
-  [[nodiscard]] double weight_of(std::size_t press) const { return weights_n[press / taxels.size()]; }
 
   /// Number of pieces of a press's hold, 1, 2 or 4, whose means are kept. With it a taxel with at least three weights
   /// gets the samples that a network of its own needs.

@@ -35,6 +35,9 @@ struct PressPair {
   double newtons = 0.0;
 };
 
+/// "press r2c3 and r2c7 together with 20 N each, r0c1 and r5c1 with 10 N each".
+[[nodiscard]] std::string describe(const std::vector<PressPair>& presses, const ArrayDescription& array);
+
 /// The resistances of a circuit as the calibration frames determine them.
 struct CircuitFit {
   ArrayDescription array;  ///< Nothing is unknown any more.

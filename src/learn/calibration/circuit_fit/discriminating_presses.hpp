@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "dermis/learn/calibration/circuit_fit.hpp"
@@ -17,8 +16,5 @@ namespace dermis::learn::calibration {
 /// circuits. `circuits`: at least two.
 [[nodiscard]] std::vector<PressPair> discriminating_presses(const std::vector<const CommonRatio*>& circuits,
                                                             const CircuitFrames& frames, double sure_square);
-
-/// "press r2c3 and r2c7 together with 20 N each, r0c1 and r5c1 with 10 N each".
-[[nodiscard]] std::string describe(const std::vector<PressPair>& presses, const ArrayDescription& array);
 
 }  // namespace dermis::learn::calibration

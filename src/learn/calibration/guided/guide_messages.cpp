@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "dermis/touch/frames/mean_celsius.hpp"
-#include "learn/calibration/circuit_fit/discriminating_presses.hpp"
 
 namespace dermis::learn::calibration {
 namespace {

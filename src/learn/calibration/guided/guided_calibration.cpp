@@ -91,7 +91,7 @@ GuidedCalibration::Implementation::Implementation(ArrayDescription array, Calibr
       plan_(std::move(plan)),
       conditioner_(array_),
       quiet_(plan_.unloaded_time, ratio_per_count(array_)),
-      presses_(plan_),
+      presses_(plan_, array_.cols),
       fitter_(
           array_, [this](GuideFitter::Outcome outcome) { accept_fit(std::move(outcome)); },
           [this](double share) { accept_share(share); }) {}

@@ -132,7 +132,10 @@ GuidedData labelled_frames(const ArrayDescription& array, const std::vector<RawF
 
 std::optional<double> error_on_left_out_presses(const ArrayDescription& array, const std::vector<RawFrame>& unloaded,
                                                 const GuidedPresses& presses) {
-  return median(errors_on(single_presses(by_taxel(presses)), array, unloaded, presses));
+  const PressesOfTaxel grouped = by_taxel(presses);
+  GuidedPresses left_out = single_presses(grouped);
+  if (left_out.empty()) left_out = whole_taxels(grouped, kTaxelFolds - 1);  // at first all taxels have one weight
+  return median(errors_on(left_out, array, unloaded, presses));
 }
 
 std::optional<double> error_on_left_out_taxels(const ArrayDescription& array, const std::vector<RawFrame>& unloaded,

@@ -8,7 +8,8 @@
 
 namespace dermis::learn::calibration {
 
-PressSequence::PressSequence(CalibrationPlan plan) : plan_(std::move(plan)), steps_(plan_.press_count(), Step::open) {}
+PressSequence::PressSequence(const CalibrationPlan& plan, std::size_t cols)
+    : planned_(spread_presses(plan, cols)), steps_(planned_.size(), Step::open) {}
 
 void PressSequence::keep(std::vector<RawFrame> frames) {
   kept_.push_back(
@@ -18,7 +19,7 @@ void PressSequence::keep(std::vector<RawFrame> frames) {
 }
 
 const PressPair* PressSequence::pair() const {
-  return step_ < plan_.press_count() ? nullptr : &pairs_[step_ - plan_.press_count()];
+  return step_ < planned_.size() ? nullptr : &pairs_[step_ - planned_.size()];
 }
 
 std::optional<std::size_t> PressSequence::together_with() const {
@@ -31,7 +32,7 @@ std::vector<std::size_t> PressSequence::taxels() const {
 
 void PressSequence::ask_for(std::vector<PressPair> pairs) {
   pairs_ = std::move(pairs);
-  steps_.resize(plan_.press_count() + pairs_.size(), Step::open);
+  steps_.resize(planned_.size() + pairs_.size(), Step::open);
 }
 
 bool PressSequence::advance() {

@@ -11,18 +11,19 @@
 #include "dermis/learn/calibration/calibration_plan.hpp"
 #include "dermis/learn/calibration/circuit_fit.hpp"
 #include "learn/calibration/guided/held_out_presses.hpp"
+#include "learn/calibration/guided/press_order.hpp"
 
 namespace dermis::learn::calibration {
 
 /// The presses of a plan, and pairs beyond it, one of which is asked for: which are kept, which are skipped.
 class PressSequence {
  public:
-  /// Begins with the first one.
-  explicit PressSequence(CalibrationPlan plan);
+  /// Begins with the first one; `cols` of the array.
+  PressSequence(const CalibrationPlan& plan, std::size_t cols);
 
   /// The press that is asked for.
-  [[nodiscard]] std::size_t taxel() const { return pair() ? pair()->first : plan_.taxel_of(step_); }
-  [[nodiscard]] double weight_n() const { return pair() ? pair()->newtons : plan_.weight_of(step_); }
+  [[nodiscard]] std::size_t taxel() const { return pair() ? pair()->first : planned_[step_].taxel; }
+  [[nodiscard]] double weight_n() const { return pair() ? pair()->newtons : planned_[step_].weight_n; }
   /// Another taxel, with as much.
   [[nodiscard]] std::optional<std::size_t> together_with() const;
   /// The one or both.
@@ -53,7 +54,7 @@ class PressSequence {
 
   [[nodiscard]] const PressPair* pair() const;
 
-  CalibrationPlan plan_;
+  std::vector<PlannedPress> planned_;
   std::vector<PressPair> pairs_;
   std::vector<Step> steps_;  // of the plan, then of the pairs
   std::size_t step_ = 0;
