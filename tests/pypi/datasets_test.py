@@ -176,7 +176,11 @@ class Datasets(CalibratedArray):
         self.assertEqual(masks, {"train": ["demo_0", "demo_1"], "valid": ["demo_2"]})
         splits = {"train": "0:2", "val": "2:3"}
         self.assertEqual(zarr.open(str(self.make("zarr", *held)), mode="r").attrs["splits"], splits)
-        for layout, place in (("hdf5", "tactile.json"), ("lerobot", "meta/tactile.json"), ("lerobot", "meta/info.json")):
+        for layout, place in (
+            ("hdf5", "tactile.json"),
+            ("lerobot", "meta/tactile.json"),
+            ("lerobot", "meta/info.json"),
+        ):
             out = self.folder / f"{self.id()}-{layout}"
             out = out if out.exists() else self.make(layout, *held)
             self.assertEqual(json.loads((out / place).read_text())["splits"], splits)
