@@ -50,6 +50,7 @@ class Datasets(CalibratedArray):
         super().setUpClass()
         cls.recordings = [cls.make_recording(episode) for episode in range(EPISODES)]
         cls.episodes = [cls.read_frames(recording) for recording in cls.recordings]
+        cls.slow = cls.make_recording(EPISODES, rate_hz=50)  # a tare takes a second
 
     @classmethod
     def make_recording(cls, seed, rate_hz=RATE_HZ):
@@ -139,7 +140,7 @@ class Datasets(CalibratedArray):
             self.check_episode(episode, {name: values[begin:end] for name, values in columns.items()})
 
     def test_forces_with_tare_and_drift_are_those_of_run(self):
-        recording = self.make_recording(EPISODES, rate_hz=50)  # a tare takes a second
+        recording = self.slow
         for options in ((), ("--tare",), ("--tare-force", "--follow-drift"), ("--follow-drift",)):
             with self.subTest(options):
                 forces = self.folder / "tared.csv"
@@ -336,7 +337,7 @@ class Datasets(CalibratedArray):
     def test_python_tares_and_holds_out_like_the_command(self):
         module = importlib.import_module("dermis")
         options = {"model": self.model, "fps": FPS, "window": WINDOW, "follow_drift": True, "tare_force": True}
-        recording = self.make_recording(EPISODES, rate_hz=50)
+        recording = self.slow
         dataset = module.Dataset([recording] * 3, hold_out=0.34, **options)
         self.assertEqual((len(dataset), dataset.held_out), (3, [2]))
         out = self.folder / self.id()
