@@ -38,6 +38,19 @@ bool are_split(const std::vector<std::vector<Nanos>>& times, std::size_t recordi
   return recordings == 1 && times.size() > 1;
 }
 
+std::vector<std::pair<std::string, std::string>> described(const EpisodeOptions& options) {
+  std::vector<std::pair<std::string, std::string>> how = {
+      {"forces", options.model.empty() ? "none: without a model" : "by " + options.model}};
+  if (!options.model.empty()) {
+    const bool is_tared = options.tare || options.tare_force;
+    const std::string zero = is_tared ? "the first second of each recording" : "that of the calibration";
+    how.emplace_back("zero", zero + (options.follow_drift ? "; drift is followed" : ""));
+  }
+  how.emplace_back("steps", options.times.empty() ? fmt::format("{} a second", options.fps) : "at given times");
+  how.emplace_back("window", fmt::format("{} frame{}", options.window, options.window == 1 ? "" : "s"));
+  return how;
+}
+
 std::vector<Nanos> joined(const std::vector<std::vector<Nanos>>& times) {
   std::vector<Nanos> all;
   for (const std::vector<Nanos>& some : times) all.insert(all.end(), some.begin(), some.end());

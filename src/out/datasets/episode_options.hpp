@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "dermis/out/datasets/episodes.hpp"
@@ -11,6 +13,9 @@ namespace dermis::out::datasets {
 
 /// Each of the times is an episode of the only recording.
 [[nodiscard]] bool are_split(const std::vector<std::vector<Nanos>>& times, std::size_t recordings);
+
+/// EpisodeTally::how
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> described(const EpisodeOptions& options);
 
 [[nodiscard]] std::vector<Nanos> joined(const std::vector<std::vector<Nanos>>& times);
 

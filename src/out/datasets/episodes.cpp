@@ -320,6 +320,7 @@ Status Maker::commit(std::uint64_t held_out) {
   if (Status filled = check_windows(); !filled) return filled;
   tell_stale_steps();
   tally_.held_out = held_out;
+  tally_.how = described(options_);
   return sink_.commit(tally_);
 }
 

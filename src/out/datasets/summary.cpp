@@ -113,11 +113,10 @@ std::string summary_json(const EpisodeTally& tally) {
   Json splits = {{"train", split_text(tally, false)}};
   if (tally.held_out > 0) splits["val"] = split_text(tally, true);
   // Names of recordings may be bytes that are not UTF-8.
-  return Json{{"steps", tally.steps},
-              {"gaps", tally.gaps},
-              {"splits", splits},
-              {"arrays", arrays},
-              {"episodes", episodes}}
+  Json how = Json::object();
+  for (const auto& [name, words] : tally.how) how[name] = words;
+  return Json{{"how", how},       {"steps", tally.steps}, {"gaps", tally.gaps},
+              {"splits", splits}, {"arrays", arrays},     {"episodes", episodes}}
              .dump(-1, ' ', false, Json::error_handler_t::replace) +
          "\n";
 }

@@ -116,6 +116,7 @@ void add_episodes(Page& page, const EpisodeTally& tally) {
 std::string summary_page(const EpisodeTally& tally, const std::string& title) {
   Page page(title, "Dataset " + title);
   add_tiles(page, tally);
+  if (!tally.how.empty()) page.facts(tally.how);
   add_arrays(page, tally);
   add_pictures(page, tally);
   add_episodes(page, tally);

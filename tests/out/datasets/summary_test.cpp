@@ -33,6 +33,7 @@ EpisodeTally small_tally() {
   tally.steps = 10;
   tally.arrays = {array};
   tally.held_out = 2;
+  tally.how = {{"zero", "that of the calibration"}};
   for (int k = 0; k < 10; ++k) tally.sources.push_back({"run<1>.mcap", 1, Nanos(k), Nanos(k)});
   return tally;
 }
@@ -56,6 +57,7 @@ TEST(Summary, has_masks_and_the_split_for_programs) {
 
 TEST(Summary, is_a_page_with_the_first_and_the_last_picture) {
   const std::string page = summary_page(small_tally(), "touch");
+  EXPECT_NE(page.find("that of the calibration"), std::string::npos);
   EXPECT_NE(page.find("r0c1 always"), std::string::npos);
   EXPECT_NE(page.find("run&lt;1&gt;.mcap"), std::string::npos);
   EXPECT_NE(page.find("first [N]"), std::string::npos);

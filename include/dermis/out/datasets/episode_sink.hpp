@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dermis/touch/frames/frames.hpp"
@@ -86,6 +87,8 @@ struct EpisodeTally {
   std::vector<EpisodeSource> sources{};  ///< Of each episode.
   std::uint64_t gaps = 0;                ///< That ended an episode.
   std::uint64_t held_out = 0;            ///< So many episodes at the end.
+  /// How they were made, for people: "window", "5 frames".
+  std::vector<std::pair<std::string, std::string>> how{};
 };
 
 /// Where episodes go: a dataset in files, or memory.
