@@ -39,7 +39,7 @@ class ArraySteps {
 
   /// The next frame begins another episode of the recording. Zero and what is known of faults go on.
   void end_episode();
-  /// Of the episodes that have ended.
+  /// All episodes that have ended.
   [[nodiscard]] const ArrayTally& tally() const noexcept { return tally_; }
   /// Fails where a tare was refused.
   [[nodiscard]] Status check_tare() const;

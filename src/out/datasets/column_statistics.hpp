@@ -38,7 +38,7 @@ class ColumnStatistics {
     double highest = 0.0;
     double mean = 0.0;
     double deviation = 0.0;
-    std::vector<double> quantiles{};  ///< Of kShares.
+    std::vector<double> quantiles{};  ///< At kShares.
   };
   static constexpr std::array kShares = {0.01, 0.10, 0.50, 0.90, 0.99};
   [[nodiscard]] std::size_t kinds() const noexcept { return quantiles_.size(); }
@@ -60,7 +60,7 @@ class ColumnStatistics {
   std::vector<double> count_;
   std::vector<double> lowest_;
   std::vector<double> highest_;
-  std::vector<Quantiles> quantiles_;  ///< Of each kind, of the differences from `origin_`.
+  std::vector<Quantiles> quantiles_;  ///< One for each kind: differences from `origin_`.
   std::optional<double> origin_;      ///< 0, but for whole numbers: such as times, which have many digits.
 };
 

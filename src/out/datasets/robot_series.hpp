@@ -41,7 +41,7 @@ class RobotSeries {
   std::vector<std::string> names_;
   std::optional<SampledSeries> now_;
   std::string now_from_;
-  std::pair<Nanos, Nanos> range_;  ///< Of the numbers.
+  std::pair<Nanos, Nanos> range_;  ///< The first and the last time of a number.
   // Steps of the recording.
   Nanos lasts_until_{};
   std::uint64_t step_count_ = 0;

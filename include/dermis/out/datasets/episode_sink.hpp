@@ -46,7 +46,7 @@ struct StepBlock {
   std::vector<std::vector<std::byte>> values;  ///< Of each column: steps times row_bytes().
 };
 
-/// What the frames of an array brought.
+/// The frames of an array, counted.
 ///
 /// Many members: a summary shows each.
 struct ArrayTally {
@@ -62,13 +62,13 @@ struct ArrayTally {
   std::uint64_t episodes = 0;            ///< With a frame.
   std::uint64_t steps = 0;               ///< With a frame in the window.
   std::uint64_t stale_steps = 0;         ///< Those without a new one.
-  Nanos age{};                           ///< Of the newest frame, in all of these steps.
+  Nanos age{};                           ///< The ages of the newest frame at these steps, added up.
   Nanos oldest{};                        ///< The largest age of the newest frame.
   std::uint64_t late_frames = 0;         ///< Earlier than one before, and in no window.
-  std::uint64_t empty_frames = 0;        ///< Of the others: without any value.
+  std::uint64_t empty_frames = 0;        ///< Others without any value.
   std::vector<std::uint64_t> invalid{};  ///< Other frames in which a taxel has no value [rows, cols].
-  float lowest = 0.0F;                   ///< Of all values.
-  float highest = 0.0F;                  ///< The same.
+  float lowest = 0.0F;                   ///< The lowest value.
+  float highest = 0.0F;                  ///< The highest value.
   std::vector<float> first_picture{};    ///< Values [rows, cols]; NaN where there is none.
   std::vector<float> last_picture{};     ///< The same.
 };
@@ -84,7 +84,7 @@ struct EpisodeTally {
   std::uint64_t episodes = 0;
   std::uint64_t steps = 0;
   std::vector<ArrayTally> arrays{};
-  std::vector<EpisodeSource> sources{};  ///< Of each episode.
+  std::vector<EpisodeSource> sources{};  ///< One for each episode.
   std::uint64_t gaps = 0;                ///< That ended an episode.
   std::uint64_t held_out = 0;            ///< So many episodes at the end.
   /// How they were made, for people: "window", "5 frames".

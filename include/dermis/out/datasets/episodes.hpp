@@ -43,8 +43,8 @@ struct EpisodeOptions {
   /// episodes, one after the other. Each begins before the last frame and ends after the first. Empty: those of a
   /// clock.
   std::vector<std::vector<Nanos>> times{};
-  /// Episodes that are not trained on, which then are the last ones: a share of them such as "0.2", or recordings by
-  /// their paths or names.
+  /// Episodes that are not trained on: a share of them such as "0.2", or recordings by their paths or names. They
+  /// become the last ones.
   std::vector<std::string> hold_out{};
   const std::atomic<bool>* stop = nullptr;                ///< Set: ends the work, and nothing is written.
   std::function<void(const std::string&)> notice{};       ///< Receives one line on what a user should know.

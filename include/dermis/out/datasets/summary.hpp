@@ -17,7 +17,7 @@ struct FaultyTaxels {
 };
 [[nodiscard]] FaultyTaxels faulty_taxels(const ArrayTally& array);
 
-/// What a person should know before training, one line each: the episodes, what is held out, and each array.
+/// For a person who is going to train, one line each: the episodes, what is held out, and each array.
 [[nodiscard]] std::vector<std::string> summary_lines(const EpisodeTally& tally);
 
 /// The same at length as a page of HTML, with the first and the last picture of each array. `title`: names the dataset.
@@ -26,7 +26,7 @@ struct FaultyTaxels {
 /// The same for programs: JSON with the split, the episodes and the masks of faulty taxels.
 [[nodiscard]] std::string summary_json(const EpisodeTally& tally);
 
-/// The first episode and the one after the last: "0:8". Of the held-out ones, or of the others.
+/// The first episode and the one after the last: "0:8". They are the held-out ones, or the others.
 [[nodiscard]] std::string split_text(const EpisodeTally& tally, bool held_out);
 
 }  // namespace dermis::out::datasets
