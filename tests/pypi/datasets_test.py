@@ -51,11 +51,12 @@ class Datasets(CalibratedArray):
         cls.recordings = [cls.make_recording(episode) for episode in range(EPISODES)]
         cls.episodes = [cls.read_frames(recording) for recording in cls.recordings]
         cls.slow = cls.make_recording(EPISODES, rate_hz=50, gap_s=12)  # a tare takes a second
+        cls.idle = cls.make_recording(EPISODES + 1, rate_hz=50, scene="idle")
 
     @classmethod
-    def make_recording(cls, seed, rate_hz=RATE_HZ, gap_s=0):
+    def make_recording(cls, seed, rate_hz=RATE_HZ, gap_s=0, scene="multitouch"):
         simulated, recording = cls.folder / f"s{seed}", cls.folder / f"rec{seed}.mcap"
-        dermis("simulate", "--array", cls.array, "--scene", "multitouch", "--frames", FRAMES, "--out", simulated)
+        dermis("simulate", "--array", cls.array, "--scene", scene, "--frames", FRAMES, "--out", simulated)
         lines = (simulated / "frames.csv").read_text().splitlines()
         jitter = numpy.random.default_rng(seed).uniform(-0.001, 0.001, FRAMES)
         times = numpy.arange(FRAMES) / rate_hz + jitter + 10 * seed + 1
@@ -141,16 +142,17 @@ class Datasets(CalibratedArray):
             self.check_episode(episode, {name: values[begin:end] for name, values in columns.items()})
 
     def test_forces_with_tare_and_drift_are_those_of_run(self):
-        recording = self.slow
-        for options in ((), ("--tare",), ("--tare-force", "--follow-drift"), ("--follow-drift",)):
-            with self.subTest(options):
+        forced = ("--tare-force", "--follow-drift")
+        cases = [(self.slow, options) for options in ((), ("--tare",), forced, ("--follow-drift",))]
+        for recording, options in (*cases, (self.idle, ("--tare",))):
+            with self.subTest(recording=recording.stem, options=options):
                 forces = self.folder / "tared.csv"
                 ran = subprocess.run(
                     [sys.argv[1], "run", "--model", self.model, "--in", recording, "--out", forces, *options],
                     capture_output=True,
                     text=True,
                 )
-                out = self.folder / f"{self.id()}{''.join(options)}"
+                out = self.folder / f"{self.id()}{recording.stem}{''.join(options)}"
                 made = subprocess.run(
                     [sys.argv[1], "dataset", recording, "--out", out, "--format", "zarr", "--model", self.model]
                     + ["--fps", str(FPS), "--window", str(WINDOW), *options],
@@ -158,7 +160,9 @@ class Datasets(CalibratedArray):
                     text=True,
                 )
                 self.assertEqual(made.returncode, ran.returncode, made.stderr)
-                if ran.returncode:
+                is_refused = (recording, options) == (self.slow, ("--tare",))
+                self.assertEqual(made.returncode, 1 if is_refused else 0)
+                if is_refused:
                     self.assertIn("take it off and tare again", made.stderr)
                     self.assertFalse(out.exists())
                     continue

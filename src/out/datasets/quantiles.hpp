@@ -8,8 +8,8 @@
 
 namespace dermis::out::datasets {
 
-/// Quantiles of any number of values, in a memory that does not grow with them: how many lie in each of 1024 parts
-/// between two powers of two. A quantile is too near to 0 by at most 0.1 %; whole numbers below 2048 are exact.
+/// Quantiles of any number of values, in a memory that does not grow with them. It counts how many lie in each of 1024
+/// parts between two powers of two. A quantile is too near to 0 by at most 0.1 %; whole numbers below 2048 are exact.
 class Quantiles {
  public:
   void add(float value);  ///< Finite.
