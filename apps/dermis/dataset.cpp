@@ -11,6 +11,7 @@
 #include "commands.hpp"
 #include "dermis/out/datasets/dataset_files.hpp"
 #include "dermis/out/datasets/episodes.hpp"
+#include "dermis/out/datasets/summary.hpp"
 #include "lost_input.hpp"
 #include "status_line.hpp"
 #include "stop_flag.hpp"
@@ -30,12 +31,14 @@ struct DatasetCommandOptions {
 void print_tally(const out::datasets::EpisodeTally& tally, const DatasetCommandOptions& options) {
   print_notice(fmt::format("{} episode{}, {} steps in {}", tally.episodes, tally.episodes == 1 ? "" : "s", tally.steps,
                            options.out));
+  for (const std::string& line : out::datasets::summary_lines(tally)) print_notice(line);
   for (const out::datasets::ArrayTally& array : tally.arrays) {
     if (array.missed == 0) continue;
     const bool is_short = array.most_fresh > options.window;
     const std::string mend = is_short ? fmt::format("; --window {} holds all between two steps", array.most_fresh) : "";
     print_notice(fmt::format("{}: {} of {} frames are in no window{}", array.name, array.missed, array.frames, mend));
   }
+  print_notice(fmt::format("look at {}/summary.html before you train", options.out));
 }
 
 Status make_dataset(DatasetCommandOptions& options) {
@@ -68,6 +71,14 @@ void add_dataset(Command& command) {
       .shows_default();
   command.input_file("--model", options->episodes.model,
                      "Model file of the array, or suit.toml of several; without one there are no forces");
+  command.flag("--tare", options->episodes.tare,
+               "Take the first second of each recording (at least 10 frames) as unloaded, like 'dermis run'; refused "
+               "under a load");
+  command.flag("--tare-force", options->episodes.tare_force, "The same, whatever load stands there");
+  command.flag("--follow-drift", options->episodes.follow_drift,
+               "Follow the offsets of idle taxels, like 'dermis run'");
+  command.option("--hold-out", options->episodes.hold_out,
+                 "Not to be trained on: a share of the episodes such as 0.2, the last ones, or recordings by name");
   command.input("--state", options->episodes.states,
                 "The state of the robot: a topic of its joints, or a CSV with time_s for each recording");
   command.input("--action", options->episodes.actions, "The same of the actions of the robot");

@@ -61,6 +61,20 @@ class TablesFile final : public Hdf5Tables {
     return appended;
   }
 
+  Status write_names(const std::string& name, const std::vector<std::string>& names) override {
+    const QuietHdf5 quiet;
+    std::size_t length = 1;
+    for (const std::string& one : names) length = std::max(length, one.size());
+    std::string bytes;
+    for (const std::string& one : names) bytes += one + std::string(length - one.size(), '\0');
+    const Hdf5Id type(H5Tcopy(H5T_C_S1), H5Tclose);
+    H5Tset_size(type.get(), length);
+    H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
+    Hdf5Id id = file_.create_dataset(name.c_str(), type.get(), {}, kRowsOfChunk, Hdf5Packing::plain);
+    if (!id) return file_.failure();
+    return file_.append(id, 0, names.size(), type.get(), bytes.data());
+  }
+
   Status set_text(const std::string& object, const char* name, const std::string& text) override {
     const QuietHdf5 quiet;
     return file_.set_text(object.c_str(), name, text);

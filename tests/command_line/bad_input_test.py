@@ -430,6 +430,65 @@ class WhatCannotBe(SmallArray):
             )
 
 
+class WrongDatasets(SmallArray):
+    def refuse_dataset(self, options, places, more_recordings=(), status=2):
+        frames = self.contacts / "frames.csv"
+        command = ("dataset", frames, *more_recordings, "--format", "zarr", "--out", self.work / "set", *options)
+        self.refuse(command, places, status)
+
+    def frames_with(self, lines, cols=5):
+        header = "time_s," + ",".join(f"r{k // cols}c{k % cols}" for k in range(4 * cols))
+        rows = [f"{k / 100},{','.join(['5'] * 4 * cols)}" for k in range(lines)]
+        return self.written("others.csv", "\n".join([header, *rows]) + "\n")
+
+    def test_a_state_of_another_clock(self):
+        state = self.written("joints.csv", "time_s,elbow\n1764480000,1\n1764480009.5,2\n")
+        self.refuse_dataset(
+            ("--state", state), [state, "its times are 1764480000.000 to 1764480009.500 s", "the frames of", "0.000 to"]
+        )
+
+    def test_a_state_whose_rows_go_back(self):
+        state = self.written("joints.csv", "time_s,elbow\n0.5,1\n0.4,2\n")
+        self.refuse_dataset(("--state", state), [f"{state}:3: time_s goes back"])
+
+    def test_a_window_that_no_recording_fills(self):
+        self.refuse_dataset(("--window", 900), ["window: no episode has 900 frames", "the longest that one can fill"])
+
+    def test_a_hold_out_of_all_or_none(self):
+        for wanted, place in (
+            ("0.2", "there is 1 episode; give more recordings"),
+            ("0", "must be more than 0 and less than 1"),
+            ("1.5", "must be more than 0 and less than 1"),
+            ("frames.csv", "names all recordings, so none is left to train on"),
+            ("other.csv", "'other.csv' is none of the recordings"),
+        ):
+            with self.subTest(wanted):
+                self.refuse_dataset(("--hold-out", wanted), ["hold-out", place])
+
+    def test_recordings_of_two_arrays(self):
+        other = self.frames_with(20, cols=6)
+        self.refuse_dataset((), [other, "has other arrays than the first recording", "4x5"], [other])
+
+    def test_a_model_of_another_array(self):
+        other = self.frames_with(20, cols=6)
+        command = ("dataset", other, "--format", "zarr", "--out", self.work / "set", "--model", self.model)
+        self.refuse(command, [other, "is 4x6, its model is of 4x5"])
+
+    def test_a_tare_that_cannot_be(self):
+        self.refuse_dataset(("--tare",), ["tare: needs a model"])
+        self.refuse_dataset(("--follow-drift",), ["follow-drift: needs a model"])
+        short = self.frames_with(20)
+        command = ("dataset", short, "--format", "zarr", "--out", self.work / "set", "--model", self.model, "--tare")
+        self.refuse(command, [short, "is over before its tare, which takes 1 s and 10 frames"], 1)
+
+    def test_steps_that_come_faster_than_frames_are_told(self):
+        frames = self.frames_with(100)
+        command = ("dataset", frames, "--format", "zarr", "--out", self.work / "set", "--fps", 300)
+        result = support.dermis(*command)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("steps have no new frame: 300 steps a second", result.stderr)
+
+
 class EveryCommand(SmallArray):
     """All that read frames, on frames that are missing, cut or beyond the ADC."""
 

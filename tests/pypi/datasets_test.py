@@ -33,6 +33,7 @@ RATE_HZ = 150
 FPS = 30
 WINDOW = 5
 TAXELS = (5, 4)
+ORIGINS = ("time_ns", "index", "frame_index", "episode_index", "task_index")  # quantiles count from the first step
 
 
 def table_of(path):
@@ -49,14 +50,17 @@ class Datasets(CalibratedArray):
         super().setUpClass()
         cls.recordings = [cls.make_recording(episode) for episode in range(EPISODES)]
         cls.episodes = [cls.read_frames(recording) for recording in cls.recordings]
+        cls.slow = cls.make_recording(EPISODES, rate_hz=50, gap_s=12)  # a tare takes a second
+        cls.idle = cls.make_recording(EPISODES + 1, rate_hz=50, scene="idle")
 
     @classmethod
-    def make_recording(cls, seed):
+    def make_recording(cls, seed, rate_hz=RATE_HZ, gap_s=0, scene="multitouch"):
         simulated, recording = cls.folder / f"s{seed}", cls.folder / f"rec{seed}.mcap"
-        dermis("simulate", "--array", cls.array, "--scene", "multitouch", "--frames", FRAMES, "--out", simulated)
+        dermis("simulate", "--array", cls.array, "--scene", scene, "--frames", FRAMES, "--out", simulated)
         lines = (simulated / "frames.csv").read_text().splitlines()
         jitter = numpy.random.default_rng(seed).uniform(-0.001, 0.001, FRAMES)
-        times = numpy.arange(FRAMES) / RATE_HZ + jitter + 10 * seed + 1
+        times = numpy.arange(FRAMES) / rate_hz + jitter + 10 * seed + 1
+        times[FRAMES * 2 // 3 :] += gap_s
         rows = [f"{time:.9f},{line.split(',', 1)[1]}" for time, line in zip(times, lines[1:], strict=True)]
         table = cls.folder / f"rec{seed}.csv"
         table.write_text("\n".join([lines[0], *rows]) + "\n")
@@ -111,7 +115,7 @@ class Datasets(CalibratedArray):
 
     def test_h5py_reads_the_episodes_of_act(self):
         out = self.make("hdf5")
-        self.assertEqual(len(list(out.iterdir())), EPISODES)
+        self.assertEqual(len(list(out.glob("episode_*.hdf5"))), EPISODES)
         for episode in range(EPISODES):
             with h5py.File(out / f"episode_{episode}.hdf5") as root:
                 self.assertIs(bool(root.attrs["sim"]), False)
@@ -136,6 +140,57 @@ class Datasets(CalibratedArray):
         self.assertEqual({len(values) for values in columns.values()}, {ends[-1]})
         for episode, (begin, end) in enumerate(zip([0, *ends[:-1]], ends, strict=True)):
             self.check_episode(episode, {name: values[begin:end] for name, values in columns.items()})
+
+    def test_forces_with_tare_and_drift_are_those_of_run(self):
+        forced = ("--tare-force", "--follow-drift")
+        cases = [(self.slow, options) for options in ((), ("--tare",), forced, ("--follow-drift",))]
+        for recording, options in (*cases, (self.idle, ("--tare",))):
+            with self.subTest(recording=recording.stem, options=options):
+                forces = self.folder / "tared.csv"
+                ran = subprocess.run(
+                    [sys.argv[1], "run", "--model", self.model, "--in", recording, "--out", forces, *options],
+                    capture_output=True,
+                    text=True,
+                )
+                out = self.folder / f"{self.id()}{recording.stem}{''.join(options)}"
+                made = subprocess.run(
+                    [sys.argv[1], "dataset", recording, "--out", out, "--format", "zarr", "--model", self.model]
+                    + ["--fps", str(FPS), "--window", str(WINDOW), *options],
+                    capture_output=True,
+                    text=True,
+                )
+                self.assertEqual(made.returncode, ran.returncode, made.stderr)
+                is_refused = (recording, options) == (self.slow, ("--tare",))
+                self.assertEqual(made.returncode, 1 if is_refused else 0)
+                if is_refused:
+                    self.assertIn("take it off and tare again", made.stderr)
+                    self.assertFalse(out.exists())
+                    continue
+                data = zarr.open(str(out), mode="r")["data"]
+                fresh = data["tactile_pad_fresh"][:].ravel()
+                windows = data["tactile_pad"][:]
+                frames = numpy.concatenate([window[WINDOW - n :] for window, n in zip(windows, fresh, strict=True)])
+                expected = numpy.nan_to_num(table_of(forces)).reshape(-1, *TAXELS)
+                numpy.testing.assert_array_equal(frames, expected)
+
+    def test_each_layout_says_what_is_held_out(self):
+        held = ("--hold-out", "0.34")
+        masks = {}
+        with h5py.File(self.make("robomimic", *held) / "demo.hdf5") as root:
+            for name in ("train", "valid"):
+                masks[name] = [demo.decode("utf-8") for demo in numpy.array(root[f"mask/{name}"][:])]
+        self.assertEqual(masks, {"train": ["demo_0", "demo_1"], "valid": ["demo_2"]})
+        splits = {"train": "0:2", "val": "2:3"}
+        self.assertEqual(zarr.open(str(self.make("zarr", *held)), mode="r").attrs["splits"], splits)
+        for layout, place in (
+            ("hdf5", "tactile.json"),
+            ("lerobot", "meta/tactile.json"),
+            ("lerobot", "meta/info.json"),
+        ):
+            out = self.folder / f"{self.id()}-{layout}"
+            out = out if out.exists() else self.make(layout, *held)
+            self.assertEqual(json.loads((out / place).read_text())["splits"], splits)
+            self.assertIn("First and last picture", (out / "summary.html").read_text())
 
     def run_loading_example(self, out):
         example = Path(__file__).resolve().parents[2] / "examples/python/load_dataset.py"
@@ -175,6 +230,7 @@ class Datasets(CalibratedArray):
         self.assertEqual((info["codebase_version"], info["fps"]), ("v3.0", FPS))
         self.assertEqual((info["total_episodes"], info["total_frames"]), (EPISODES, len(loaded)))
         numpy.testing.assert_array_equal(columns["index"], numpy.arange(len(loaded)))
+        first = {name: float(values.flat[0]) for name, values in columns.items()}
         episodes = pyarrow.parquet.read_table(out / "meta/episodes/chunk-000/file-000.parquet").to_pylist()
         for row in episodes:
             rows = slice(row["dataset_from_index"], row["dataset_to_index"])
@@ -188,7 +244,7 @@ class Datasets(CalibratedArray):
             for name, value in row.items():
                 if name.startswith("stats/"):
                     stats[name.removeprefix("stats/").rsplit("/", 1)[0]][name.rsplit("/", 1)[1]] = value
-            self.check_statistics(stats, {name: values[rows] for name, values in columns.items()})
+            self.check_statistics(stats, {name: values[rows] for name, values in columns.items()}, first)
         # LeRobot's loader of this table infers the features, statistics included.
         table = datasets.Dataset.from_parquet(
             str(out / "meta/episodes/chunk-000/file-000.parquet"), cache_dir=str(self.folder / "cache")
@@ -196,22 +252,42 @@ class Datasets(CalibratedArray):
         self.assertEqual(list(table["length"]), [row["length"] for row in episodes])
         tasks = pandas.read_parquet(out / "meta/tasks.parquet")
         self.assertEqual((list(tasks.index), list(tasks["task_index"])), (["pick the cube"], [0]))
-        self.check_statistics(json.loads((out / "meta/stats.json").read_text()), columns)
+        stats = json.loads((out / "meta/stats.json").read_text())
+        self.assertIn("element_std", stats["observation.tactile.pad"])
+        self.check_statistics(stats, columns, first)
 
-    def check_statistics(self, stats, columns):
+    def check_statistics(self, stats, columns, first):
         self.assertEqual(set(stats), set(columns))
         for name, values in columns.items():
             values = values.astype(numpy.float64)
             values[~numpy.isfinite(values)] = numpy.nan
-            for key, expected in {
-                "min": numpy.nanmin(values, 0),
-                "max": numpy.nanmax(values, 0),
-                "mean": numpy.nanmean(values, 0),
-                "std": numpy.nanstd(values, 0),
-            }.items():
-                got = numpy.asarray(stats[name][key]).reshape(numpy.shape(expected))
-                numpy.testing.assert_allclose(got, expected, rtol=1e-6, atol=1e-7, err_msg=f"{name}, {key}")
+            # Contacts have five quantities; all other elements of a tactile column are of one kind.
+            kinds = 5 if name.endswith("_contacts") else None
+            pooled = values.reshape(-1, kinds) if kinds else values.reshape(-1)
+            whole = {
+                "min": numpy.nanmin(pooled, 0),
+                "max": numpy.nanmax(pooled, 0),
+                "mean": numpy.nanmean(pooled, 0),
+                "std": numpy.nanstd(pooled, 0),
+            }
+            for key, expected in whole.items():
+                got = numpy.asarray(stats[name][key])
+                self.assertEqual(got.shape, values.shape[1:] or (1,))
+                expected = numpy.broadcast_to(expected, got.shape)
+                numpy.testing.assert_allclose(got, expected, rtol=1e-5, atol=1e-7, err_msg=f"{name}, {key}")
+            begin = first[name] if name in ORIGINS else 0
+            for key, share in {"q01": 0.01, "q10": 0.1, "q50": 0.5, "q90": 0.9, "q99": 0.99}.items():
+                got = numpy.asarray(stats[name][key])
+                expected = numpy.nanquantile(pooled, share, 0, method="inverted_cdf")
+                expected = numpy.broadcast_to(expected, got.shape)
+                numpy.testing.assert_allclose(got - begin, expected - begin, rtol=2e-3, err_msg=f"{name}, {key}")
+            if "element_std" in stats[name]:
+                self.check_elements(stats[name], values)
             self.assertEqual(stats[name]["count"], [len(values)])
+
+    def check_elements(self, stats, values):
+        for key, of in {"min": numpy.nanmin, "max": numpy.nanmax, "mean": numpy.nanmean, "std": numpy.nanstd}.items():
+            numpy.testing.assert_allclose(stats[f"element_{key}"], of(values, 0), rtol=1e-5, atol=1e-7, err_msg=key)
 
     def bag_with_joints(self, recording, times_ns, angles):
         """The frames of a recording beside joints, as ROS 2 records them."""
@@ -261,6 +337,20 @@ class Datasets(CalibratedArray):
             self.assertNotIn("state", module.Dataset(bags, fps=FPS)[0])
         self.assertEqual(module.Dataset(bags[0], fps=FPS)[0]["state"][0].tolist(), [1.0, 2.0])
         self.assertNotIn("state", module.Dataset(bags[0], fps=FPS, state=())[0])
+
+    @unittest.skipUnless(importlib.util.find_spec("dermis"), "the package of Python is not built")
+    def test_python_tares_and_holds_out_like_the_command(self):
+        module = importlib.import_module("dermis")
+        options = {"model": self.model, "fps": FPS, "window": WINDOW, "follow_drift": True, "tare_force": True}
+        recording = self.slow
+        dataset = module.Dataset([recording] * 3, hold_out=0.34, **options)
+        self.assertEqual((len(dataset), dataset.held_out), (6, [4, 5]))
+        out = self.folder / self.id()
+        how = ("--fps", FPS, "--window", WINDOW, "--model", self.model, "--follow-drift", "--tare-force")
+        dermis("dataset", recording, "--out", out, "--format", "zarr", *how)
+        written = zarr.open(str(out), mode="r")["data/tactile_pad"][:]
+        numpy.testing.assert_array_equal(numpy.concatenate([dataset[k]["pad"] for k in (0, 1)]), written)
+        self.assertEqual(module.Dataset(self.recordings, hold_out=self.recordings[1]).held_out, [EPISODES - 1])
 
     def test_batches_in_any_order_have_one_shape(self):
         _, loaded = self.load(self.make("lerobot", "--flat"))

@@ -382,7 +382,8 @@ class Dataset:
     the last frames. columns: only these quantities. state, action: a topic of joints in the recordings, or a CSV with
     time_s for each. Without a state the only topic of joints is it; () is none. times_ns: the times of the steps of
     each recording, such as those of its images, in place of fps. Of a single recording they may be those of several
-    episodes, one after the other.
+    episodes, one after the other. tare, tare_force, follow_drift: zero as `dermis run` has it. hold_out: a share of the
+    episodes, or recordings, which then are the last episodes.
     """
 
     def __init__(
@@ -397,8 +398,15 @@ class Dataset:
         state: _Path | Sequence[_Path] | None = None,
         action: _Path | Sequence[_Path] | None = None,
         times_ns: Sequence[ArrayLike] | None = None,
+        tare: bool = False,
+        tare_force: bool = False,
+        follow_drift: bool = False,
+        hold_out: float | _Path | Sequence[_Path] | None = None,
     ) -> None: ...
     def __len__(self) -> int: ...
+    @property
+    def held_out(self) -> list[int]:
+        """Episodes that are not to be trained on."""
     def __getitem__(self, episode: int) -> dict[str, NDArray[Any]]:
         """Columns by name, "chest" and "chest_sigma" for example; the first axis are the steps."""
     def write(self, folder: _Path, *, format: str = "lerobot", task: str = "touch") -> None:

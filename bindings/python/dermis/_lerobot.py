@@ -18,6 +18,7 @@ from dermis import BadInput, Failed, _dermis  # type: ignore[attr-defined]  # it
 
 PREFIX = "observation.tactile."
 INFO, STATS, EPISODES, DATA = "meta/info.json", "meta/stats.json", "meta/episodes", "data"
+TACTILE = "meta/tactile.json"
 LINKED = ("videos", "images")  # folders of large files that nobody changes
 LONGEST_S = 1e9  # of a timestamp
 
@@ -282,6 +283,7 @@ def put_together(parquet, dataset, old, new, numbers, info, stats):
         info["features"].update(features)
         stats.update({name: of for name, of in read_json(tactile / STATS).items() if name in features})
         (made / INFO).parent.mkdir(exist_ok=True)
+        shutil.copyfile(tactile / TACTILE, made / TACTILE)
         (made / INFO).write_text(json.dumps(info, indent=4, ensure_ascii=False), encoding="utf-8")
         (made / STATS).write_text(json.dumps(stats, indent=4), encoding="utf-8")
         made.rename(new)

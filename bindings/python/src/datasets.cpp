@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <cstring>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -43,15 +44,20 @@ class EpisodesInMemory final : public out::datasets::EpisodeSink {
     return Done{};
   }
 
-  Status commit() override { return Done{}; }
+  Status commit(const out::datasets::EpisodeTally& tally) override {
+    held_out_ = tally.held_out;
+    return Done{};
+  }
 
   [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
   [[nodiscard]] const std::vector<Episode>& episodes() const { return episodes_; }
+  [[nodiscard]] std::size_t held_out() const { return held_out_; }
 
  private:
   std::vector<Column> columns_;
   std::vector<Episode> episodes_;
   bool is_new_ = true;
+  std::size_t held_out_ = 0;
 };
 
 /// By its type in C++: pybind11 of Debian reads the size of a dtype where numpy 2 no longer has it.
@@ -79,6 +85,12 @@ class Dataset {
   }
 
   [[nodiscard]] std::size_t size() { return episodes().episodes().size(); }
+
+  [[nodiscard]] std::vector<std::size_t> held_out() {
+    std::vector<std::size_t> last(episodes().held_out());
+    std::iota(last.begin(), last.end(), size() - last.size());
+    return last;
+  }
 
   py::dict episode(std::ptrdiff_t index) {
     const auto count = static_cast<std::ptrdiff_t>(size());
@@ -153,7 +165,8 @@ std::vector<std::string> paths_of(const py::object& object) {
 std::unique_ptr<Dataset> make_dataset(const py::object& recordings, const py::object& model, double fps,
                                       std::size_t window, const std::optional<std::vector<std::string>>& columns,
                                       bool flat, const py::object& state, const py::object& action,
-                                      const py::object& times_ns) {
+                                      const py::object& times_ns, bool tare, bool tare_force, bool follow_drift,
+                                      const py::object& hold_out) {
   std::vector<std::string> paths = paths_of(recordings);
   out::datasets::EpisodeOptions options{.fps = fps, .window = window, .flat = flat};
   if (!model.is_none()) options.model = path_of(model);
@@ -162,6 +175,11 @@ std::unique_ptr<Dataset> make_dataset(const py::object& recordings, const py::ob
   options.finds_state = state.is_none();
   options.actions = paths_of(action);
   options.times = times_of(times_ns);
+  options.tare = tare;
+  options.tare_force = tare_force;
+  options.follow_drift = follow_drift;
+  const bool is_share = py::isinstance<py::float_>(hold_out) || py::isinstance<py::int_>(hold_out);
+  options.hold_out = is_share ? std::vector{py::str(hold_out).cast<std::string>()} : paths_of(hold_out);
   return std::make_unique<Dataset>(std::move(paths), std::move(options));
 }
 
@@ -177,8 +195,11 @@ void bind_datasets(py::module_& module) {
   py::class_<Dataset>(module, "Dataset")
       .def(py::init(&make_dataset), py::arg("recordings"), py::kw_only(), py::arg("model") = py::none(),
            py::arg("fps") = 30.0, py::arg("window") = 1, py::arg("columns") = py::none(), py::arg("flat") = false,
-           py::arg("state") = py::none(), py::arg("action") = py::none(), py::arg("times_ns") = py::none())
+           py::arg("state") = py::none(), py::arg("action") = py::none(), py::arg("times_ns") = py::none(),
+           py::arg("tare") = false, py::arg("tare_force") = false, py::arg("follow_drift") = false,
+           py::arg("hold_out") = py::none())
       .def("__len__", &Dataset::size)
+      .def_property_readonly("held_out", &Dataset::held_out)
       .def("__getitem__", &Dataset::episode, py::arg("episode"))
       .def("write", &Dataset::write, py::arg("folder"), py::kw_only(), py::arg("format") = "lerobot",
            py::arg("task") = "touch");

@@ -20,10 +20,13 @@ namespace dermis::out::datasets {
 [[nodiscard]] std::vector<Column> columns_of(const RecordedArrays::Array& array, const RawFrame& first,
                                              const EpisodeOptions& options);
 
-/// One array in an episode: its frames become rows of its columns. Not thread-safe.
+/// Sums those of another recording up, whose arrays are the same.
+void add(const ArrayTally& more, ArrayTally& sum);
+
+/// One array in the episodes of a recording: its frames become rows of its columns. Not thread-safe.
 class ArraySteps {
  public:
-  [[nodiscard]] static Result<ArraySteps> create(const RecordedArrays::Array& array, std::size_t window,
+  [[nodiscard]] static Result<ArraySteps> create(const RecordedArrays::Array& array, const EpisodeOptions& options,
                                                  std::vector<Column> columns);
 
   /// Room for the next frame, which work() takes.
@@ -34,7 +37,14 @@ class ArraySteps {
   /// Says when the next step is, so that frames before its window are let go.
   void await(Nanos next) { window_.await(next); }
 
-  [[nodiscard]] ArrayTally tally() const;
+  /// The next frame begins another episode of the recording. Zero and what is known of faults go on.
+  void end_episode();
+  /// All episodes that have ended.
+  [[nodiscard]] const ArrayTally& tally() const noexcept { return tally_; }
+  /// Fails where a tare was refused.
+  [[nodiscard]] Status check_tare() const;
+  /// Once the recording is over: what the tare took, or "". Fails where it has not ended.
+  [[nodiscard]] Result<std::string> tared() const;
 
  private:
   /// Numbers of a frame that windows hold.
@@ -48,12 +58,14 @@ class ArraySteps {
     std::vector<float> supply_v{0.0F};  // one
   };
 
-  ArraySteps(const RecordedArrays::Array& array, std::size_t window, std::vector<Column> columns)
-      : array_(array), window_(window), length_(window), columns_(std::move(columns)) {}
+  ArraySteps(const RecordedArrays::Array& array, std::size_t window, std::vector<Column> columns);
   void process(const RawFrame& raw);
   void keep_forces(Values& values);
   void keep_contacts(Values& values);
   void keep_temperatures(const RawFrame& raw);
+  [[nodiscard]] const std::vector<float>& numbers(const Values& values) const;
+  void count(const Values& values);
+  void count_step(Nanos step);
   void append_row(const Column& column, Nanos step, std::vector<std::byte>& bytes) const;
   template <typename T>
   void append_window(std::vector<T> Values::*member, std::size_t elements, std::vector<std::byte>& bytes) const;
@@ -73,6 +85,8 @@ class ArraySteps {
   ContactReport report_;
   Values last_;  ///< Temperature and supply, where a frame lacks them.
   ArrayTally tally_;
+  Nanos first_of_episode_{};
+  std::uint64_t frames_of_episode_ = 0;
 };
 
 }  // namespace dermis::out::datasets

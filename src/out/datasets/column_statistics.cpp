@@ -16,7 +16,18 @@ ColumnStatistics::ColumnStatistics(const Column& column)
       squares_(first_),
       count_(first_),
       lowest_(first_.size(), std::numeric_limits<double>::infinity()),
-      highest_(first_.size(), -std::numeric_limits<double>::infinity()) {}
+      highest_(first_.size(), -std::numeric_limits<double>::infinity()),
+      quantiles_(column.kinds > 0 ? column.kinds : first_.size()) {
+  if (type_ != ColumnType::int64) origin_ = 0.0;
+}
+
+void ColumnStatistics::clear() {
+  is_first_ = true;
+  for (std::vector<double>* const sums : {&sum_, &squares_, &count_}) std::fill(sums->begin(), sums->end(), 0.0);
+  std::fill(lowest_.begin(), lowest_.end(), std::numeric_limits<double>::infinity());
+  std::fill(highest_.begin(), highest_.end(), -std::numeric_limits<double>::infinity());
+  std::fill(quantiles_.begin(), quantiles_.end(), Quantiles());
+}
 
 template <typename T>
 void ColumnStatistics::add_rows(std::span<const std::byte> values) {
@@ -31,6 +42,7 @@ void ColumnStatistics::add_rows(std::span<const std::byte> values) {
         first_[k] = std::isfinite(value) ? value : 0.0;
       }
       is_first_ = false;
+      if (!origin_) origin_ = first_.front();
     }
     for (std::size_t k = 0; k < elements; ++k) {
       const auto value = static_cast<double>(row[k]);
@@ -41,6 +53,10 @@ void ColumnStatistics::add_rows(std::span<const std::byte> values) {
       count_[k] += counts ? 1.0 : 0.0;
       lowest_[k] = counts && value < lowest_[k] ? value : lowest_[k];
       highest_[k] = counts && value > highest_[k] ? value : highest_[k];
+    }
+    for (std::size_t k = 0; k < elements; ++k) {
+      const auto value = static_cast<float>(static_cast<double>(row[k]) - *origin_);
+      if (std::isfinite(value)) quantiles_[k % kinds()].add(value);
     }
   }
 }
@@ -66,6 +82,7 @@ void ColumnStatistics::add(const ColumnStatistics& others) {
     lowest_[k] = std::min(lowest_[k], others.lowest_[k]);
     highest_[k] = std::max(highest_[k], others.highest_[k]);
   }
+  for (std::size_t k = 0; k < kinds(); ++k) quantiles_[k].add(others.quantiles_[k]);
 }
 
 double ColumnStatistics::lowest(std::size_t k) const {
@@ -84,6 +101,30 @@ double ColumnStatistics::deviation(std::size_t k) const {
   if (count_[k] <= 0.0) return 0.0;
   const double mean = sum_[k] / count_[k];
   return std::sqrt(std::max(0.0, squares_[k] / count_[k] - mean * mean));
+}
+
+ColumnStatistics::OfKind ColumnStatistics::of_kind(std::size_t kind) const {
+  OfKind of{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  double count = 0.0;
+  for (std::size_t k = kind; k < elements(); k += kinds()) {
+    if (count_[k] <= 0.0) continue;
+    of.lowest = std::min(of.lowest, lowest_[k]);
+    of.highest = std::max(of.highest, highest_[k]);
+    of.mean += count_[k] * mean(k);
+    count += count_[k];
+  }
+  if (count <= 0.0) return {.quantiles = std::vector<double>(kShares.size())};
+  of.mean /= count;
+  double squares = 0.0;
+  for (std::size_t k = kind; k < elements(); k += kinds()) {
+    const double shift = mean(k) - of.mean;
+    squares += count_[k] * (deviation(k) * deviation(k) + shift * shift);
+  }
+  of.deviation = std::sqrt(squares / count);
+  for (const double share : kShares) {
+    of.quantiles.push_back(std::clamp(*origin_ + quantiles_[kind].at(share), of.lowest, of.highest));
+  }
+  return of;
 }
 
 }  // namespace dermis::out::datasets

@@ -6,9 +6,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <functional>
 #include <optional>
 #include <span>
 #include <utility>
@@ -17,26 +14,21 @@
 #include "dermis/learn/calibration/parallel.hpp"
 #include "dermis/out/datasets/step_plan.hpp"
 #include "out/datasets/array_steps.hpp"
+#include "out/datasets/episode_options.hpp"
+#include "out/datasets/hold_out.hpp"
 #include "out/datasets/recorded_arrays.hpp"
 #include "out/datasets/robot_series.hpp"
+#include "out/datasets/tally_numbers.hpp"
 
 namespace dermis::out::datasets {
 namespace {
 
-constexpr std::array kQuantities = {"forces", "sigma",    "valid",       "raw",   "age",
-                                    "fresh",  "contacts", "temperature", "supply"};
 constexpr std::size_t kReadingsOfBatch = std::size_t{1} << 20U;
 constexpr std::size_t kFramesOfBatch = 4096;
 constexpr std::size_t kBytesOfBlock = std::size_t{8} << 20U;
 constexpr std::size_t kMostStepsOfBlock = 256;
 constexpr std::size_t kMostBytesOfStep = std::size_t{256} << 20U;
 constexpr const char* kTimeNs = "time_ns";
-
-std::vector<Nanos> joined(const std::vector<std::vector<Nanos>>& times) {
-  std::vector<Nanos> all;
-  for (const std::vector<Nanos>& some : times) all.insert(all.end(), some.begin(), some.end());
-  return all;
-}
 
 /// Makes episodes of one recording after the other.
 ///
@@ -48,7 +40,9 @@ class Maker {
       : options_(options), models_(std::move(models)), series_(std::move(series)), sink_(sink), is_split_(is_split) {}
 
   [[nodiscard]] Status add(const std::string& from, std::size_t number);
-  [[nodiscard]] EpisodeTally tally() const { return tally_; }
+  [[nodiscard]] const EpisodeTally& tally() const { return tally_; }
+  /// Once all are added. `held_out`: so many episodes at the end.
+  [[nodiscard]] Status commit(std::uint64_t held_out);
 
  private:
   struct Arrival {
@@ -56,17 +50,22 @@ class Maker {
     RawFrame frame;
   };
 
-  [[nodiscard]] Status begin_episode(const std::string& from, std::size_t number);
+  [[nodiscard]] Status begin_recording(const std::string& from);
+  [[nodiscard]] Status end_recording(const std::string& from, Nanos first);
+  void begin_episode(std::size_t number);
   [[nodiscard]] Status check_arrays(const std::string& from) const;
   [[nodiscard]] Status decide_columns();
   [[nodiscard]] Result<bool> read_batch();
-  [[nodiscard]] Status take(const std::string& from);
+  [[nodiscard]] Status take();
   [[nodiscard]] Status end_episode();
   [[nodiscard]] Status write_steps(bool is_over);
   [[nodiscard]] Status write_steps(std::span<const Nanos> times);
   [[nodiscard]] Status end_split_episode();
   [[nodiscard]] std::size_t most_steps() const;
   [[nodiscard]] bool is_gap(Nanos time) const;
+  [[nodiscard]] Status check_windows() const;
+  [[nodiscard]] Status check_tares() const;
+  void tell_stale_steps() const;
   [[nodiscard]] Status check_frames(const std::string& from, std::size_t number, Nanos first) const;
 
   const EpisodeOptions& options_;
@@ -84,6 +83,7 @@ class Maker {
   StepBlock block_;
   std::size_t steps_of_block_ = 1;
   std::uint64_t steps_of_episode_ = 0;
+  std::string from_;  ///< The recording.
   EpisodeTally tally_;
 };
 
@@ -125,23 +125,27 @@ Status Maker::decide_columns() {
   return Done{};
 }
 
-Status Maker::begin_episode(const std::string& from, std::size_t number) {
+Status Maker::begin_recording(const std::string& from) {
   steps_.clear();
-  steps_of_episode_ = 0;
+  from_ = from;
   for (const RecordedArrays::Array& array : recorded_->arrays()) {
     std::vector<Column> columns;
     std::copy_if(columns_.begin(), columns_.end(), std::back_inserter(columns),
                  [&](const Column& column) { return column.array == array.name; });
-    Result<ArraySteps> steps = ArraySteps::create(array, options_.window, std::move(columns));
+    Result<ArraySteps> steps = ArraySteps::create(array, options_, std::move(columns));
     if (!steps) return bad_input(from + ": " + steps.error().message);
     steps_.push_back(*std::move(steps));
   }
+  return Done{};
+}
+
+void Maker::begin_episode(std::size_t number) {
+  steps_of_episode_ = 0;
   if (options_.times.empty()) {
     plan_.emplace(arrays_.size(), options_.window, options_.fps);
   } else {
     plan_.emplace(arrays_.size(), is_split_ ? joined(options_.times) : options_.times[number]);
   }
-  return Done{};
 }
 
 /// False at the end of the recording.
@@ -180,12 +184,13 @@ Status Maker::check_frames(const std::string& from, std::size_t number, Nanos fi
 }
 
 /// The batch, of one episode or of several.
-Status Maker::take(const std::string& from) {
+Status Maker::take() {
   for (std::size_t k = 0; k < batch_count_; ++k) {
     Arrival& arrival = batch_[k];
     if (is_gap(arrival.frame.time)) {
       if (Status ended = end_episode(); !ended) return ended;
-      if (Status begun = begin_episode(from, 0); !begun) return begun;
+      ++tally_.gaps;
+      begin_episode(0);
     }
     plan_->see(arrival.array, arrival.frame.time);
     std::swap(steps_[arrival.array].next_frame(), arrival.frame);
@@ -200,7 +205,7 @@ Status Maker::write_steps(std::span<const Nanos> times) {
   const auto* const first = reinterpret_cast<const std::byte*>(times.data());
   block_.values[0].assign(first, first + times.size_bytes());
   std::size_t begin = 1;
-  for (const RobotSeries& series : series_) {
+  for (RobotSeries& series : series_) {
     std::vector<std::byte>& values = block_.values[begin++];
     for (const Nanos time : times) series.append(time, values);
   }
@@ -213,7 +218,11 @@ Status Maker::write_steps(std::span<const Nanos> times) {
   learn::calibration::parallel_for(steps_.size(), [&](std::size_t k) {
     steps_[k].work(times, std::span(block_.values).subspan(begins[k], begins[k + 1] - begins[k]));
   });
+  if (Status tared = check_tares(); !tared) return tared;
   if (times.empty()) return Done{};
+  if (steps_of_episode_ == 0) tally_.sources.push_back({from_, 0, times.front(), {}});
+  tally_.sources.back().steps += times.size();
+  tally_.sources.back().last = times.back();
   steps_of_episode_ += times.size();
   tally_.steps += times.size();
   return sink_.write(block_);
@@ -252,18 +261,67 @@ Status Maker::write_steps(bool is_over) {
 
 Status Maker::end_episode() {
   if (Status written = write_steps(true); !written) return written;
-  tally_.arrays.resize(arrays_.size());
-  for (std::size_t k = 0; k < steps_.size(); ++k) {
-    const ArrayTally of_episode = steps_[k].tally();
-    ArrayTally& sum = tally_.arrays[k];
-    sum.name = of_episode.name;
-    sum.frames += of_episode.frames;
-    sum.missed += of_episode.missed;
-    sum.most_fresh = std::max(sum.most_fresh, of_episode.most_fresh);
-  }
+  for (ArraySteps& steps : steps_) steps.end_episode();
   if (steps_of_episode_ == 0) return Done{};
   ++tally_.episodes;
   return sink_.end_episode();
+}
+
+Status Maker::check_tares() const {
+  for (const ArraySteps& steps : steps_) {
+    if (Status tared = steps.check_tare(); !tared) return failed(from_ + ": " + tared.error().message);
+  }
+  return Done{};
+}
+
+Status Maker::end_recording(const std::string& from, Nanos first) {
+  const auto tell = [&](const std::string& line) {
+    if (options_.notice && !line.empty()) options_.notice(line);
+  };
+  for (const RobotSeries& series : series_) {
+    const Result<std::string> told = series.check_clock(from, first, *plan_->newest());
+    if (!told) return told.error();
+    tell(*told);
+  }
+  tally_.arrays.resize(arrays_.size());
+  for (std::size_t k = 0; k < steps_.size(); ++k) {
+    const Result<std::string> tared = steps_[k].tared();
+    if (!tared) return failed(from + ": " + tared.error().message);
+    tell(tared->empty() ? "" : from + ": " + *tared);
+    datasets::add(steps_[k].tally(), tally_.arrays[k]);
+  }
+  return Done{};
+}
+
+/// A window that is never full would be a mistake.
+Status Maker::check_windows() const {
+  std::uint64_t longest = 0;
+  for (const ArrayTally& array : tally_.arrays) longest = std::max(longest, array.most_of_episode);
+  if (longest >= options_.window) return Done{};
+  return bad_field(
+      "window", fmt::format("no episode has {} frames; {} is the longest that one can fill", options_.window, longest));
+}
+
+/// Where the clock of the steps is faster than every array.
+void Maker::tell_stale_steps() const {
+  constexpr double kFaster = 1.05;
+  if (!options_.notice || !options_.times.empty()) return;
+  const ArrayTally* fastest = nullptr;
+  for (const ArrayTally& array : tally_.arrays) {
+    if (fastest == nullptr || rate_of(array) > rate_of(*fastest)) fastest = &array;
+  }
+  if (fastest == nullptr || options_.fps <= kFaster * rate_of(*fastest) || fastest->stale_steps == 0) return;
+  options_.notice(
+      fmt::format("{} of {} steps have no new frame: {} steps a second, and no array sends more than {:.3g}",
+                  fastest->stale_steps, tally_.steps, options_.fps, rate_of(*fastest)));
+}
+
+Status Maker::commit(std::uint64_t held_out) {
+  if (Status filled = check_windows(); !filled) return filled;
+  tell_stale_steps();
+  tally_.held_out = held_out;
+  tally_.how = described(options_);
+  return sink_.commit(tally_);
 }
 
 Status Maker::add(const std::string& from, std::size_t number) {
@@ -284,62 +342,21 @@ Status Maker::add(const std::string& from, std::size_t number) {
     if (Status decided = decide_columns(); !decided) return decided;
     if (Status begun = sink_.begin(columns_); !begun) return begun;
   }
-  if (Status begun = begin_episode(from, number); !begun) return begun;
+  if (Status begun = begin_recording(from); !begun) return begun;
+  begin_episode(number);
   const Nanos first = batch_.front().frame.time;
   while (true) {
-    if (Status taken = take(from); !taken) return taken;
+    if (Status taken = take(); !taken) return taken;
     if (!*more || plan_->is_done()) break;
     more = read_batch();
     if (!more) return more.error();
   }
   if (Status right = check_frames(from, number, first); !right) return right;
-  return end_episode();
-}
-
-/// Each of the times is an episode of the only recording.
-bool are_split(const std::vector<std::vector<Nanos>>& times, std::size_t recordings) {
-  return recordings == 1 && times.size() > 1;
-}
-
-bool is_rising(const std::vector<Nanos>& times) {
-  return std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()) == times.end();
-}
-
-/// Times of the steps of each recording, or of each episode of the only one.
-Status check_times(const std::vector<std::vector<Nanos>>& times, std::size_t recordings) {
-  if (times.empty()) return Done{};
-  const bool is_split = are_split(times, recordings);
-  if (!is_split && times.size() != recordings) {
-    return bad_field("times", fmt::format("are of {} recordings in place of {}", times.size(), recordings));
-  }
-  if (std::ranges::any_of(times, [](const auto& some) { return some.empty(); })) {
-    return bad_field("times", "leave an episode without steps");
-  }
-  const bool rise = is_split ? is_rising(joined(times)) : std::ranges::all_of(times, is_rising);
-  return rise ? Status(Done{}) : bad_field("times", "must rise, also from one episode of a recording to the next");
-}
-
-/// "age, fresh, ... or valid"
-Status check_quantities(const std::vector<std::string>& quantities) {
-  for (const std::string& name : quantities) {
-    if (std::find(kQuantities.begin(), kQuantities.end(), name) == kQuantities.end()) {
-      return bad_field("columns",
-                       fmt::format("{} is none of {}", bytes::files::in_quotes(name), fmt::join(kQuantities, ", ")));
-    }
-  }
-  return Done{};
+  if (Status ended = end_episode(); !ended) return ended;
+  return end_recording(from, first);
 }
 
 }  // namespace
-
-Status EpisodeOptions::validate() const {
-  constexpr double kSlowest = 0.001;
-  constexpr double kFastest = 10'000.0;
-  constexpr std::size_t kLongest = 1000;
-  if (!(fps >= kSlowest && fps <= kFastest)) return bad_field("fps", "must be 0.001 to 10000 steps a second");
-  if (window < 1 || window > kLongest) return bad_field("window", "must be 1 to 1000 frames");
-  return check_quantities(quantities);
-}
 
 Result<EpisodeTally> make_episodes(const std::vector<std::string>& recordings, const EpisodeOptions& options,
                                    EpisodeSink& sink) {
@@ -348,31 +365,21 @@ Result<EpisodeTally> make_episodes(const std::vector<std::string>& recordings, c
   if (Status right = check_times(options.times, recordings.size()); !right) return right.error();
   Result<std::vector<RobotSeries>> series = RobotSeries::choose(recordings, options);
   if (!series) return series.error();
+  Result<HoldOut> hold_out = HoldOut::create(options.hold_out, recordings);
+  if (!hold_out) return hold_out.error();
   Result<ArrayModels> models = ArrayModels::read(options.model);
   if (!models) return models.error();
   Maker maker(options, *std::move(models), *std::move(series), sink, are_split(options.times, recordings.size()));
+  std::uint64_t trained = 0;
   for (std::size_t k = 0; k < recordings.size(); ++k) {
-    if (Status added = maker.add(recordings[k], k); !added) return added.error();
+    const std::size_t number = hold_out->order()[k];
+    if (Status added = maker.add(recordings[number], number); !added) return added.error();
+    if (k + 1 == hold_out->trained()) trained = maker.tally().episodes;
   }
-  if (Status committed = sink.commit(); !committed) return committed.error();
+  const Result<std::uint64_t> held_out = hold_out->episodes(maker.tally().episodes, trained);
+  if (!held_out) return held_out.error();
+  if (Status committed = maker.commit(*held_out); !committed) return committed.error();
   return maker.tally();
-}
-
-Result<Nanos> first_step(const std::string& recording, double fps) {
-  if (Status valid = EpisodeOptions{.fps = fps}.validate(); !valid) return valid.error();
-  Result<RecordedArrays> opened = RecordedArrays::open(recording, {}, {});
-  if (!opened) return opened.error();
-  StepPlan plan(opened->arrays().size(), 1, fps);
-  std::size_t array = 0;
-  RawFrame frame;
-  while (!plan.next()) {
-    const Result<bool> more = opened->next(array, frame);
-    if (!more) return more.error();
-    if (!*more) break;
-    plan.see(array, frame.time);
-  }
-  if (!plan.newest()) return bad_input(recording + ": has no frame");
-  return plan.next().value_or(*plan.newest());
 }
 
 }  // namespace dermis::out::datasets

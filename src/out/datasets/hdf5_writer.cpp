@@ -54,11 +54,11 @@ class Hdf5Writer final : public EpisodeSink {
     return ended;
   }
 
-  Status commit() override {
+  Status commit(const EpisodeTally& tally) override {
     if (is_robomimic_ && file_ != nullptr) {
-      if (Status ended = end_demos(); !ended) return ended;
+      if (Status ended = end_demos(tally); !ended) return ended;
     }
-    return folder_->commit();
+    return folder_->commit(tally, "");
   }
 
  private:
@@ -97,7 +97,20 @@ class Hdf5Writer final : public EpisodeSink {
 
   Status end_demo() { return file_->set_number(group(), "num_samples", static_cast<std::int64_t>(steps_)); }
 
-  Status end_demos() {
+  /// Robomimic takes the names of the demonstrations to train on, or to validate with, from a mask.
+  Status write_mask(const char* name, std::uint64_t first, std::uint64_t end) {
+    std::vector<std::string> demos;
+    for (std::uint64_t k = first; k < end; ++k) demos.push_back("demo_" + std::to_string(k));
+    return file_->write_names(name, demos);
+  }
+
+  Status end_demos(const EpisodeTally& tally) {
+    if (tally.held_out > 0) {
+      const std::uint64_t trained = tally.episodes - tally.held_out;
+      Status masked = write_mask("/mask/train", 0, trained);
+      if (masked) masked = write_mask("/mask/valid", trained, tally.episodes);
+      if (!masked) return masked;
+    }
     Status told = file_->set_number("/data", "total", static_cast<std::int64_t>(all_steps_));
     const nlohmann::json environment = {
         {"env_name", "dermis"}, {"env_type", 2}, {"env_kwargs", nlohmann::json::object()}};

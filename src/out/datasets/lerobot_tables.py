@@ -5,6 +5,7 @@ JSON: the columns, blocks of steps with their bytes behind them, ends of episode
 socket, on which "ready" and "done" go back, or why there is none."""
 
 import json
+import math
 import os
 import sys
 from pathlib import Path
@@ -112,7 +113,8 @@ def episode_row(episode, data, plan):
     }
     for column, statistics in zip(plan["columns"], episode["statistics"]):
         for name, values in statistics.items():
-            row[f"stats/{column['name']}/{name}"] = nested(values, column["shape"] or [1])
+            shape = column["shape"] or [1]  # the values are of each kind of the elements
+            row[f"stats/{column['name']}/{name}"] = nested(values * (math.prod(shape) // len(values)), shape)
         row[f"stats/{column['name']}/count"] = [episode["length"]]
     return row
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include <fmt/core.h>
-
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -11,6 +9,7 @@
 #include <vector>
 
 #include "dermis/learn/calibration/parallel.hpp"
+#include "dermis/out/datasets/summary.hpp"
 #include "out/datasets/column_statistics.hpp"
 #include "out/datasets/dataset_writers.hpp"
 #include "out/datasets/lerobot_tables.hpp"
@@ -23,6 +22,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t kBytesOfFile = std::uint64_t{100} << 20U;  // a new file then begins with the next episode
 constexpr std::size_t kFilesOfChunk = 1000;
+constexpr std::array kQuantileNames = {"q01", "q10", "q50", "q90", "q99"};
 
 const char* dtype(ColumnType type) {
   switch (type) {
@@ -111,26 +111,29 @@ class LeRobotWriter final : public EpisodeSink {
     steps_ += std::exchange(steps_of_episode_, 0);
     for (std::size_t k = 0; k < columns_.size(); ++k) {
       statistics_[k].add(of_episode_[k]);
-      of_episode_[k] = ColumnStatistics(columns_[k]);
+      of_episode_[k].clear();
     }
     return tables_->send_line(Json({{"episode", episode}}).dump());
   }
 
-  Status commit() override {
+  Status commit(const EpisodeTally& tally) override {
     Status done = tables_->finish();
     if (done) done = folder_->write("meta/stats.json", stats().dump(1));
-    if (done) done = folder_->write("meta/info.json", info().dump(4));
-    return done ? folder_->commit() : done;
+    if (done) done = folder_->write("meta/info.json", info(tally).dump(4));
+    return done ? folder_->commit(tally, "meta/") : done;
   }
 
  private:
+  /// Lists with a number of each kind.
   [[nodiscard]] static Json statistics_of(const ColumnStatistics& of) {
     Json all = Json::object();
-    for (std::size_t k = 0; k < of.elements(); ++k) {
-      all["min"].push_back(of.lowest(k));
-      all["max"].push_back(of.highest(k));
-      all["mean"].push_back(of.mean(k));
-      all["std"].push_back(of.deviation(k));
+    for (std::size_t k = 0; k < of.kinds(); ++k) {
+      const ColumnStatistics::OfKind kind = of.of_kind(k);
+      all["min"].push_back(kind.lowest);
+      all["max"].push_back(kind.highest);
+      all["mean"].push_back(kind.mean);
+      all["std"].push_back(kind.deviation);
+      for (std::size_t q = 0; q < kQuantileNames.size(); ++q) all[kQuantileNames[q]].push_back(kind.quantiles[q]);
     }
     return all;
   }
@@ -148,6 +151,8 @@ class LeRobotWriter final : public EpisodeSink {
     return values;
   }
 
+  /// Policies that normalise by the deviation of a taxel that nobody touches would see noise of 1. So the names that
+  /// LeRobot reads hold the numbers of all elements of a kind, and names of their own those of each element.
   [[nodiscard]] Json stats() const {
     Json all = Json::object();
     for (std::size_t k = 0; k < columns_.size(); ++k) {
@@ -156,21 +161,29 @@ class LeRobotWriter final : public EpisodeSink {
         std::size_t next = 0;
         return nested(columns_[k].shape, 0, next, number);
       };
-      all[feature_of(columns_[k])] = {{"min", list([&](std::size_t i) { return of.lowest(i); })},
-                                      {"max", list([&](std::size_t i) { return of.highest(i); })},
-                                      {"mean", list([&](std::size_t i) { return of.mean(i); })},
-                                      {"std", list([&](std::size_t i) { return of.deviation(i); })},
-                                      {"count", Json::array({steps_})}};
+      Json& column = all[feature_of(columns_[k])];
+      const Json kinds = statistics_of(of);
+      for (const auto& [name, values] : kinds.items()) {
+        column[name] = list([&](std::size_t i) { return values[i % of.kinds()]; });
+      }
+      column["count"] = Json::array({steps_});
+      if (of.kinds() == of.elements()) continue;
+      column["element_min"] = list([&](std::size_t i) { return of.lowest(i); });
+      column["element_max"] = list([&](std::size_t i) { return of.highest(i); });
+      column["element_mean"] = list([&](std::size_t i) { return of.mean(i); });
+      column["element_std"] = list([&](std::size_t i) { return of.deviation(i); });
     }
     return all;
   }
 
-  [[nodiscard]] Json info() const {
+  [[nodiscard]] Json info(const EpisodeTally& tally) const {
     Json features = Json::object();
     for (const Column& column : columns_) {
       const Json names = column.axes.empty() ? Json(nullptr) : Json(column.axes);
       features[feature_of(column)] = {{"dtype", dtype(column.type)}, {"shape", column.shape}, {"names", names}};
     }
+    Json splits = {{"train", split_text(tally, false)}};
+    if (tally.held_out > 0) splits["val"] = split_text(tally, true);
     const bool is_whole = std::floor(options_.fps) == options_.fps;
     return {{"codebase_version", "v3.0"},
             {"robot_type", "dermis"},
@@ -181,7 +194,7 @@ class LeRobotWriter final : public EpisodeSink {
             {"data_files_size_in_mb", kBytesOfFile >> 20U},
             {"video_files_size_in_mb", 200},
             {"fps", is_whole ? Json(static_cast<std::int64_t>(options_.fps)) : Json(options_.fps)},
-            {"splits", {{"train", fmt::format("0:{}", episode_)}}},
+            {"splits", splits},
             {"data_path", "data/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet"},
             {"video_path", nullptr},
             {"features", features}};

@@ -12,6 +12,7 @@
 
 #include "dermis/bytes/files/output_place.hpp"
 #include "dermis/bytes/files/text.hpp"
+#include "dermis/out/datasets/summary.hpp"
 
 namespace dermis::out::datasets {
 namespace {
@@ -73,6 +74,12 @@ Status OutputFolder::commit() {
   unfinished_.clear();
   bytes::files::synchronise_folder_of(target_);
   return Done{};
+}
+
+Status OutputFolder::commit(const EpisodeTally& tally, const std::string& notes) {
+  Status written = write(notes + "tactile.json", summary_json(tally));
+  if (written) written = write("summary.html", summary_page(tally, fs::path(target_).filename().string()));
+  return written ? commit() : written;
 }
 
 }  // namespace dermis::out::datasets

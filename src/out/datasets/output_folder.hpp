@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "dermis/out/datasets/episode_sink.hpp"
 #include "dermis/touch/frames/result.hpp"
 
 namespace dermis::out::datasets {
@@ -24,6 +25,8 @@ class OutputFolder {
   [[nodiscard]] std::string place(const std::string& name) const;
   [[nodiscard]] Status write(const std::string& name, std::string_view bytes) const;
   [[nodiscard]] Status commit();
+  /// The same with summary.html, and tactile.json in the folder `notes` ("meta/", or "").
+  [[nodiscard]] Status commit(const EpisodeTally& tally, const std::string& notes);
 
  private:
   OutputFolder(std::string target, std::string unfinished)

@@ -17,6 +17,14 @@
 namespace dermis::out::datasets {
 namespace {
 
+constexpr Nanos kFreshFor = std::chrono::milliseconds(100);  // a number behind which no other comes
+
+/// "0.000 to 12.500 s"
+std::string range_text(const std::pair<Nanos, Nanos>& range) {
+  const auto seconds = [](Nanos time) { return std::chrono::duration<double>(time).count(); };
+  return fmt::format("{:.3f} to {:.3f} s", seconds(range.first), seconds(range.second));
+}
+
 /// A file of CSV may have an absolute path, too.
 bool is_topic(const std::string& from) {
   std::error_code none;
@@ -118,7 +126,31 @@ Status RobotSeries::read(const std::string& recording, std::size_t number) {
                                  recording, fmt::join(names_, ", ")));
   }
   now_ = *std::move(read);
+  now_from_ = from;
+  range_ = now_->range();
+  // As long as a number comes as often as others did, it is the newest one.
+  lasts_until_ = range_.second + std::max(now_->longest_gap(), kFreshFor);
+  step_count_ = 0;
+  steps_outside_ = 0;
   return Done{};
+}
+
+void RobotSeries::append(Nanos step, std::vector<std::byte>& row) {
+  if (step_count_++ == 0) step_range_.first = step;
+  step_range_.second = step;
+  if (step < range_.first || step > lasts_until_) ++steps_outside_;
+  now_->append(step, row);
+}
+
+Result<std::string> RobotSeries::check_clock(const std::string& recording, Nanos first, Nanos last) const {
+  const std::pair<Nanos, Nanos> frames = {std::min(first, step_range_.first), std::max(last, step_range_.second)};
+  if (range_.second < frames.first || range_.first > frames.second) {
+    return bad_input(fmt::format("{}: its times are {}, the frames of {} {}; give one on the clock of the frames",
+                                 now_from_, range_text(range_), recording, range_text(frames)));
+  }
+  if (steps_outside_ == 0) return std::string();
+  return fmt::format("{}: {} of {} steps of {} have no number of their own: it has {}, the steps are {}", now_from_,
+                     steps_outside_, step_count_, recording, range_text(range_), range_text(step_range_));
 }
 
 }  // namespace dermis::out::datasets

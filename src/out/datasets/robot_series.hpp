@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -28,13 +29,24 @@ class RobotSeries {
   [[nodiscard]] Status read(const std::string& recording, std::size_t number);
   /// A column of a step, once they are read.
   [[nodiscard]] Column column() const { return {"", quantity_, ColumnType::float32, {names_.size()}, names_}; }
-  void append(Nanos time, std::vector<std::byte>& row) const { now_->append(time, row); }
+  /// The row of a step, whose times rise.
+  void append(Nanos step, std::vector<std::byte>& row);
+  /// Once the steps of the recording are appended: one line on those that have no number of their own, or "". Fails
+  /// where the numbers are of another time than the recording, whose frames are from `first` to `last`.
+  [[nodiscard]] Result<std::string> check_clock(const std::string& recording, Nanos first, Nanos last) const;
 
  private:
   std::string quantity_;
   std::vector<std::string> from_;
   std::vector<std::string> names_;
   std::optional<SampledSeries> now_;
+  std::string now_from_;
+  std::pair<Nanos, Nanos> range_;  ///< The first and the last time of a number.
+  // Steps of the recording.
+  Nanos lasts_until_{};
+  std::uint64_t step_count_ = 0;
+  std::uint64_t steps_outside_ = 0;  ///< Before the first number, or behind the last.
+  std::pair<Nanos, Nanos> step_range_;
 };
 
 }  // namespace dermis::out::datasets

@@ -88,6 +88,23 @@ bool SampledSeries::reorder(const std::vector<std::string>& names) {
   return true;
 }
 
+std::pair<Nanos, Nanos> SampledSeries::range() const {
+  std::pair<Nanos, Nanos> range = {numbers_.front().times.front(), numbers_.front().times.back()};
+  for (const Numbers& numbers : numbers_) {
+    range.first = std::min(range.first, numbers.times.front());
+    range.second = std::max(range.second, numbers.times.back());
+  }
+  return range;
+}
+
+Nanos SampledSeries::longest_gap() const {
+  const auto has_fewer = [](const Numbers& a, const Numbers& b) { return a.times.size() < b.times.size(); };
+  const std::vector<Nanos>& times = std::max_element(numbers_.begin(), numbers_.end(), has_fewer)->times;
+  Nanos longest{};
+  for (std::size_t k = 1; k < times.size(); ++k) longest = std::max(longest, times[k] - times[k - 1]);
+  return longest;
+}
+
 void SampledSeries::append(Nanos time, std::vector<std::byte>& row) const {
   for (const Numbers& numbers : numbers_) {
     const auto after = std::upper_bound(numbers.times.begin(), numbers.times.end(), time);

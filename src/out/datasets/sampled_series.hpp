@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dermis/touch/frames/frames.hpp"
@@ -22,6 +23,10 @@ class SampledSeries {
   [[nodiscard]] std::vector<std::string> names() const;
   /// Puts the numbers into the order of these names. False where there are others.
   [[nodiscard]] bool reorder(const std::vector<std::string>& names);
+  /// From the first time of any number to the last one.
+  [[nodiscard]] std::pair<Nanos, Nanos> range() const;
+  /// The longest time between two samples of the number that has most of them.
+  [[nodiscard]] Nanos longest_gap() const;
   /// Appends, of each name, the newest number of that time or earlier, or else its first one.
   void append(Nanos time, std::vector<std::byte>& row) const;
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dermis/learn/calibration/parallel.hpp"
+#include "dermis/out/datasets/summary.hpp"
 #include "out/datasets/dataset_writers.hpp"
 #include "out/datasets/zstd.hpp"
 
@@ -118,7 +119,7 @@ class ZarrWriter final : public EpisodeSink {
     return Done{};
   }
 
-  Status commit() override {
+  Status commit(const EpisodeTally& tally) override {
     Status finished = for_each([&](std::size_t k) { return columns_[k].finish(); });
     if (!finished) return finished;
     const std::string ends = "meta/episode_ends";
@@ -127,7 +128,10 @@ class ZarrWriter final : public EpisodeSink {
     if (!described) return described;
     Status written = folder_->write(ends + "/0", zstd_compressed(std::as_bytes(std::span(episode_ends_))));
     if (!written) return written;
-    return folder_->commit();
+    Json splits = {{"train", split_text(tally, false)}};
+    if (tally.held_out > 0) splits["val"] = split_text(tally, true);
+    if (Status told = folder_->write(".zattrs", Json{{"splits", splits}}.dump(2)); !told) return told;
+    return folder_->commit(tally, "");
   }
 
  private:

@@ -23,6 +23,8 @@ TEST(Hdf5Tables, hold_the_rows_that_were_appended) {
   ASSERT_TRUE((*file)->set_text("/deep", "why", "a test"));
   ASSERT_TRUE((*file)->set_number("/deep/group/table", "rows", 2));
   ASSERT_TRUE((*file)->set_flag("/", "sim", false));
+  ASSERT_TRUE((*file)->write_names("/mask/train", {"demo_9", "demo_10"}));
+  EXPECT_FALSE((*file)->write_names("/mask/train", {"demo_9"})) << "it is there";
   ASSERT_TRUE((*file)->commit());
 
   const auto frames = open_frames(folder.file("t.h5") + "#/deep/group/table", {.rate_hz = 1.0});

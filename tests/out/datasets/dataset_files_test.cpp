@@ -22,7 +22,7 @@ Status write_dataset(EpisodeSink& sink) {
   Status done = sink.begin(columns);
   if (done) done = sink.write(block);
   if (done) done = sink.end_episode();
-  return done ? sink.commit() : done;
+  return done ? sink.commit({.episodes = 1, .steps = 2}) : done;
 }
 
 class DatasetFiles : public testing::TestWithParam<std::string> {

@@ -39,8 +39,9 @@ class Kept final : public EpisodeSink {
     ends_.push_back(steps_);
     return Done{};
   }
-  Status commit() override {
+  Status commit(const EpisodeTally& tally) override {
     is_committed_ = true;
+    tally_ = tally;
     return Done{};
   }
 
@@ -66,6 +67,7 @@ class Kept final : public EpisodeSink {
     return names;
   }
   [[nodiscard]] const std::vector<std::size_t>& ends() const { return ends_; }
+  [[nodiscard]] const EpisodeTally& tally() const { return tally_; }
   [[nodiscard]] bool is_committed() const { return is_committed_; }
 
  private:
@@ -74,6 +76,7 @@ class Kept final : public EpisodeSink {
   std::vector<std::size_t> ends_;
   std::size_t steps_ = 0;
   bool is_committed_ = false;
+  EpisodeTally tally_;
 };
 
 /// Two arrays of 1x2; the first has a frame at each of these times, with its number as counts, the second every tenth.
@@ -379,6 +382,110 @@ TEST_F(Episodes, need_frames_at_their_times) {
   EXPECT_EQ(error_of({path_}, options), path_ + ": ends before the first step of episode 1; mend its times");
   options.times = {{milliseconds(-2), milliseconds(-1)}};
   EXPECT_EQ(error_of({path_}, options), path_ + ": begins after the last step of episode 0; mend its times");
+}
+
+TEST_F(Episodes, refuse_a_state_of_another_clock) {
+  std::ofstream(folder_.file("joints.csv")) << "time_s,elbow\n500,1\n510.5,2\n";
+  EXPECT_EQ(error_of({path_}, {.states = {folder_.file("joints.csv")}}),
+            folder_.file("joints.csv") + ": its times are 500.000 to 510.500 s, the frames of " + path_ +
+                " 0.000 to 1.005 s; give one on the clock of the frames");
+}
+
+/// The notices of a dataset that is made.
+std::vector<std::string> notices_of(const std::vector<std::string>& recordings, EpisodeOptions options) {
+  std::vector<std::string> notices;
+  options.notice = [&](const std::string& line) { notices.push_back(line); };
+  Kept kept;
+  const Result<EpisodeTally> made = make_episodes(recordings, options, kept);
+  EXPECT_TRUE(made) << made.error().message;
+  return notices;
+}
+
+TEST_F(Episodes, say_how_many_steps_the_state_does_not_reach) {
+  const std::string joints = folder_.file("joints.csv");
+  std::ofstream(joints) << "time_s,elbow\n0.32,1\n0.42,2\n0.5,2\n";
+  EXPECT_EQ(notices_of({path_}, {.fps = 20.0, .states = {joints}}),
+            (std::vector<std::string>{joints + ": 16 of 21 steps of " + path_ +
+                                      " have no number of their own: it has 0.320 to 0.500 s, the steps are 0.005 to "
+                                      "1.005 s"}));
+  std::ofstream(joints) << "time_s,elbow\n0,1\n0.95,2\n";
+  EXPECT_EQ(notices_of({path_}, {.fps = 20.0, .states = {joints}}), std::vector<std::string>());
+}
+
+TEST_F(Episodes, refuse_a_state_whose_times_go_back) {
+  const std::string joints = folder_.file("joints.csv");
+  std::ofstream(joints) << "time_s,elbow\n0.5,1\n0.4,2\n";
+  EXPECT_EQ(error_of({path_}, {.states = {joints}}), joints + ":3: time_s goes back");
+}
+
+TEST_F(Episodes, refuse_a_window_that_nothing_fills) {
+  EXPECT_EQ(error_of({path_}, {.window = 101}),
+            "window: no episode has 101 frames; 100 is the longest that one can fill");
+  Kept kept;
+  EXPECT_TRUE(make_episodes({path_}, {.window = 100}, kept));
+}
+
+TEST_F(Episodes, say_that_steps_come_faster_than_frames) {
+  EXPECT_EQ(notices_of({path_}, {.fps = 200.0}),
+            (std::vector<std::string>{
+                "99 of 199 steps have no new frame: 200 steps a second, and no array sends more than 100"}));
+  EXPECT_EQ(notices_of({path_}, {.fps = 100.0}), std::vector<std::string>());
+}
+
+TEST_F(Episodes, hold_the_last_ones_out) {
+  const std::vector<std::string> recordings(5, path_);
+  Kept kept;
+  ASSERT_TRUE(make_episodes(recordings, {.hold_out = {"0.4"}}, kept));
+  EXPECT_EQ(kept.tally().held_out, 2U);
+  EXPECT_EQ(error_of(recordings, {.hold_out = {"0.01"}}), "hold-out: 0.01 of 5 episodes is none; give 0.2 to 0.8");
+  EXPECT_EQ(error_of(recordings, {.hold_out = {"0.99"}}),
+            "hold-out: 0.99 of 5 episodes is all of them; give 0.2 to 0.8");
+  EXPECT_EQ(error_of({path_}, {.hold_out = {"0.5"}}), "hold-out: there is 1 episode; give more recordings");
+  EXPECT_EQ(error_of(recordings, {.hold_out = {"1"}}), "hold-out: must be more than 0 and less than 1, such as 0.2");
+}
+
+TEST_F(Episodes, hold_named_recordings_out) {
+  const std::string other = folder_.file("other.mcap");
+  write_recording(other, even_times(50));
+  Kept kept;
+  ASSERT_TRUE(make_episodes({other, path_}, {.fps = 20.0, .hold_out = {"other.mcap"}}, kept));
+  EXPECT_EQ(kept.ends(), (std::vector<std::size_t>{21, 32}));
+  EXPECT_EQ(kept.tally().held_out, 1U);
+  EXPECT_EQ(kept.tally().sources.back().recording, other);
+  EXPECT_EQ(error_of({path_}, {.hold_out = {path_}}), "hold-out: names all recordings, so none is left to train on");
+  EXPECT_EQ(error_of({path_, other}, {.hold_out = {"rec1.mcap"}}),
+            "hold-out: 'rec1.mcap' is none of the recordings, and no share such as 0.2");
+}
+
+TEST_F(Episodes, tell_ages_and_taxels_that_have_no_reading) {
+  const std::string path = folder_.file("faulty.mcap");
+  const auto writer =
+      bytes::recordings::SuitRecordingWriter::create(path, {{.name = "chest", .shape = {1, 3}}}, {.live = false});
+  ASSERT_TRUE(writer);
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  for (int k = 0; k < 100; ++k) {
+    RawFrame frame;
+    frame.time = milliseconds(10 * k);
+    frame.counts = {static_cast<float>(k), none, k == 50 ? none : 7.0F};
+    if (k == 60) frame.counts = {none, none, none};
+    ASSERT_TRUE((*writer)->write(0, frame));
+  }
+  ASSERT_TRUE((*writer)->commit());
+  Kept kept;
+  ASSERT_TRUE(make_episodes({path}, {.fps = 20.0}, kept));
+  const ArrayTally& array = kept.tally().arrays.front();
+  EXPECT_EQ(array.invalid, (std::vector<std::uint64_t>{0, 99, 1}));
+  EXPECT_EQ(array.empty_frames, 1U);
+  EXPECT_EQ(array.lowest, 0.0F);
+  EXPECT_EQ(array.highest, 99.0F);
+  EXPECT_EQ(array.oldest, milliseconds(15));
+  EXPECT_EQ(array.first_picture[0], 0.0F);
+  EXPECT_EQ(array.last_picture[0], 99.0F);
+}
+
+TEST_F(Episodes, need_a_model_for_a_tare) {
+  EXPECT_EQ(error_of({path_}, {.tare = true}), "tare: needs a model: without one there are no forces");
+  EXPECT_EQ(error_of({path_}, {.follow_drift = true}), "follow-drift: needs a model: without one there are no forces");
 }
 
 TEST_F(Episodes, name_what_is_wrong) {

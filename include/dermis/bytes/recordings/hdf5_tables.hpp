@@ -32,6 +32,9 @@ class Hdf5Tables {
   /// Rows of C order behind those that the table has.
   [[nodiscard]] virtual Status append(std::size_t table, std::size_t rows, const void* values) = 0;
 
+  /// A dataset of texts of one length, which zeros fill up.
+  [[nodiscard]] virtual Status write_names(const std::string& name, const std::vector<std::string>& names) = 0;
+
   /// Attributes of the file ("/"), a group or a table, which must exist.
   [[nodiscard]] virtual Status set_text(const std::string& object, const char* name, const std::string& text) = 0;
   [[nodiscard]] virtual Status set_number(const std::string& object, const char* name, std::int64_t number) = 0;

@@ -5,8 +5,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "dermis/touch/frames/frames.hpp"
 #include "dermis/touch/frames/result.hpp"
 
 namespace dermis::out::datasets {
@@ -29,6 +31,8 @@ struct Column {
   ColumnType type = ColumnType::float32;
   std::vector<std::size_t> shape;  ///< That of one step; {1} for a number.
   std::vector<std::string> axes;   ///< "window", "rows", "cols": one for each dimension.
+  /// Elements are of so many kinds, over and over; those of a kind have their statistics in common. 0: none have.
+  std::size_t kinds = 0;
 
   [[nodiscard]] std::size_t elements() const noexcept;
   [[nodiscard]] std::size_t row_bytes() const noexcept { return elements() * bytes_of(type); }
@@ -40,6 +44,51 @@ struct Column {
 struct StepBlock {
   std::size_t steps = 0;
   std::vector<std::vector<std::byte>> values;  ///< Of each column: steps times row_bytes().
+};
+
+/// The frames of an array, counted.
+///
+/// Many members: a summary shows each.
+struct ArrayTally {
+  std::string name;
+  std::size_t rows = 0;
+  std::size_t cols = 0;
+  bool has_forces = false;  ///< Values are newtons, not counts.
+  std::uint64_t frames = 0;
+  std::uint64_t missed = 0;              ///< In no window.
+  std::size_t most_fresh = 0;            ///< New in one step: a window so long misses none.
+  std::uint64_t most_of_episode = 0;     ///< Frames.
+  Nanos time{};                          ///< From the first frame to the last of each episode, in all.
+  std::uint64_t episodes = 0;            ///< With a frame.
+  std::uint64_t steps = 0;               ///< With a frame in the window.
+  std::uint64_t stale_steps = 0;         ///< Those without a new one.
+  Nanos age{};                           ///< The ages of the newest frame at these steps, added up.
+  Nanos oldest{};                        ///< The largest age of the newest frame.
+  std::uint64_t late_frames = 0;         ///< Earlier than one before, and in no window.
+  std::uint64_t empty_frames = 0;        ///< Others without any value.
+  std::vector<std::uint64_t> invalid{};  ///< Other frames in which a taxel has no value [rows, cols].
+  float lowest = 0.0F;                   ///< The lowest value.
+  float highest = 0.0F;                  ///< The highest value.
+  std::vector<float> first_picture{};    ///< Values [rows, cols]; NaN where there is none.
+  std::vector<float> last_picture{};     ///< The same.
+};
+
+struct EpisodeSource {
+  std::string recording;
+  std::uint64_t steps = 0;
+  Nanos first{};  ///< The first step.
+  Nanos last{};
+};
+
+struct EpisodeTally {
+  std::uint64_t episodes = 0;
+  std::uint64_t steps = 0;
+  std::vector<ArrayTally> arrays{};
+  std::vector<EpisodeSource> sources{};  ///< One for each episode.
+  std::uint64_t gaps = 0;                ///< That ended an episode.
+  std::uint64_t held_out = 0;            ///< So many episodes at the end.
+  /// How they were made, for people: "window", "5 frames".
+  std::vector<std::pair<std::string, std::string>> how{};
 };
 
 /// Where episodes go: a dataset in files, or memory.
@@ -55,8 +104,8 @@ class EpisodeSink {
   [[nodiscard]] virtual Status write(const StepBlock& block) = 0;
   /// The steps since the end of the episode before, at least one.
   [[nodiscard]] virtual Status end_episode() = 0;
-  /// Once, after the last episode. Without it, no file remains.
-  [[nodiscard]] virtual Status commit() = 0;
+  /// Once, after the last episode; `tally` is of all. Without it, no file remains.
+  [[nodiscard]] virtual Status commit(const EpisodeTally& tally) = 0;
 };
 
 }  // namespace dermis::out::datasets

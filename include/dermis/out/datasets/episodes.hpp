@@ -29,6 +29,9 @@ struct EpisodeOptions {
   /// Path as for bytes::models::read_model(); of recordings of several arrays, of the suit.toml that names theirs.
   /// Empty: there are no forces.
   std::string model{};
+  bool tare = false;        ///< Takes the first second of each recording as unloaded; fails where a load stands there.
+  bool tare_force = false;  ///< The same, whatever stands there.
+  bool follow_drift = false;  ///< Follows the offsets of idle taxels.
   /// The robot's state, such as joint angles, and its actions. Either is a topic of sensor_msgs/msg/JointState that all
   /// recordings have ("/joint_states"), or a CSV for each. time_s of a CSV is on the clock of the frames. Each step has
   /// the newest numbers.
@@ -40,6 +43,9 @@ struct EpisodeOptions {
   /// episodes, one after the other. Each begins before the last frame and ends after the first. Empty: those of a
   /// clock.
   std::vector<std::vector<Nanos>> times{};
+  /// Episodes that are not trained on: a share of them such as "0.2", or recordings by their paths or names. They
+  /// become the last ones.
+  std::vector<std::string> hold_out{};
   const std::atomic<bool>* stop = nullptr;                ///< Set: ends the work, and nothing is written.
   std::function<void(const std::string&)> notice{};       ///< Receives one line on what a user should know.
   std::function<void(const std::string&)> loss{};         ///< Receives one line, if a file is cut off at its end.
@@ -49,25 +55,12 @@ struct EpisodeOptions {
   [[nodiscard]] Status validate() const;
 };
 
-/// Frames of an array and windows.
-struct ArrayTally {
-  std::string name;
-  std::uint64_t frames = 0;
-  std::uint64_t missed = 0;    ///< In no window.
-  std::size_t most_fresh = 0;  ///< New in one step: a window so long misses none.
-};
-
-struct EpisodeTally {
-  std::uint64_t episodes = 0;
-  std::uint64_t steps = 0;
-  std::vector<ArrayTally> arrays;
-};
-
 /// No array is silent for longer than this within an episode: such a gap ends it.
 inline constexpr Nanos kLongestGap = std::chrono::seconds(10);
 
 /// Every recording, or other file of frames, becomes an episode, in one pass; the memory does not grow with its length.
-/// All must have the same arrays. Calls sink.commit() at the end.
+/// All must have the same arrays. Forces are those of `dermis run` with the same tare and drift. Calls sink.commit() at
+/// the end.
 [[nodiscard]] Result<EpisodeTally> make_episodes(const std::vector<std::string>& recordings,
                                                  const EpisodeOptions& options, EpisodeSink& sink);
 
