@@ -9,16 +9,19 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <deque>
 #include <mutex>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "dermis/bytes/recordings/frame_batches.hpp"
 #include "live/fleet/broker.hpp"
+#include "live/fleet/health_changes.hpp"
 #include "live/fleet/streams.hpp"
 
 namespace dermis::live::fleet {
@@ -31,6 +34,9 @@ constexpr std::chrono::milliseconds kLookEvery{20};
 constexpr std::chrono::milliseconds kRetryAfter{200};
 constexpr std::chrono::seconds kDescribeEvery{60};
 constexpr std::chrono::seconds kLastWords{2};
+constexpr std::size_t kMostChanges = 1000;        // that wait
+constexpr std::uint64_t kLookForOthersEvery = 5;  // messages of health
+constexpr Nanos kOthersAfter = std::chrono::seconds(3);
 
 /// An array whose batches go to the server, one at a time.
 struct PublishedArray {
@@ -86,6 +92,9 @@ class FramePublisher::Implementation {
   [[nodiscard]] bool send_contacts(PublishedArray& array, bool unfinished);
   [[nodiscard]] bool describe(PublishedArray& array);
   void send_health();
+  void look_for_others();
+  [[nodiscard]] bool send_changes();
+  [[nodiscard]] std::string text_of(RobotHealth health) const;
   [[nodiscard]] Fate store(const std::string& subject, const std::string& id, std::span<const std::uint8_t> bytes);
   [[nodiscard]] std::optional<Fate> try_to_store(const std::string& subject, const std::string& id,
                                                  std::span<const std::uint8_t> bytes);
@@ -104,8 +113,17 @@ class FramePublisher::Implementation {
   std::atomic<std::uint64_t> batches_ = 0;
   std::atomic<std::uint64_t> frames_ = 0;
   std::atomic<std::uint64_t> bytes_ = 0;
-  std::mutex health_mutex_;
-  std::string health_;  ///< That is not sent yet; empty: none.
+  const Nanos begun_ = std::chrono::system_clock::now().time_since_epoch();
+  std::mutex health_mutex_;              ///< Guards the next three.
+  std::optional<RobotHealth> health_{};  ///< That is not sent yet.
+  std::deque<RobotHealth> changes_{};    ///< The same, of each change.
+  HealthChanges seen_{};
+  std::uint64_t looks_ =
+      0;  ///< At the server for others of this name. This and the next three are of the first thread.
+  std::uint64_t messages_ = 0;  ///< Of health.
+  std::uint64_t sent_changes_ = 0;
+  Nanos before_{};  ///< A run before this one told its health last.
+  std::atomic<bool> is_doubled_ = false;
 
   std::atomic<Clock::time_point> end_ = Clock::time_point::max();
   std::vector<std::jthread> threads_;
@@ -195,16 +213,62 @@ bool FramePublisher::Implementation::describe(PublishedArray& array) {
   return true;
 }
 
-/// Tries once: the next one is newer.
+/// Tries once: the next one is newer. Changes wait until they are stored.
 void FramePublisher::Implementation::send_health() {
-  std::string health;
+  std::optional<RobotHealth> health;
   {
     const std::scoped_lock lock(health_mutex_);
     health.swap(health_);
   }
-  if (health.empty()) return;
+  if (!health) return;
+  if (looks_ == 0 || ++messages_ % kLookForOthersEvery == 0) look_for_others();
+  if (!send_changes()) return;
+  const std::string text = text_of(*std::move(health));
   static_cast<void>(try_to_store(health_subject_of(options_.robot), "",
-                                 {reinterpret_cast<const std::uint8_t*>(health.data()), health.size()}));
+                                 {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}));
+}
+
+/// The last message of health that the server has is of this run, of one before, or of another robot of this name.
+void FramePublisher::Implementation::look_for_others() {
+  Broker* const server = broker();
+  if (server == nullptr) return;
+  const auto last = server->last(stream_of(options_.robot), health_subject_of(options_.robot));
+  if (!last) return;
+  const bool is_first = looks_++ == 0;
+  if (!*last) return;
+  const Result<RobotHealth> told =
+      health_from_json(std::string_view(reinterpret_cast<const char*>((*last)->bytes.data()), (*last)->bytes.size()));
+  if (is_first) before_ = (*last)->time;
+  const bool is_other = told && told->begun != begun_ && (*last)->time > begun_ + kOthersAfter;
+  if (is_other && !is_doubled_.exchange(true) && options_.notice) {
+    options_.notice("another robot publishes as '" + options_.robot + "'; give one of them another --robot NAME");
+  }
+  if (!is_other) is_doubled_ = false;
+}
+
+/// false: some still wait.
+bool FramePublisher::Implementation::send_changes() {
+  while (true) {
+    std::string text;
+    {
+      const std::scoped_lock lock(health_mutex_);
+      if (changes_.empty()) return true;
+      text = text_of(changes_.front());
+    }
+    const std::string id = "change-" + std::to_string(begun_.count()) + "-" + std::to_string(sent_changes_);
+    const auto fate = try_to_store(changes_subject_of(options_.robot), id,
+                                   {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    if (!fate) return false;
+    ++sent_changes_;
+    const std::scoped_lock lock(health_mutex_);
+    if (!changes_.empty()) changes_.pop_front();
+  }
+}
+
+std::string FramePublisher::Implementation::text_of(RobotHealth health) const {
+  health.begun = begun_;
+  health.before = before_;
+  return health_to_json(health);
 }
 
 /// Tries until the server has stored or refused it, or there is no time left.
@@ -261,9 +325,11 @@ void FramePublisher::Implementation::tell(const Status& outcome) {
 }
 
 void FramePublisher::Implementation::publish(const RobotHealth& health) {
-  std::string text = health_to_json(health);
+  RobotHealth told = health;
+  told.is_doubled = is_doubled_;
   const std::scoped_lock lock(health_mutex_);
-  health_ = std::move(text);
+  if (seen_.take(told) && changes_.size() < kMostChanges) changes_.push_back(told);
+  health_ = std::move(told);
 }
 
 PublisherCounts FramePublisher::Implementation::counts() const noexcept {

@@ -39,6 +39,13 @@ struct RobotState {
   }
 };
 
+/// A change in the way a robot was.
+struct RobotEvent {
+  Nanos time{};  ///< By UTC.
+  std::string robot;
+  std::string text;  ///< "chest: warning: 2 faults"
+};
+
 /// All robots of a hub at one moment.
 struct FleetState {
   std::string hub;      ///< Its address, as it may be shown.
@@ -48,6 +55,9 @@ struct FleetState {
 
 /// For a page: the names of RobotState and ArrayHealth, and ages at `now` in seconds.
 [[nodiscard]] std::string fleet_to_json(const FleetState& fleet, Nanos now);
+
+/// For a page: times in milliseconds since 1970.
+[[nodiscard]] std::string history_to_json(const std::vector<RobotEvent>& events);
 
 /// The server that has copies of the streams of all robots. Thread-safe.
 class Hub {
@@ -61,10 +71,13 @@ class Hub {
   /// From now on the hub copies all that the robot's server has and gets. A robot that is there stays.
   [[nodiscard]] Status add_robot(const std::string& name);
   [[nodiscard]] Result<std::vector<RobotState>> robots();
+  /// What has changed in these robots since a time, the newest last.
+  [[nodiscard]] Result<std::vector<RobotEvent>> history(const std::vector<RobotState>& robots, Nanos since);
 
  private:
   explicit Hub(std::unique_ptr<Broker> broker);
   void add_health(RobotState& robot);
+  [[nodiscard]] Status add_events(const RobotState& robot, Nanos since, std::vector<RobotEvent>& events);
 
   std::unique_ptr<Broker> broker_;
 };
