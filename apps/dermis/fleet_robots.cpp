@@ -28,6 +28,7 @@ namespace dermis::app {
 namespace {
 
 constexpr std::chrono::seconds kLookEvery{1};
+constexpr std::chrono::milliseconds kSecondLook{1500};
 constexpr std::uint16_t kPagePort = 8090;
 constexpr std::size_t kTimeDigits = 19;  // without "UTC"
 constexpr int kLooksToHistory = 10;
@@ -86,10 +87,24 @@ void print_robot(const live::fleet::RobotState& robot) {
   for (const std::string& reason : condition.reasons) fmt::print("  {}\n", reason);
 }
 
+}  // namespace
+
+Result<std::vector<live::fleet::RobotState>> robots_seen_twice(live::fleet::Hub& hub) {
+  const Result<std::vector<live::fleet::RobotState>> robots = hub.robots();
+  const auto seems_silent = [](const live::fleet::RobotState& robot) {
+    return robot.is_silent(now()) && robot.health_time > Nanos{};
+  };
+  if (!robots || std::none_of(robots->begin(), robots->end(), seems_silent)) return robots;
+  std::this_thread::sleep_for(kSecondLook);
+  return hub.robots();
+}
+
+namespace {
+
 Status list(const std::string& text) {
   const Result<std::unique_ptr<live::fleet::Hub>> hub = connect_fleet<live::fleet::Hub>(text);
   if (!hub) return hub.error();
-  const Result<std::vector<live::fleet::RobotState>> robots = (*hub)->robots();
+  const Result<std::vector<live::fleet::RobotState>> robots = robots_seen_twice(**hub);
   if (!robots) return robots.error();
   if (robots->empty()) print_notice("the hub knows no robot yet: dermis fleet add HUB --robot NAME");
   fmt::print("{:<24} {:<10} {:<19} {:>12} {:>10} {:>12} {:>8} {:>6} {:>9} {:>8} {:>7} {:>6} {:>9}\n", "robot", "state",
@@ -142,7 +157,8 @@ Status serve_fleet_page(PageOptions& options, const std::function<Status()>& goe
   const Result<std::unique_ptr<out::websocket::Server>> server =
       out::websocket::Server::create(options.server, page_assets());
   if (!server) return server.error();
-  live::fleet::FleetState fleet{.hub = live::fleet::without_password(options.hub)};
+  const std::string shown = live::fleet::without_password(options.hub);
+  live::fleet::FleetState fleet{.hub = shown.substr(0, shown.find('?'))};
   int looks = 0;
   const auto look = [&] {
     Result<std::vector<live::fleet::RobotState>> robots = (*hub)->robots();

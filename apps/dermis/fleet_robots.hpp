@@ -4,12 +4,17 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "commands.hpp"
+#include "dermis/live/fleet/hub.hpp"
 #include "dermis/out/websocket/server.hpp"
 #include "dermis/touch/frames/result.hpp"
 
 namespace dermis::app {
+
+/// Where a robot seems silent, the hub is asked twice: messages that come late tell that it is just behind.
+[[nodiscard]] Result<std::vector<live::fleet::RobotState>> robots_seen_twice(live::fleet::Hub& hub);
 
 struct PageOptions {
   std::string hub;

@@ -100,7 +100,7 @@ class Alarms {
 
 /// Returns how many alarms are new.
 int look(live::fleet::Hub& hub, Alarms& alarms) {
-  const Result<std::vector<live::fleet::RobotState>> robots = hub.robots();
+  const Result<std::vector<live::fleet::RobotState>> robots = robots_seen_twice(hub);
   const std::string why = robots ? "the hub answers again" : "the hub does not answer: " + robots.error().message;
   int fresh = alarms.take(kHubItself, !robots, why, RobotCondition::State::silent);
   if (!robots) return fresh;

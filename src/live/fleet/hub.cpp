@@ -18,6 +18,7 @@
 namespace dermis::live::fleet {
 namespace {
 
+constexpr std::chrono::seconds kComesWithin{5};
 constexpr std::size_t kMostRobots = 1'000'000;
 
 RobotState state_of(const Json& stream) {
@@ -103,8 +104,21 @@ Result<std::vector<RobotState>> Hub::robots() {
     offset += list["streams"].size();
     total = number_at(list, "total");
   }
-  for (RobotState& robot : robots) add_health(robot);
+  for (RobotState& robot : robots) {
+    see_growth(robot);
+    add_health(robot);
+  }
   return robots;
+}
+
+void Hub::see_growth(RobotState& robot) {
+  const auto now = std::chrono::steady_clock::now();
+  const std::scoped_lock lock(mutex_);
+  const auto [place, is_first] = growths_.try_emplace(robot.name, Growth{robot.messages, now - kComesWithin});
+  Growth& growth = place->second;
+  if (!is_first && growth.messages < robot.messages) growth.last = now;
+  growth.messages = robot.messages;
+  robot.comes = now - growth.last < kComesWithin;
 }
 
 /// A robot that tells nonsense, or whose stream does not answer, costs no other.

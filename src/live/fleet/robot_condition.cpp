@@ -68,6 +68,10 @@ RobotCondition silence_of(const RobotState& robot, Nanos now) {
   if (robot.lag > 0) {
     return {State::behind, robot.health_time, {fmt::format("the hub still lacks {} of its messages", robot.lag)}};
   }
+  if (robot.comes && robot.health_time > Nanos{}) {
+    const auto late = std::chrono::duration_cast<std::chrono::seconds>(now - robot.health_time).count();
+    return {State::behind, robot.health_time, {fmt::format("its messages reach the hub {} s late", late)}};
+  }
   if (robot.messages == 0) return {State::silent, {}, {"the hub has nothing of it yet"}};
   if (robot.health_time == Nanos{}) return {State::no_health, {}, {"it has not told how it is"}};
   return {State::silent, robot.health_time, {"nothing comes: look whether it is on, publishes and reaches the hub"}};

@@ -4,7 +4,9 @@
 
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,6 +30,8 @@ struct RobotState {
   std::uint64_t bytes = 0;
   Nanos last{};           ///< The last message arrived then at the robot's server, by UTC; 0: none did.
   std::uint64_t lag = 0;  ///< Messages that the robot's server has and the hub not yet, as far as the hub knows.
+
+  bool comes = false;  ///< The hub has got messages of it in the last seconds, as far as it was asked before.
 
   std::optional<RobotHealth> health{};  ///< The last that it told; empty: none that can be read,
   std::string health_error{};           ///< and why not.
@@ -79,7 +83,17 @@ class Hub {
   void add_health(RobotState& robot);
   [[nodiscard]] Status add_events(const RobotState& robot, Nanos since, std::vector<RobotEvent>& events);
 
+  void see_growth(RobotState& robot);
+
+  /// How many messages of a robot were there, and when there were more than before.
+  struct Growth {
+    std::uint64_t messages = 0;
+    std::chrono::steady_clock::time_point last{};
+  };
+
   std::unique_ptr<Broker> broker_;
+  std::mutex mutex_;
+  std::map<std::string, Growth> growths_{};  ///< By name; guarded by `mutex_`.
 };
 
 }  // namespace dermis::live::fleet
