@@ -136,7 +136,8 @@ std::vector<std::string> changes_between(const RobotHealth* before, const RobotH
   std::vector<std::string> changes;
   const bool is_new_run = before == nullptr || before->begun != after.begun;
   if (is_new_run && after.time - after.begun < kBeginning) {
-    const std::string silence = after.before == Nanos{} ? "" : "; it was silent since " + utc_text(after.before);
+    const bool was_silent = after.before > Nanos{} && after.begun - after.before > kSilentAfter;
+    const std::string silence = !was_silent ? "" : "; it was silent since " + utc_text(after.before);
     changes.push_back("begins to publish" + silence);
   }
   const bool was_doubled = before != nullptr && before->is_doubled;

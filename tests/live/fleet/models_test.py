@@ -4,9 +4,11 @@
 
 import hashlib
 import json
+import os
 import random
 import re
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -227,6 +229,29 @@ class Models(unittest.TestCase):
         self.expect_refused("push", self.hub, self.second, *two, said="no robot 'anne'")
         self.assertNotIn("second", self.listed("models"))  # all or none
 
+    def test_two_robots_of_one_name_are_told_there_and_on_the_hub(self):
+        self.serve()
+        self.wait_for_words(r"anna +(well|warning) ", "list")
+        self.serve()
+        self.wait_for("another robot publishes as 'anna'; give one of them another --robot NAME")
+        self.wait_for_words(r"anna +error .+\n  another robot publishes under this name; rename one of them\n", "list")
+
+    def test_a_trial_shows_two_robots_and_leaves_nothing_behind(self):
+        empty = self.work / "empty"
+        empty.mkdir()
+        paths = {**os.environ, "TMPDIR": str(empty)}
+        log = open(self.log, "wb")
+        self.addCleanup(log.close)
+        trial = self.start([DERMIS, "fleet", "try"], env=paths, stderr=log)
+        self.wait_for("the fleet is shown at http://127.0.0.1:")
+        hub = re.search(r"nats://\S+:\d+", self.log.read_text()).group(0)
+        listed = run(self.work, "fleet", "list", hub).stdout
+        self.assertRegex(listed, r"(?s)anna .*bob ")
+        trial.send_signal(signal.SIGINT)
+        self.assertEqual(trial.wait(30), 0)
+        self.assertEqual(list(empty.iterdir()), [])
+        self.assertEqual(run(self.work, "fleet", "list", hub).returncode, 1)
+
     def test_a_damaged_model_is_refused_until_it_is_pushed_again(self):
         self.push(self.first)
         self.damage(self.first)
@@ -267,6 +292,12 @@ class Models(unittest.TestCase):
             self.assertEqual(refused.returncode, 2, words)
             self.assertIn(said, refused.stderr)
             self.assertEqual(refused.stderr.count("\n"), 1, refused.stderr)
+        nobody = "nats://127.0.0.1:1"
+        for command in ("list", "models", "history", "watch", "page"):
+            self.expect_refused(command, nobody, said="no server answers there; see that nats-server is on", status=1)
+        self.expect_refused("watch", self.hub, said="the hub knows no robot that could be watched")
+        self.expect_refused("history", self.hub, "--hours", "0", said="--hours: must be above 0")
+        self.expect_refused("add", self.hub, "--robot", "a.b", said="robot: 'a.b' must be 1 to 64 letters")
         self.push(self.first)
         refused = run(self.work, "fleet", "rollback", self.hub, "--for", "anna/chest")
         self.assertEqual((refused.returncode, refused.stderr.count("\n")), (2, 1))

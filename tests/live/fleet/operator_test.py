@@ -271,6 +271,25 @@ class Operator(unittest.TestCase):
         self.answer("dermis record")
         self.assertRegex(self.dermis("info", "anna.mcap"), "2 ?[x×] ?3")
 
+    def test_words_that_a_fleet_with_keys_refuses_are_told_in_one_line(self):
+        hub = self.hub.split("?")[0]
+        keys = "fleet/robots/anna"
+        own = f"nats://127.0.0.1:{self.ports['anna']}?ca={keys}/ca.pem&key={keys}/anna.pem"
+        push = ("chest.safetensors", "--for", "anna/chest")
+        for words, said in (
+            (("list", f"{hub}?ca=fleet/ca.pem"), "give key=FILE"),
+            (("list", f"{hub}?ca=fleet/none.pem"), "fleet/none.pem: cannot be read"),
+            (("list", f"{hub}?ca=fleet/ca.pem&key=fleet/none.pem"), "fleet/none.pem: cannot be read"),
+            (("push", own, *push), "this is the server of robot 'anna'; models are pushed to the hub"),
+            (("push", f"{hub}?ca=fleet/ca.pem&key=fleet/reader.pem", *push), "the user of this key may not do that"),
+        ):
+            refused = subprocess.run(
+                [DERMIS, "fleet", *words], cwd=self.work, capture_output=True, text=True, check=False
+            )
+            self.assertNotEqual(refused.returncode, 0, words)
+            self.assertIn(said, refused.stderr)
+            self.assertEqual(refused.stderr.count("\n"), 1, refused.stderr)
+
 
 if __name__ == "__main__":
     unittest.main()

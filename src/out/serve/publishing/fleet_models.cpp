@@ -55,6 +55,7 @@ class FleetModels final : public Part {
     std::optional<Fetched> waiting{};    ///< For a tick. This and all below are guarded by `mutex_`.
     std::uint64_t wanted = 0;            ///< Number of the model that the fleet wants; 0: not known.
     std::uint64_t in_use = 0;            ///< Number of a model of the fleet; 0: none is.
+    std::string used_name{};             ///< Of its file.
     std::string refusal{};               ///< Why the newest one is not in use; empty: it is, or will be.
     Nanos refused_at{};                  ///< By UTC.
   };
@@ -207,6 +208,7 @@ bool FleetModels::use(std::size_t array, const Fetched& fetched) {
   {
     const std::lock_guard lock(mutex_);
     arrays_[array].in_use = pushed.number;
+    arrays_[array].used_name = pushed.name;
     arrays_[array].refusal.clear();
   }
   host_.notify(fmt::format("{}: model {} of the fleet is in use ({}, {})", arrays_[array].name, pushed.number,
@@ -246,6 +248,7 @@ void FleetModels::report(live::fleet::RobotHealth& health) const {
     live::fleet::ArrayHealth& array = health.arrays[k];
     array.wanted_model = arrays_[k].wanted;
     array.used_model = arrays_[k].in_use;
+    if (array.used_model > 0) array.model = arrays_[k].used_name;
     array.refusal = arrays_[k].refusal;
     if (array.refusal.empty()) continue;
     array.refused = arrays_[k].refused_at;
