@@ -113,7 +113,8 @@ async function shownFleet(test, size = SIZES[2]) {
 
 const rowOf = (page, robot) => page.locator(`tbody[data-robot=${robot}]`);
 const field = (page, robot, name) => rowOf(page, robot).locator(`.robot-row [data-field=${name}]`);
-const shownRobots = (page) => page.locator("tbody[data-robot]").evaluateAll((rows) => rows.map((row) => row.dataset.robot));
+const shownRobots = (page) =>
+  page.locator("tbody[data-robot]").evaluateAll((rows) => rows.map((row) => row.dataset.robot));
 
 describe("the page of a fleet", { skip }, () => {
   it("shows robots with their rates and what they ask for, and leads to their own pages", async () => {

@@ -61,6 +61,20 @@ struct PublishedArray {
   [[nodiscard]] std::uint64_t left_out() const noexcept { return refused + writer.left_out(); }
 };
 
+/// The health of the robot on its way to the server.
+struct Telling {
+  const Nanos begun = std::chrono::system_clock::now().time_since_epoch();
+  std::mutex mutex;                   ///< Guards the next three.
+  std::optional<RobotHealth> last{};  ///< That is not sent yet.
+  std::deque<RobotHealth> changes{};  ///< The same, of each change.
+  HealthChanges seen{};
+  std::uint64_t looks = 0;  ///< At the server for others of this name. This and the next three are of the first thread.
+  std::uint64_t messages = 0;  ///< Of health.
+  std::uint64_t sent_changes = 0;
+  Nanos before{};  ///< A run before this one told its health last.
+  std::atomic<bool> is_doubled = false;
+};
+
 /// Runs of a robot differ by the millisecond in which they begin.
 std::string new_run() {
   const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
@@ -113,17 +127,7 @@ class FramePublisher::Implementation {
   std::atomic<std::uint64_t> batches_ = 0;
   std::atomic<std::uint64_t> frames_ = 0;
   std::atomic<std::uint64_t> bytes_ = 0;
-  const Nanos begun_ = std::chrono::system_clock::now().time_since_epoch();
-  std::mutex health_mutex_;              ///< Guards the next three.
-  std::optional<RobotHealth> health_{};  ///< That is not sent yet.
-  std::deque<RobotHealth> changes_{};    ///< The same, of each change.
-  HealthChanges seen_{};
-  std::uint64_t looks_ =
-      0;  ///< At the server for others of this name. This and the next three are of the first thread.
-  std::uint64_t messages_ = 0;  ///< Of health.
-  std::uint64_t sent_changes_ = 0;
-  Nanos before_{};  ///< A run before this one told its health last.
-  std::atomic<bool> is_doubled_ = false;
+  Telling telling_;
 
   std::atomic<Clock::time_point> end_ = Clock::time_point::max();
   std::vector<std::jthread> threads_;
@@ -217,11 +221,11 @@ bool FramePublisher::Implementation::describe(PublishedArray& array) {
 void FramePublisher::Implementation::send_health() {
   std::optional<RobotHealth> health;
   {
-    const std::scoped_lock lock(health_mutex_);
-    health.swap(health_);
+    const std::scoped_lock lock(telling_.mutex);
+    health.swap(telling_.last);
   }
   if (!health) return;
-  if (looks_ == 0 || ++messages_ % kLookForOthersEvery == 0) look_for_others();
+  if (telling_.looks == 0 || ++telling_.messages % kLookForOthersEvery == 0) look_for_others();
   if (!send_changes()) return;
   const std::string text = text_of(*std::move(health));
   static_cast<void>(try_to_store(health_subject_of(options_.robot), "",
@@ -234,16 +238,16 @@ void FramePublisher::Implementation::look_for_others() {
   if (server == nullptr) return;
   const auto last = server->last(stream_of(options_.robot), health_subject_of(options_.robot));
   if (!last) return;
-  const bool is_first = looks_++ == 0;
+  const bool is_first = telling_.looks++ == 0;
   if (!*last) return;
   const Result<RobotHealth> told =
       health_from_json(std::string_view(reinterpret_cast<const char*>((*last)->bytes.data()), (*last)->bytes.size()));
-  if (is_first) before_ = (*last)->time;
-  const bool is_other = told && told->begun != begun_ && (*last)->time > begun_ + kOthersAfter;
-  if (is_other && !is_doubled_.exchange(true) && options_.notice) {
-    options_.notice("another robot publishes as '" + options_.robot + "'; give one of them another --robot NAME");
+  if (is_first) telling_.before = (*last)->time;
+  const bool is_other = told && told->begun != telling_.begun && (*last)->time > telling_.begun + kOthersAfter;
+  if (is_other && !telling_.is_doubled.exchange(true) && options_.notice) {
+    options_.notice("another robot publishes as '" + options_.robot + "'; give one of them another name");
   }
-  if (!is_other) is_doubled_ = false;
+  if (!is_other) telling_.is_doubled = false;
 }
 
 /// false: some still wait.
@@ -251,23 +255,24 @@ bool FramePublisher::Implementation::send_changes() {
   while (true) {
     std::string text;
     {
-      const std::scoped_lock lock(health_mutex_);
-      if (changes_.empty()) return true;
-      text = text_of(changes_.front());
+      const std::scoped_lock lock(telling_.mutex);
+      if (telling_.changes.empty()) return true;
+      text = text_of(telling_.changes.front());
     }
-    const std::string id = "change-" + std::to_string(begun_.count()) + "-" + std::to_string(sent_changes_);
+    const std::string id =
+        "change-" + std::to_string(telling_.begun.count()) + "-" + std::to_string(telling_.sent_changes);
     const auto fate = try_to_store(changes_subject_of(options_.robot), id,
                                    {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
     if (!fate) return false;
-    ++sent_changes_;
-    const std::scoped_lock lock(health_mutex_);
-    if (!changes_.empty()) changes_.pop_front();
+    ++telling_.sent_changes;
+    const std::scoped_lock lock(telling_.mutex);
+    if (!telling_.changes.empty()) telling_.changes.pop_front();
   }
 }
 
 std::string FramePublisher::Implementation::text_of(RobotHealth health) const {
-  health.begun = begun_;
-  health.before = before_;
+  health.begun = telling_.begun;
+  health.before = telling_.before;
   return health_to_json(health);
 }
 
@@ -326,10 +331,10 @@ void FramePublisher::Implementation::tell(const Status& outcome) {
 
 void FramePublisher::Implementation::publish(const RobotHealth& health) {
   RobotHealth told = health;
-  told.is_doubled = is_doubled_;
-  const std::scoped_lock lock(health_mutex_);
-  if (seen_.take(told) && changes_.size() < kMostChanges) changes_.push_back(told);
-  health_ = std::move(told);
+  told.is_doubled = telling_.is_doubled;
+  const std::scoped_lock lock(telling_.mutex);
+  if (telling_.seen.take(told) && telling_.changes.size() < kMostChanges) telling_.changes.push_back(told);
+  telling_.last = std::move(told);
 }
 
 PublisherCounts FramePublisher::Implementation::counts() const noexcept {

@@ -233,16 +233,15 @@ class Models(unittest.TestCase):
         self.serve()
         self.wait_for_words(r"anna +(well|warning) ", "list")
         self.serve()
-        self.wait_for("another robot publishes as 'anna'; give one of them another --robot NAME")
+        self.wait_for("another robot publishes as 'anna'; give one of them another name")
         self.wait_for_words(r"anna +error .+\n  another robot publishes under this name; rename one of them\n", "list")
 
     def test_a_trial_shows_two_robots_and_leaves_nothing_behind(self):
         empty = self.work / "empty"
         empty.mkdir()
         paths = {**os.environ, "TMPDIR": str(empty)}
-        log = open(self.log, "wb")
-        self.addCleanup(log.close)
-        trial = self.start([DERMIS, "fleet", "try"], env=paths, stderr=log)
+        with open(self.log, "wb") as log:
+            trial = self.start([DERMIS, "fleet", "try"], env=paths, stderr=log)
         self.wait_for("the fleet is shown at http://127.0.0.1:")
         hub = re.search(r"nats://\S+:\d+", self.log.read_text()).group(0)
         listed = run(self.work, "fleet", "list", hub).stdout

@@ -215,7 +215,9 @@ class Operator(unittest.TestCase):
         listed = self.answer("dermis fleet list")
         self.assertRegex(listed, r"bob .+\n  chest: model 1 wanted, its own in use: refused .+ other readings")
         self.assertRegex(listed, r"carl .+\n  nothing comes: look whether it is on")
-        self.assertRegex(listed, r"dora .+\n  (the hub still lacks \d+ of its messages|its messages reach the hub \d+ s late)\n")
+        self.assertRegex(
+            listed, r"dora .+\n  (the hub still lacks \d+ of its messages|its messages reach the hub \d+ s late)\n"
+        )
 
     def test_3_since_when(self):
         listed = self.answer("dermis fleet list")
@@ -269,7 +271,7 @@ class Operator(unittest.TestCase):
 
     def test_8_how_do_i_get_a_robots_recording(self):
         self.answer("dermis record")
-        self.assertRegex(self.dermis("info", "anna.mcap"), "2 ?[x×] ?3")
+        self.assertRegex(self.dermis("info", "anna.mcap"), "2 ?x ?3")
 
     def test_words_that_a_fleet_with_keys_refuses_are_told_in_one_line(self):
         hub = self.hub.split("?")[0]

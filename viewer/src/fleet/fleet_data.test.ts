@@ -7,8 +7,8 @@ import {
   isWanted,
   type Kind,
   modelOf,
-  recordCommand,
   type RobotState,
+  recordCommand,
   robotOf,
   sorted,
   span,
@@ -80,7 +80,9 @@ describe("the model of an array", () => {
 describe("a recording", () => {
   it("is got from the hub by a command that holds nothing but names", () => {
     const command = recordCommand("nats://hub", "anna", "a'; rm b");
-    expect(command).toBe("dermis record --from 'nats://hub?robot=anna&array=a???rm?b&from=1&to=last' --out anna-a???rm?b.mcap");
+    expect(command).toBe(
+      "dermis record --from 'nats://hub?robot=anna&array=a???rm?b&from=1&to=last' --out anna-a???rm?b.mcap",
+    );
   });
 });
 

@@ -123,7 +123,7 @@ export function robotOf(state: RobotState): Robot {
   };
 }
 
-/** What gets the frames of an array from the hub; its name is of a robot, so only what can stand in a name is taken. */
+/** The command that gets the frames of an array from the hub. Only letters that names may have are taken. */
 export function recordCommand(hub: string, robot: string, array: string): string {
   const name = array.replace(/[^A-Za-z0-9_-]/g, "?");
   return `dermis record --from '${hub}?robot=${robot}&array=${name}&from=1&to=last' --out ${robot}-${name}.mcap`;

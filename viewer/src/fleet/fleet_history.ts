@@ -21,11 +21,15 @@ class EventRow implements Row<RobotEvent> {
   }
 }
 
-/** What has changed in the last day, the newest first; asked for while it is open. */
+/** Changes of the last day, the newest first; asked for while it is open. */
 export class FleetHistory {
   readonly element: HTMLDetailsElement;
   readonly #body = element("tbody");
-  readonly #table = element("table", { class: "table history-table", "aria-label": "Changes of the last day" }, this.#body);
+  readonly #table = element(
+    "table",
+    { class: "table history-table", "aria-label": "Changes of the last day" },
+    this.#body,
+  );
   readonly #none = element("p", { class: "note dim" }, "Nothing has changed in the last day.");
   readonly #rows = new KeyedRows<RobotEvent>(
     this.#body,
@@ -40,7 +44,12 @@ export class FleetHistory {
       "details",
       { class: "panel history", "data-role": "history", ontoggle: () => void this.ask() },
       element("summary", {}, "What changed in the last day"),
-      element("div", { class: "table-room", tabindex: "0", role: "region", "aria-label": "History" }, this.#table, this.#none),
+      element(
+        "div",
+        { class: "table-room", tabindex: "0", role: "region", "aria-label": "History" },
+        this.#table,
+        this.#none,
+      ),
     );
   }
 

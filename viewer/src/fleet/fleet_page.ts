@@ -87,7 +87,11 @@ export class FleetPage {
 
   begin(): void {
     document.body.classList.add("fleet");
-    document.body.append(this.#bar(), this.#notice, element("main", {}, this.#toolbar(), this.#panel(), this.#history.element));
+    document.body.append(
+      this.#bar(),
+      this.#notice,
+      element("main", {}, this.#toolbar(), this.#panel(), this.#history.element),
+    );
     window.addEventListener("keydown", (event) => this.#key(event));
     this.#show();
     void this.#follow();
