@@ -116,7 +116,7 @@ class RecordRow implements Row<string> {
   readonly #command = element("code");
   readonly element = element(
     "tr",
-    { role: "row", class: "array-row record-row" },
+    { role: "row", class: "record-row" },
     element(
       "td",
       { role: "cell", class: "words", colspan: String(COLUMNS.length), "data-head": "Recording" },
