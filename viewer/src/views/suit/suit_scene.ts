@@ -18,14 +18,7 @@ import { nearestNeighbour, TaxelCloud } from "./taxel_cloud";
 
 const TURN_STEP = 0.12;
 const ZOOM_STEP = 1.15;
-const FIT_ATTEMPTS = 6;
-/** Corners of a taxel, as the camera sees it: right and up. */
-const CORNERS = [
-  [-1, -1],
-  [-1, 1],
-  [1, -1],
-  [1, 1],
-] as const;
+const CENTRINGS = 6;
 /** Share of the picture's height that the suit fills, and of what the labels leave of its width. */
 const FIT_SHARE = 0.92;
 /** Clicks this near to a taxel mean its array, as a share of the suit's size. */
@@ -36,6 +29,12 @@ const LIFT_SHARE = 0.01;
 
 /** How the server names the links of the body among its frames. */
 const LINK_PREFIX = "body/";
+
+/** A point that is to be seen, with what is round it. */
+interface Reaching {
+  readonly point: three.Vector3;
+  readonly reach: number;
+}
 
 function matrixOf({ position, rotation }: PlacedPose): three.Matrix4 {
   const one = new three.Vector3(1, 1, 1);
@@ -256,46 +255,54 @@ export class SuitScene {
     return corners;
   }
 
-  /** As near as all taxels and what carries them can be seen, and room for arrows and names around them. */
-  #fit(direction: three.Vector3): void {
-    const target = this.#controls.target.copy(this.#centre);
-    const point = new three.Vector3();
-    const extent = new three.Box3();
-    const corners = this.#bodyCorners();
-    let distance = 2 * corners.reduce((farthest, corner) => Math.max(farthest, corner.distanceTo(target)), this.#size);
-    for (let attempt = 0; attempt < FIT_ATTEMPTS; ++attempt) {
-      this.#camera.position.copy(target).addScaledVector(direction, distance);
-      this.#controls.update();
-      this.#camera.updateMatrixWorld();
-      this.#camera.matrixWorld.extractBasis(this.#right, this.#up, this.#projected);
-      extent.makeEmpty();
-      for (const { positions, cols } of this.#suit?.arrays ?? []) {
-        const reach = 0.5 * nearestNeighbour(positions, cols);
-        for (const position of positions) {
-          for (const [right, up] of CORNERS) {
-            extent.expandByPoint(
-              point
-                .fromArray(position)
-                .addScaledVector(this.#right, right * reach)
-                .addScaledVector(this.#up, up * reach)
-                .project(this.#camera),
-            );
-          }
-        }
-      }
-      for (const corner of corners) extent.expandByPoint(point.copy(corner).project(this.#camera));
-      if (extent.isEmpty()) return;
-      extent.getCenter(point);
-      const height = distance * Math.tan(three.MathUtils.degToRad(0.5 * this.#camera.fov));
-      target
-        .addScaledVector(this.#right, point.x * height * this.#camera.aspect)
-        .addScaledVector(this.#up, point.y * height);
-      extent.getSize(point);
-      const width = 1 - (2 * columnPx(this.#width)) / this.#width;
-      distance *= Math.max(0.3, (0.5 * Math.max(point.x / width, point.y)) / FIT_SHARE);
-    }
-    this.#camera.position.copy(target).addScaledVector(direction, distance);
+  /** As near as all taxels and what carries them can be seen, with room for labels at their sides. */
+  #fit(direction: three.Vector3, isTurning = false): void {
+    const target = this.#controls.target;
+    if (!isTurning) target.copy(this.#centre);
+    this.#camera.position.copy(target).add(direction);
     this.#controls.update();
+    this.#camera.updateMatrixWorld();
+    this.#camera.matrixWorld.extractBasis(this.#right, this.#up, this.#projected);
+    const points = this.#bodyCorners().map((point) => ({ point, reach: 0 }));
+    for (const { positions, cols } of this.#suit?.arrays ?? []) {
+      const reach = 0.5 * nearestNeighbour(positions, cols);
+      for (const position of positions) points.push({ point: new three.Vector3().fromArray(position), reach });
+    }
+    if (points.length === 0) return;
+    for (let step = isTurning ? CENTRINGS - 1 : 0; step < CENTRINGS; ++step) this.#centreOn(points, direction);
+    this.#camera.position.copy(target).addScaledVector(direction, this.#distanceFor(points, direction));
+    this.#controls.update();
+  }
+
+  /** Tangents of half the picture, as far as the suit may fill it. */
+  #halves(): { across: number; high: number } {
+    const high = FIT_SHARE * Math.tan(three.MathUtils.degToRad(0.5 * this.#camera.fov));
+    return { high, across: high * this.#camera.aspect * (1 - (2 * columnPx(this.#width)) / this.#width) };
+  }
+
+  #distanceFor(points: readonly Reaching[], direction: three.Vector3): number {
+    const { across, high } = this.#halves();
+    return points.reduce((most, { point, reach }) => {
+      const way = this.#projected.copy(point).sub(this.#controls.target);
+      const far = Math.max(
+        (Math.abs(way.dot(this.#right)) + reach) / across,
+        (Math.abs(way.dot(this.#up)) + reach) / high,
+      );
+      return Math.max(most, way.dot(direction) + far);
+    }, 0);
+  }
+
+  /** Brings the target nearer to the middle of what is seen from this side: half the way, as what is near moves more. */
+  #centreOn(points: readonly Reaching[], direction: three.Vector3): void {
+    const distance = this.#distanceFor(points, direction);
+    const extent = new three.Box2();
+    for (const { point } of points) {
+      const way = this.#projected.copy(point).sub(this.#controls.target);
+      const depth = distance - way.dot(direction);
+      extent.expandByPoint(new three.Vector2(way.dot(this.#right) / depth, way.dot(this.#up) / depth));
+    }
+    const middle = extent.getCenter(new three.Vector2()).multiplyScalar(0.5 * distance);
+    this.#controls.target.addScaledVector(this.#right, middle.x).addScaledVector(this.#up, middle.y);
   }
 
   readColors(): void {
@@ -438,7 +445,7 @@ export class SuitScene {
     const turned = this.#isTurned
       ? undefined
       : this.#heading.step(this.#direction(), this.#camera.up, performance.now());
-    if (turned !== undefined) this.#fit(turned);
+    if (turned !== undefined) this.#fit(turned, true);
     this.#isDue ||= turned !== undefined;
     if (!this.#isDue) return false;
     this.#isDue = false;
