@@ -9,7 +9,7 @@
 
 namespace dermis::app {
 
-/// What a calibration says to people.
+/// The report of a calibration for people.
 struct CalibrationText {
   const learn::calibration::Calibration& calibration;
   std::string model_file;

@@ -7,7 +7,7 @@
 
 namespace dermis::app {
 
-/// What --help, manual pages and docs/commands say of a command beside its options.
+/// The words of --help, manual pages and docs/commands on a command, beside its options.
 struct CommandText {
   std::string_view command;        ///< "dermis circuit invert"
   std::string_view about;          ///< Sentences; docs/NAME.md in them is a page of the documentation.

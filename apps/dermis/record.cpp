@@ -83,16 +83,20 @@ std::string sum_of(const RecordOptions& options, const bytes::devices::RecorderP
                            has_model ? "model or the disk" : "disk");
 }
 
-Status record(const RecordOptions& options) {
-  std::atomic<bool>& stop = stop_flag();
+Result<bytes::devices::RecorderOptions> recorder_options(const RecordOptions& options) {
   bytes::devices::RecorderOptions recorder;
   recorder.frames = options.frames;
-  recorder.stop = &stop;
-  if (options.seconds) {
-    const Result<Nanos> duration = nanos_from_seconds(*options.seconds, "--seconds");
-    if (!duration) return duration.error();
-    recorder.duration = *duration;
-  }
+  recorder.stop = &stop_flag();
+  if (!options.seconds) return recorder;
+  const Result<Nanos> duration = nanos_from_seconds(*options.seconds, "--seconds");
+  if (!duration) return duration.error();
+  recorder.duration = *duration;
+  return recorder;
+}
+
+Status record(const RecordOptions& options) {
+  Result<bytes::devices::RecorderOptions> recorder = recorder_options(options);
+  if (!recorder) return recorder.error();
   const Result<Known> known = read_known(options);
   if (!known) return known.error();
   const ArrayDescription* array = known->array ? &*known->array : nullptr;
@@ -106,16 +110,16 @@ Status record(const RecordOptions& options) {
   Result<std::unique_ptr<FrameSource>> source = live::sources::open_source(options.from, source_is);
   if (!source) return source.error();
   output.notes = live::sources::notes_of_source(**source, options.from);
-  recorder.source_stops = (*source)->is_live();
+  recorder->source_stops = (*source)->is_live();
 
-  recorder.progress = [&](const bytes::devices::RecorderProgress& progress) { line.show(with_queue(progress)); };
+  recorder->progress = [&](const bytes::devices::RecorderProgress& progress) { line.show(with_queue(progress)); };
   bytes::devices::RecorderProgress last;
   TypedMarks marks(options.out);
   const auto begin = [&](const FrameShape& shape) {
     marks.begin();
     return live::forces::create_recording(output, shape);
   };
-  Status recorded = bytes::devices::record(**source, begin, recorder, last);
+  Status recorded = bytes::devices::record(**source, begin, *recorder, last);
   line.end();
   if (last.frames > 0) {
     print_notice(sum_of(options, last, known->model.has_value()));

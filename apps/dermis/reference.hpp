@@ -20,7 +20,7 @@ struct ManualPage {
 /// The same as docs/command-line.md and docs/commands, a page for each group of commands.
 [[nodiscard]] std::vector<ManualPage> command_documents(const CommandTable& dermis);
 
-/// What an option is for, with the values that it takes, its default, and what it goes with.
+/// The purpose of an option, with the values that it takes, its default, and what it goes with.
 [[nodiscard]] std::string whole_help(const OptionRow& option, bool is_argument);
 
 /// The function of a shell that completes commands, options and files.

@@ -30,7 +30,7 @@ constexpr std::size_t kSuitChunkBytes = std::size_t{8} << 20U;  ///< Each chunk 
 
 constexpr std::size_t kMostWaitingBytes = std::size_t{64} << 20U;  ///< For a disk that stalls.
 
-constexpr std::size_t kShareOfResults = 8;  ///< Of that room, in which results may wait.
+constexpr std::size_t kShareOfResults = 8;  ///< The part of that room in which results may wait.
 
 constexpr std::chrono::seconds kSynchronisePeriod{1};
 

@@ -71,7 +71,7 @@ void remark_unpressed(const ArrayDescription& array, CalibrationReport& report) 
                                                             100.0 * *std::min_element(sigma->begin(), sigma->end())));
 }
 
-/// Of the loads on which forces are judged: less than a fiftieth of the heaviest is no force to rely on.
+/// Forces are judged on heavier loads alone: less than a fiftieth of the heaviest is no force to rely on.
 std::optional<UnseenErrors> unseen_errors(const ForceTraining& training) {
   constexpr double kJudgedShare = 1.0 / 50.0;
   std::vector<double> errors;

@@ -60,7 +60,7 @@ void add_reasons_of(const RobotHealth& health, std::vector<std::string>& reasons
   for (const ArrayHealth& array : health.arrays) add_reasons_of(array, reasons);
 }
 
-/// Of a robot that does not tell how it is now.
+/// For a robot that does not tell how it is now.
 RobotCondition silence_of(const RobotState& robot, Nanos now) {
   if (robot.health_time > now) {
     return {State::silent, {}, {"its clock is ahead of this one; set both by NTP"}};

@@ -29,7 +29,7 @@ export class MarkList {
     marks.all.follow(() => this.#show());
   }
 
-  /** Of the recording that is played. */
+  /** For the recording that is played. */
   begin(startS: number, lengthS: number): void {
     [this.#startS, this.#lengthS] = [startS, lengthS];
     this.#show();

@@ -42,7 +42,7 @@ struct RecordedEvent {
   bool is_of_frame = false;  ///< The readings give it again: it gives way to them where a disk stalls.
 };
 
-/// What a recording holds of a frame besides its readings.
+/// A result of a frame that a recording holds besides the readings.
 struct RecordedResult {
   enum class Kind : std::uint8_t { force, contacts };  ///< foxglove_msgs/msg/Grid, dermis_msgs/msg/Contacts.
   Kind kind = Kind::force;

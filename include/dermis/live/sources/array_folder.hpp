@@ -11,8 +11,8 @@
 
 namespace dermis::live::sources {
 
-/// All that is known of an array, in one folder: mat/array.toml, its models (mat/*.safetensors), its recordings, and
-/// mat/source.toml, by which its device is found again (docs/file-formats.md).
+/// All that is known of an array, in one folder (docs/file-formats.md): its description, models and recordings, and
+/// source.toml, by which its device is found again.
 struct ArrayFolder {
   std::string path;   ///< "mat"
   std::string model;  ///< Its newest model; without one its array.toml, or its array.suit.toml where it has places.

@@ -16,7 +16,7 @@
 
 namespace dermis::live::suits {
 
-/// What a recording holds of a frame besides its readings, in CDR; empty where it holds none.
+/// The results of a frame that a recording holds besides the readings, in CDR; empty where it holds none.
 struct PlayedResults {
   std::vector<std::uint8_t> force;
   std::vector<std::uint8_t> contacts;
@@ -35,7 +35,7 @@ class Playback {
 
   /// The arrays that are played.
   [[nodiscard]] const std::vector<bytes::recordings::RecordedArray>& arrays() const noexcept;
-  [[nodiscard]] const std::string& path() const noexcept;  ///< Of the recording, without the name of an array.
+  [[nodiscard]] const std::string& path() const noexcept;  ///< The recording, without the name of an array.
   [[nodiscard]] Nanos start() const noexcept;              ///< Time of the first and of
   [[nodiscard]] Nanos end() const noexcept;                ///< the last frame.
 
@@ -43,7 +43,8 @@ class Playback {
   /// recorded, but for arrival_steady, which is now. Ask for it once for each array.
   [[nodiscard]] std::unique_ptr<FrameSource> source(std::size_t array);
 
-  /// Of a frame that source() gave within the last second of the recording, as it was live; empty where none is known.
+  /// Those of a frame that source() gave within the last second of the recording, as it was live; empty where none is
+  /// known.
   [[nodiscard]] PlayedResults results(std::size_t array, Nanos time) const;
   /// The recording holds forces of this array; known from the first of them on.
   [[nodiscard]] bool has_results(std::size_t array) const;

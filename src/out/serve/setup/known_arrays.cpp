@@ -46,7 +46,7 @@ std::vector<Candidate> candidates() {
   return found;
 }
 
-/// Of its array.suit.toml, too, it is the array.toml that describes it.
+/// An array.toml describes it, beside an array.suit.toml, too.
 std::optional<KnownArray> array_of(live::sources::ArrayFolder folder) {
   const std::string file = folder.is_suit() ? (fs::path(folder.path) / "array.toml").string() : folder.model;
   Result<ModelOrArray> read = read_model_or_array(file);

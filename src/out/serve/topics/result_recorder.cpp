@@ -19,8 +19,8 @@ namespace {
 
 constexpr double kRateHz = 60.0;  // as the page shows them at first
 
-/// Forces and contacts as they are go into the recording, so that it shows them as they were: tare, drift and all that
-/// the pipeline knew by then are in them.
+/// Forces and contacts go into the recording, so that it shows them as they were. In them are tare, drift and all that
+/// the pipeline knew by then.
 class ResultRecorder final : public Part {
  public:
   explicit ResultRecorder(Host& host) : recorder_(host.recorder), models_(host.models) {
