@@ -24,10 +24,11 @@ Result<ModelAtWork> ModelAtWork::read(const std::string& path) {
 Result<ModelAtWork> ModelAtWork::read_recorded(const std::string& from) {
   const Result<sources::SourceName> name = sources::SourceName::parse(from);
   if (!name) return name.error();
-  if (name->kind != sources::SourceKind::recording) return bad_input("'" + from + "': holds no model: give --model");
+  if (name->kind != sources::SourceKind::recording)
+    return bad_input("'" + from + "': is no recording, which may hold its model: name one");
   const Result<bytes::recordings::FrameNotes> notes = bytes::recordings::read_frame_notes(from);
   if (!notes) return notes.error();
-  if (notes->model_file.empty()) return bad_input("'" + from + "': was recorded without a model: give --model");
+  if (notes->model_file.empty()) return bad_input("'" + from + "': was recorded without a model: name one");
   Result<touch::pipeline::Model> model = bytes::models::model_from_bytes(notes->model_file, from + ": its model");
   if (!model) return model.error();
   return create(*std::move(model));
