@@ -66,6 +66,7 @@ struct Use {
 
 }  // namespace
 
+/// Many members: what is known of the arrays, and where the reading stands.
 class SuitRecordingReader::Implementation {
  public:
   Implementation(std::unique_ptr<McapReader> mcap, std::string path) : mcap_(std::move(mcap)), path_(std::move(path)) {}

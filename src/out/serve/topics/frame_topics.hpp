@@ -49,6 +49,8 @@ class FrameTopics final : public Part {
   };
 
   /// An array, touched by one thread at a time but for its last press.
+  ///
+  /// Many members: seven are topics.
   struct Array {
     const ServedArray& served;
     FrameShape shape;
