@@ -49,6 +49,8 @@ std::string fitted(const CalibrationText& text) {
   const CalibrationReport& report = text.calibration.report;
   std::string line = fmt::format("{}, from {} labelled frames: {}", laws_of(report.training), report.frames,
                                  ranges_of(report.training));
+  const Circuit circuit = text.calibration.model.array.readout.circuit;
+  if (!report.circuit.empty() && circuit != Circuit::none) line += fmt::format("; circuit: {}", to_string(circuit));
   if (const auto& strip = text.calibration.model.strip) {
     line += fmt::format("; positions along the strip \u00b1 {:.2f} mm, from {} touches", 1e3 * strip->sigma_m,
                         text.touches);
@@ -85,7 +87,8 @@ std::vector<std::string> doubts_of(const CalibrationReport& report, const ArrayD
   if (is_poor(report.training)) doubts.emplace_back("a poor fit");
   doubts.insert(doubts.end(), report.doubts.begin(), report.doubts.end());
   if (!report.discriminating_presses.empty()) doubts.emplace_back("the circuit: these frames fit several");
-  if (!report.driver_presses.empty()) doubts.emplace_back("drive_ohm: these frames leave it uncertain");
+  if (!report.driver_presses.empty())
+    doubts.emplace_back("the resistance of the drivers, which these frames leave uncertain");
   if (!report.circuit.empty() && array.readout.circuit == Circuit::none) {
     doubts.emplace_back("the circuit: none explains the frames, so crosstalk stays in the forces");
   }

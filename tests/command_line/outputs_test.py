@@ -88,7 +88,7 @@ class NothingIsOverwritten(SmallArray):
         return paths
 
     def test_every_command_that_writes_is_named_here(self):
-        commands = re.findall(r"^  (\w+) {2,}", dermis("--help").stdout.split("A calibrated array:")[1], re.MULTILINE)
+        commands = re.findall(r"^  (\w+) {2,}", dermis("--help").stdout.split("Begin:")[1], re.MULTILINE)
         names = [
             *(set(commands) - {"circuit"}),
             "circuit forward",
