@@ -15,8 +15,7 @@ namespace {
 using learn::calibration::CalibrationReport;
 using learn::calibration::TrainingReport;
 
-constexpr double kPoorFit = 0.1;  // relative error
-constexpr std::size_t kMostDoubts = 3;
+constexpr double kPoorFit = 0.1;       // relative error
 constexpr std::size_t kMostNamed = 5;  // taxels
 // Single presses hide what is wrong with circuit and ADC: each law takes it in.
 constexpr const char* kProofPresses =
@@ -49,8 +48,11 @@ std::string fitted(const CalibrationText& text) {
   const CalibrationReport& report = text.calibration.report;
   std::string line = fmt::format("{}, from {} labelled frames: {}", laws_of(report.training), report.frames,
                                  ranges_of(report.training));
-  const Circuit circuit = text.calibration.model.array.readout.circuit;
-  if (!report.circuit.empty() && circuit != Circuit::none) line += fmt::format("; circuit: {}", to_string(circuit));
+  const Readout& readout = text.calibration.model.array.readout;
+  if (!report.circuit.empty() && readout.circuit != Circuit::none) {
+    line += fmt::format("; circuit: {}", to_string(readout.circuit));
+    if (readout.circuit == Circuit::divider) line += fmt::format(", idle rows {}", to_string(readout.idle_rows));
+  }
   if (const auto& strip = text.calibration.model.strip) {
     line += fmt::format("; positions along the strip \u00b1 {:.2f} mm, from {} touches", 1e3 * strip->sigma_m,
                         text.touches);
@@ -103,12 +105,9 @@ std::vector<std::string> doubts_of(const CalibrationReport& report, const ArrayD
   return doubts;
 }
 
-std::string doubted(std::vector<std::string> doubts) {
-  if (doubts.empty()) return "nothing";
-  const std::size_t more = doubts.size() - std::min(kMostDoubts, doubts.size());
-  doubts.resize(doubts.size() - more);
-  std::string line = fmt::format("{}", fmt::join(doubts, "; "));
-  return more > 0 ? line + fmt::format("; and {} more (--verbose)", more) : line;
+/// A line each: who has several doubts wants to read them all.
+std::string doubted(const std::vector<std::string>& doubts) {
+  return doubts.empty() ? "nothing" : fmt::format("{}", fmt::join(doubts, "\n          "));
 }
 
 std::string next(const CalibrationText& text) {
