@@ -79,9 +79,9 @@ describe("the model of an array", () => {
 
 describe("a recording", () => {
   it("is got from the hub by a command that holds nothing but names", () => {
-    const command = recordCommand("nats://hub", "anna", "a'; rm b");
+    const command = recordCommand("nats://hub", "an'na", "a'; rm b");
     expect(command).toBe(
-      "dermis record --from 'nats://hub?robot=anna&array=a???rm?b&from=1&to=last' --out anna-a???rm?b.mcap",
+      "dermis record --from 'nats://hub?robot=an?na&array=a???rm?b&from=1&to=last' --out an?na-a???rm?b.mcap",
     );
   });
 });

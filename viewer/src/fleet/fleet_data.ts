@@ -125,8 +125,8 @@ export function robotOf(state: RobotState): Robot {
 
 /** The command that gets the frames of an array from the hub. Only letters that names may have are taken. */
 export function recordCommand(hub: string, robot: string, array: string): string {
-  const name = array.replace(/[^A-Za-z0-9_-]/g, "?");
-  return `dermis record --from '${hub}?robot=${robot}&array=${name}&from=1&to=last' --out ${robot}-${name}.mcap`;
+  const [from, of] = [robot, array].map((name) => name.replace(/[^A-Za-z0-9_-]/g, "?"));
+  return `dermis record --from '${hub}?robot=${from}&array=${of}&from=1&to=last' --out ${from}-${of}.mcap`;
 }
 
 /** The robots that a user looks for: words in names and remarks, and one kind of robots. */

@@ -75,7 +75,7 @@ class Hub {
   /// From now on the hub copies all that the robot's server has and gets. A robot that is there stays.
   [[nodiscard]] Status add_robot(const std::string& name);
   [[nodiscard]] Result<std::vector<RobotState>> robots();
-  /// All that has changed in these robots since a time, the newest last.
+  /// Changes of these robots since a time, the newest last.
   [[nodiscard]] Result<std::vector<RobotEvent>> history(const std::vector<RobotState>& robots, Nanos since);
 
  private:

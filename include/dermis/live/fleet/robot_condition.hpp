@@ -28,7 +28,7 @@ struct RobotCondition {
 /// "silent", "no health"
 [[nodiscard]] const char* to_string(RobotCondition::State state);
 
-/// All that has changed from one message of a robot to the next. `before` is null for the first one that is known.
+/// Changes from one message of a robot to the next. `before` is null for the first one that is known.
 [[nodiscard]] std::vector<std::string> changes_between(const RobotHealth* before, const RobotHealth& after);
 
 /// "model 2 wanted, 1 in use: refused since 2026-11-28 05:00:00 UTC: why"; empty: there is no model of the fleet.
