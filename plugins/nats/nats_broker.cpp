@@ -30,7 +30,8 @@ using Message = std::unique_ptr<natsMsg, Destroyer<natsMsg_Destroy>>;
 using PublishAck = std::unique_ptr<jsPubAck, Destroyer<jsPubAck_Destroy>>;
 
 Error error_of(const std::string& place, natsStatus status) {
-  if (status == NATS_NO_SERVER) return failed(place + ": no server answers there");
+  if (status == NATS_NO_SERVER)
+    return failed(place + ": no server answers there; see that nats-server is on, and its port open");
   return failed(place + ": " + natsStatus_GetText(status));
 }
 

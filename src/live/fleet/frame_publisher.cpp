@@ -9,16 +9,19 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <deque>
 #include <mutex>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "dermis/bytes/recordings/frame_batches.hpp"
 #include "live/fleet/broker.hpp"
+#include "live/fleet/health_changes.hpp"
 #include "live/fleet/streams.hpp"
 
 namespace dermis::live::fleet {
@@ -31,6 +34,9 @@ constexpr std::chrono::milliseconds kLookEvery{20};
 constexpr std::chrono::milliseconds kRetryAfter{200};
 constexpr std::chrono::seconds kDescribeEvery{60};
 constexpr std::chrono::seconds kLastWords{2};
+constexpr std::size_t kMostChanges = 1000;        // that wait
+constexpr std::uint64_t kLookForOthersEvery = 5;  // messages of health
+constexpr Nanos kOthersAfter = std::chrono::seconds(3);
 
 /// An array whose batches go to the server, one at a time.
 struct PublishedArray {
@@ -53,6 +59,20 @@ struct PublishedArray {
   std::atomic<std::uint64_t> refused = 0;  ///< Frames that the server will never take.
 
   [[nodiscard]] std::uint64_t left_out() const noexcept { return refused + writer.left_out(); }
+};
+
+/// The health of the robot on its way to the server.
+struct Telling {
+  const Nanos begun = std::chrono::system_clock::now().time_since_epoch();
+  std::mutex mutex;                   ///< Guards the next three.
+  std::optional<RobotHealth> last{};  ///< That is not sent yet.
+  std::deque<RobotHealth> changes{};  ///< The same, of each change.
+  HealthChanges seen{};
+  std::uint64_t looks = 0;  ///< At the server for others of this name. This and the next three are of the first thread.
+  std::uint64_t messages = 0;  ///< Of health.
+  std::uint64_t sent_changes = 0;
+  Nanos before{};  ///< A run before this one told its health last.
+  std::atomic<bool> is_doubled = false;
 };
 
 /// Runs of a robot differ by the millisecond in which they begin.
@@ -86,6 +106,9 @@ class FramePublisher::Implementation {
   [[nodiscard]] bool send_contacts(PublishedArray& array, bool unfinished);
   [[nodiscard]] bool describe(PublishedArray& array);
   void send_health();
+  void look_for_others();
+  [[nodiscard]] bool send_changes();
+  [[nodiscard]] std::string text_of(RobotHealth health) const;
   [[nodiscard]] Fate store(const std::string& subject, const std::string& id, std::span<const std::uint8_t> bytes);
   [[nodiscard]] std::optional<Fate> try_to_store(const std::string& subject, const std::string& id,
                                                  std::span<const std::uint8_t> bytes);
@@ -104,8 +127,7 @@ class FramePublisher::Implementation {
   std::atomic<std::uint64_t> batches_ = 0;
   std::atomic<std::uint64_t> frames_ = 0;
   std::atomic<std::uint64_t> bytes_ = 0;
-  std::mutex health_mutex_;
-  std::string health_;  ///< That is not sent yet; empty: none.
+  Telling telling_;
 
   std::atomic<Clock::time_point> end_ = Clock::time_point::max();
   std::vector<std::jthread> threads_;
@@ -195,16 +217,63 @@ bool FramePublisher::Implementation::describe(PublishedArray& array) {
   return true;
 }
 
-/// Tries once: the next one is newer.
+/// Tries once: the next one is newer. Changes wait until they are stored.
 void FramePublisher::Implementation::send_health() {
-  std::string health;
+  std::optional<RobotHealth> health;
   {
-    const std::scoped_lock lock(health_mutex_);
-    health.swap(health_);
+    const std::scoped_lock lock(telling_.mutex);
+    health.swap(telling_.last);
   }
-  if (health.empty()) return;
+  if (!health) return;
+  if (telling_.looks == 0 || ++telling_.messages % kLookForOthersEvery == 0) look_for_others();
+  if (!send_changes()) return;
+  const std::string text = text_of(*std::move(health));
   static_cast<void>(try_to_store(health_subject_of(options_.robot), "",
-                                 {reinterpret_cast<const std::uint8_t*>(health.data()), health.size()}));
+                                 {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}));
+}
+
+/// The last message of health that the server has is of this run, of one before, or of another robot of this name.
+void FramePublisher::Implementation::look_for_others() {
+  Broker* const server = broker();
+  if (server == nullptr) return;
+  const auto last = server->last(stream_of(options_.robot), health_subject_of(options_.robot));
+  if (!last) return;
+  const bool is_first = telling_.looks++ == 0;
+  if (!*last) return;
+  const Result<RobotHealth> told =
+      health_from_json(std::string_view(reinterpret_cast<const char*>((*last)->bytes.data()), (*last)->bytes.size()));
+  if (is_first) telling_.before = (*last)->time;
+  const bool is_other = told && told->begun != telling_.begun && (*last)->time > telling_.begun + kOthersAfter;
+  if (is_other && !telling_.is_doubled.exchange(true) && options_.notice) {
+    options_.notice("another robot publishes as '" + options_.robot + "'; give one of them another name");
+  }
+  if (!is_other) telling_.is_doubled = false;
+}
+
+/// false: some still wait.
+bool FramePublisher::Implementation::send_changes() {
+  while (true) {
+    std::string text;
+    {
+      const std::scoped_lock lock(telling_.mutex);
+      if (telling_.changes.empty()) return true;
+      text = text_of(telling_.changes.front());
+    }
+    const std::string id =
+        "change-" + std::to_string(telling_.begun.count()) + "-" + std::to_string(telling_.sent_changes);
+    const auto fate = try_to_store(changes_subject_of(options_.robot), id,
+                                   {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    if (!fate) return false;
+    ++telling_.sent_changes;
+    const std::scoped_lock lock(telling_.mutex);
+    if (!telling_.changes.empty()) telling_.changes.pop_front();
+  }
+}
+
+std::string FramePublisher::Implementation::text_of(RobotHealth health) const {
+  health.begun = telling_.begun;
+  health.before = telling_.before;
+  return health_to_json(health);
 }
 
 /// Tries until the server has stored or refused it, or there is no time left.
@@ -261,9 +330,11 @@ void FramePublisher::Implementation::tell(const Status& outcome) {
 }
 
 void FramePublisher::Implementation::publish(const RobotHealth& health) {
-  std::string text = health_to_json(health);
-  const std::scoped_lock lock(health_mutex_);
-  health_ = std::move(text);
+  RobotHealth told = health;
+  told.is_doubled = telling_.is_doubled;
+  const std::scoped_lock lock(telling_.mutex);
+  if (telling_.seen.take(told) && telling_.changes.size() < kMostChanges) telling_.changes.push_back(told);
+  telling_.last = std::move(told);
 }
 
 PublisherCounts FramePublisher::Implementation::counts() const noexcept {

@@ -48,7 +48,6 @@ class FrameStream::Implementation {
 
  private:
   [[nodiscard]] Result<std::uint64_t> sequence_at(const StreamPlace& place, std::uint64_t newest);
-  [[nodiscard]] Result<std::uint64_t> first_since(Nanos time, std::uint64_t newest);
   [[nodiscard]] Result<bool> fetch();
   [[nodiscard]] bool is_stopped() const { return options_.stop != nullptr && *options_.stop; }
   [[nodiscard]] Error error(const Error& what) const;
@@ -109,25 +108,8 @@ Status FrameStream::Implementation::begin() {
 
 Result<std::uint64_t> FrameStream::Implementation::sequence_at(const StreamPlace& place, std::uint64_t newest) {
   if (const auto* sequence = std::get_if<std::uint64_t>(&place)) return *sequence;
-  if (const auto* time = std::get_if<Nanos>(&place)) return first_since(*time, newest);
+  if (const auto* time = std::get_if<Nanos>(&place)) return first_since(*broker_, {stream_, subject_}, *time, newest);
   return newest;
-}
-
-/// By halves, as the times in a stream rise.
-Result<std::uint64_t> FrameStream::Implementation::first_since(Nanos time, std::uint64_t newest) {
-  std::uint64_t before = 0;
-  std::uint64_t after = newest;
-  while (before + 1 < after) {
-    const std::uint64_t middle = before + (after - before) / 2;
-    const Result<std::optional<StoredMessage>> message = broker_->next(stream_, subject_, middle);
-    if (!message) return message.error();
-    if (!*message || (*message)->time >= time) {
-      after = middle;
-    } else {
-      before = (*message)->sequence;
-    }
-  }
-  return after;
 }
 
 /// The next batch; false where there is none yet, or no more.

@@ -69,6 +69,15 @@ ArrayHealth::Level level_of(const std::string& name) {
                                 : static_cast<ArrayHealth::Level>(std::distance(kLevels.begin(), found));
 }
 
+Nanos time_at(const Json& json, const char* key) {
+  constexpr auto kLatest = static_cast<std::uint64_t>(Nanos::max().count());
+  return Nanos(static_cast<std::int64_t>(std::min(number_at(json, key), kLatest)));
+}
+
+bool flag_at(const Json& json, const char* key) {
+  return json.contains(key) && json[key] == true;
+}
+
 ArrayHealth array_of(const Json& json) {
   ArrayHealth array;
   array.name = shown_text_at(json, "name");
@@ -83,7 +92,14 @@ ArrayHealth array_of(const Json& json) {
   if (json.contains("gain_change") && json["gain_change"].is_number()) {
     array.gain_change = size_at(json, "gain_change");
   }
-  array.wants_calibration = json.contains("wants_calibration") && json["wants_calibration"] == true;
+  array.wants_calibration = flag_at(json, "wants_calibration");
+  array.since = time_at(json, "since_ns");
+  array.damaged = number_at(json, "damaged");
+  array.late = number_at(json, "late");
+  array.wanted_model = number_at(json, "wanted_model");
+  array.used_model = number_at(json, "used_model");
+  array.refusal = shown_text_at(json, "refusal");
+  array.refused = time_at(json, "refused_ns");
   return array;
 }
 
@@ -103,15 +119,28 @@ Json arrays_to_json(const std::vector<ArrayHealth>& arrays) {
             {"lost", array.lost},
             {"left_out", array.left_out},
             {"masked_taxels", array.masked_taxels},
-            {"wants_calibration", array.wants_calibration}};
+            {"wants_calibration", array.wants_calibration},
+            {"since_ns", array.since.count()},
+            {"damaged", array.damaged},
+            {"late", array.late},
+            {"wanted_model", array.wanted_model},
+            {"used_model", array.used_model},
+            {"refusal", array.refusal},
+            {"refused_ns", array.refused.count()}};
     if (array.gain_change) json["gain_change"] = *array.gain_change;
   }
   return list;
 }
 
 std::string health_to_json(const RobotHealth& health) {
-  return json_text(
-      {{"time_ns", health.time.count()}, {"live", health.live}, {"arrays", arrays_to_json(health.arrays)}});
+  Json json = {{"time_ns", health.time.count()},
+               {"begun_ns", health.begun.count()},
+               {"before_ns", health.before.count()},
+               {"is_doubled", health.is_doubled},
+               {"live", health.live},
+               {"arrays", arrays_to_json(health.arrays)}};
+  if (health.free_bytes) json["free_bytes"] = *health.free_bytes;
+  return json_text(json);
 }
 
 Result<RobotHealth> health_from_json(std::string_view text) {
@@ -122,8 +151,11 @@ Result<RobotHealth> health_from_json(std::string_view text) {
   }
   if (json["arrays"].size() > kMostArrays) return bad_input("health: tells of more than 1000 arrays");
   RobotHealth health;
-  constexpr auto kLatest = static_cast<std::uint64_t>(Nanos::max().count());
-  health.time = Nanos(static_cast<std::int64_t>(std::min(number_at(json, "time_ns"), kLatest)));
+  health.time = time_at(json, "time_ns");
+  health.begun = time_at(json, "begun_ns");
+  health.before = time_at(json, "before_ns");
+  health.is_doubled = flag_at(json, "is_doubled");
+  if (json.contains("free_bytes")) health.free_bytes = number_at(json, "free_bytes");
   health.live = web_address_at(json, "live");
   for (const Json& array : json["arrays"]) {
     if (!array.is_object()) return bad_input("health: an array is no object");

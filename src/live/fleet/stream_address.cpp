@@ -130,4 +130,8 @@ std::string health_subject_of(const std::string& robot) {
   return "dermis." + robot + ".health";
 }
 
+std::string changes_subject_of(const std::string& robot) {
+  return "dermis." + robot + ".changes";
+}
+
 }  // namespace dermis::live::fleet

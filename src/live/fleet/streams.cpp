@@ -62,6 +62,23 @@ Result<bool> has_stream(Broker& broker, const std::string& name) {
   return failed("stream " + name + ": " + text_at(error, "description"));
 }
 
+/// By halves, as the times in a stream rise.
+Result<std::uint64_t> first_since(Broker& broker, const StreamSubject& of, Nanos time, std::uint64_t newest) {
+  std::uint64_t before = 0;
+  std::uint64_t after = newest;
+  while (before + 1 < after) {
+    const std::uint64_t middle = before + (after - before) / 2;
+    const Result<std::optional<StoredMessage>> message = broker.next(of.stream, of.subject, middle);
+    if (!message) return message.error();
+    if (!*message || (*message)->time >= time) {
+      after = middle;
+    } else {
+      before = (*message)->sequence;
+    }
+  }
+  return after;
+}
+
 Status make_log(Broker& broker, const std::string& name, const std::string& subjects) {
   Json settings = {{"max_msgs_per_subject", 1}};
   settings["subjects"] = Json::array({subjects});

@@ -2,8 +2,10 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <cstdint>
 #include <string>
 
+#include "dermis/touch/frames/frames.hpp"
 #include "dermis/touch/frames/result.hpp"
 #include "live/fleet/broker.hpp"
 
@@ -19,6 +21,16 @@ namespace dermis::live::fleet {
 
 /// Whether the server has a stream of this name.
 [[nodiscard]] Result<bool> has_stream(Broker& broker, const std::string& name);
+
+/// Messages of one subject in a stream.
+struct StreamSubject {
+  std::string stream;
+  std::string subject;
+};
+
+/// The number of the first message since a time, among those before `newest`; else `newest`.
+[[nodiscard]] Result<std::uint64_t> first_since(Broker& broker, const StreamSubject& of, Nanos time,
+                                                std::uint64_t newest);
 
 /// A stream that keeps the last message of each subject.
 [[nodiscard]] Status make_log(Broker& broker, const std::string& name, const std::string& subjects);

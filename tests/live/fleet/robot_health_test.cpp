@@ -15,26 +15,39 @@ const ArrayHealth kChest{.name = "chest",
                          .model = "chest.safetensors",
                          .level = ArrayHealth::Level::warning,
                          .message = "2 faults",
+                         .since = Nanos(5),
                          .rate_hz = 199.5,
                          .lost = 3,
                          .left_out = 4,
                          .masked_taxels = 17,
                          .gain_change = 0.09,
-                         .wants_calibration = true};
+                         .wants_calibration = true,
+                         .damaged = 5,
+                         .late = 6,
+                         .wanted_model = 2,
+                         .used_model = 1,
+                         .refusal = "it is of another pitch",
+                         .refused = Nanos(7)};
 
 std::string with_array(const std::string& fields) {
   return R"({"arrays": [{)" + fields + "}]}";
 }
 
 TEST(RobotHealth, comes_out_as_it_went_in) {
-  const RobotHealth health{std::chrono::seconds(1'760'000'000), "http://anna:8080/", {kChest, {.name = "back"}}};
+  const RobotHealth health{.time = std::chrono::seconds(1'760'000'000),
+                           .begun = Nanos(3),
+                           .before = Nanos(2),
+                           .is_doubled = true,
+                           .free_bytes = 17,
+                           .live = "http://anna:8080/",
+                           .arrays = {kChest, {.name = "back"}}};
   const Result<RobotHealth> read = health_from_json(health_to_json(health));
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(*read, health);
 }
 
 TEST(RobotHealth, any_text_is_read_or_refused) {
-  const std::string whole = health_to_json({{}, "http://anna:8080/", {kChest}});
+  const std::string whole = health_to_json({.live = "http://anna:8080/", .arrays = {kChest}});
   for (std::size_t bytes = 0; bytes < whole.size(); ++bytes) EXPECT_FALSE(health_from_json(whole.substr(0, bytes)));
   for (const char* text : {"", "[]", "7", "{}", R"({"arrays": {}})", R"({"arrays": [1]})", "\xff"}) {
     EXPECT_FALSE(health_from_json(text)) << text;

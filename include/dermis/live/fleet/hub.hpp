@@ -4,7 +4,9 @@
 
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +31,8 @@ struct RobotState {
   Nanos last{};           ///< The last message arrived then at the robot's server, by UTC; 0: none did.
   std::uint64_t lag = 0;  ///< Messages that the robot's server has and the hub not yet, as far as the hub knows.
 
+  bool comes = false;  ///< The hub has got messages of it in the last seconds, as far as it was asked before.
+
   std::optional<RobotHealth> health{};  ///< The last that it told; empty: none that can be read,
   std::string health_error{};           ///< and why not.
   Nanos health_time{};                  ///< It arrived then at the robot's server, by UTC; 0: none did.
@@ -37,6 +41,13 @@ struct RobotState {
   [[nodiscard]] bool is_silent(Nanos now) const noexcept {
     return health_time + kSilentAfter < now || now + kSilentAfter < health_time;
   }
+};
+
+/// A change in the way a robot was.
+struct RobotEvent {
+  Nanos time{};  ///< By UTC.
+  std::string robot;
+  std::string text;  ///< "chest: warning: 2 faults"
 };
 
 /// All robots of a hub at one moment.
@@ -48,6 +59,9 @@ struct FleetState {
 
 /// For a page: the names of RobotState and ArrayHealth, and ages at `now` in seconds.
 [[nodiscard]] std::string fleet_to_json(const FleetState& fleet, Nanos now);
+
+/// For a page: times in milliseconds since 1970.
+[[nodiscard]] std::string history_to_json(const std::vector<RobotEvent>& events);
 
 /// The server that has copies of the streams of all robots. Thread-safe.
 class Hub {
@@ -61,12 +75,25 @@ class Hub {
   /// From now on the hub copies all that the robot's server has and gets. A robot that is there stays.
   [[nodiscard]] Status add_robot(const std::string& name);
   [[nodiscard]] Result<std::vector<RobotState>> robots();
+  /// Changes of these robots since a time, the newest last.
+  [[nodiscard]] Result<std::vector<RobotEvent>> history(const std::vector<RobotState>& robots, Nanos since);
 
  private:
   explicit Hub(std::unique_ptr<Broker> broker);
   void add_health(RobotState& robot);
+  [[nodiscard]] Status add_events(const RobotState& robot, Nanos since, std::vector<RobotEvent>& events);
+
+  void see_growth(RobotState& robot);
+
+  /// How many messages of a robot were there, and when there were more than before.
+  struct Growth {
+    std::uint64_t messages = 0;
+    std::chrono::steady_clock::time_point last{};
+  };
 
   std::unique_ptr<Broker> broker_;
+  std::mutex mutex_;
+  std::map<std::string, Growth> growths_{};  ///< By name; guarded by `mutex_`.
 };
 
 }  // namespace dermis::live::fleet

@@ -64,5 +64,7 @@ struct StreamAddress {
 [[nodiscard]] std::string subject_of(const std::string& robot, const std::string& array, const char* what);
 /// "dermis.ROBOT.health"
 [[nodiscard]] std::string health_subject_of(const std::string& robot);
+/// "dermis.ROBOT.changes": messages of health that differ from the one before.
+[[nodiscard]] std::string changes_subject_of(const std::string& robot);
 
 }  // namespace dermis::live::fleet

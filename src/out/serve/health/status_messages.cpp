@@ -88,6 +88,8 @@ void fill_in(live::fleet::ArrayHealth& array, const touch::pipeline::Model& mode
   array.message = diagnosis.message;
   array.rate_hz = statistics.source.rate_hz;
   array.lost = statistics.source.lost_frames;
+  array.damaged = statistics.source.damaged_frames;
+  array.late = statistics.source.late_frames + statistics.skipped;
   array.wants_calibration = is_uncalibrated || ageing.has_aged();
   if (is_uncalibrated) return;
   array.masked_taxels = masked_taxels(model, statistics.faults);

@@ -35,7 +35,9 @@ class FleetModels final : public Part {
 
   [[nodiscard]] Status prepare() override;
   void tick(std::int64_t tick) override;
+  void model_changed(std::size_t array) override;
   void diagnose(std::vector<bytes::ros_messages::Diagnosis>& diagnoses) const override;
+  void report(live::fleet::RobotHealth& health) const override;
   void finish() override { thread_.request_stop(); }
 
  private:
@@ -51,8 +53,11 @@ class FleetModels final : public Part {
     live::fleet::PushedModel used{};     ///< The last one that was usable. It and the next belong to the thread.
     live::fleet::PushedModel refused{};  ///< Not asked for again.
     std::optional<Fetched> waiting{};    ///< For a tick. This and all below are guarded by `mutex_`.
+    std::uint64_t wanted = 0;            ///< Number of the model that the fleet wants; 0: not known.
     std::uint64_t in_use = 0;            ///< Number of a model of the fleet; 0: none is.
+    std::string used_name{};             ///< Of its file.
     std::string refusal{};               ///< Why the newest one is not in use; empty: it is, or will be.
+    Nanos refused_at{};                  ///< By UTC.
   };
 
   void work(const std::stop_token& stop);
@@ -61,6 +66,7 @@ class FleetModels final : public Part {
   [[nodiscard]] Result<std::shared_ptr<const touch::pipeline::Model>> obtain(
       const Array& array, const live::fleet::ModelManifest& manifest);
   [[nodiscard]] bool use(std::size_t array, const Fetched& fetched);
+  void want(Array& array, std::uint64_t number);
   void refuse(Array& array, const std::string& why);
 
   Host& host_;
@@ -91,6 +97,7 @@ void FleetModels::use_kept() {
       continue;
     }
     const live::fleet::PushedModel& pushed = (*manifest)->current_model();
+    want(array, pushed.number);
     const auto model = array.kept.read(pushed);
     if (!model) {
       refuse(array, "that was in use: " + model.error().message);
@@ -142,6 +149,7 @@ Status FleetModels::look_for(Array& array) {
   }
   if (!*manifest) return Done{};
   const live::fleet::PushedModel& pushed = (*manifest)->current_model();
+  want(array, pushed.number);
   if (pushed == array.refused) return Done{};
   if (pushed == array.used) {
     const std::lock_guard lock(mutex_);
@@ -152,7 +160,7 @@ Status FleetModels::look_for(Array& array) {
   if (!model && model.error().kind == ErrorKind::failed) return model.error();
   if (!model) {
     array.refused = pushed;
-    refuse(array, fmt::format("{} is refused: {}", pushed.number, model.error().message));
+    refuse(array, model.error().message);
     return Done{};
   }
   array.used = pushed;
@@ -194,12 +202,13 @@ void FleetModels::tick(std::int64_t /*tick*/) {
 bool FleetModels::use(std::size_t array, const Fetched& fetched) {
   const live::fleet::PushedModel& pushed = fetched.pushed;
   if (const Status used = host_.use_model(array, fetched.model); !used) {
-    refuse(arrays_[array], fmt::format("{} is refused: {}", pushed.number, used.error().message));
+    refuse(arrays_[array], used.error().message);
     return false;
   }
   {
     const std::lock_guard lock(mutex_);
     arrays_[array].in_use = pushed.number;
+    arrays_[array].used_name = pushed.name;
     arrays_[array].refusal.clear();
   }
   host_.notify(fmt::format("{}: model {} of the fleet is in use ({}, {})", arrays_[array].name, pushed.number,
@@ -208,12 +217,45 @@ bool FleetModels::use(std::size_t array, const Fetched& fetched) {
 }
 
 void FleetModels::refuse(Array& array, const std::string& why) {
+  std::uint64_t number = 0;
   {
     const std::lock_guard lock(mutex_);
     if (array.refusal == why) return;
     array.refusal = why;
+    array.refused_at = std::chrono::system_clock::now().time_since_epoch();
+    number = array.wanted;
   }
-  host_.tell_error(fmt::format("{}: model of the fleet: {}", array.name, why));
+  host_.tell_error(fmt::format("{}: model of the fleet: {}{}", array.name,
+                               number > 0 ? fmt::format("{} is refused: ", number) : "", why));
+}
+
+/// The fleet wants this model. Another one is no longer refused.
+void FleetModels::want(Array& array, std::uint64_t number) {
+  const std::lock_guard lock(mutex_);
+  if (std::exchange(array.wanted, number) != number) array.refusal.clear();
+}
+
+/// The model may be of a calibration here; use() knows better afterwards.
+void FleetModels::model_changed(std::size_t array) {
+  const std::lock_guard lock(mutex_);
+  arrays_[array].in_use = 0;
+}
+
+void FleetModels::report(live::fleet::RobotHealth& health) const {
+  using Level = live::fleet::ArrayHealth::Level;
+  const std::lock_guard lock(mutex_);
+  for (std::size_t k = 0; k < arrays_.size(); ++k) {
+    live::fleet::ArrayHealth& array = health.arrays[k];
+    array.wanted_model = arrays_[k].wanted;
+    array.used_model = arrays_[k].in_use;
+    if (array.used_model > 0) array.model = arrays_[k].used_name;
+    array.refusal = arrays_[k].refusal;
+    if (array.refusal.empty()) continue;
+    array.refused = arrays_[k].refused_at;
+    if (array.level != Level::good) continue;
+    array.level = Level::warning;
+    array.message.clear();  // the refusal says it
+  }
 }
 
 void FleetModels::diagnose(std::vector<bytes::ros_messages::Diagnosis>& diagnoses) const {

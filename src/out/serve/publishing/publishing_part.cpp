@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -97,6 +98,11 @@ void Publishing::tick(std::int64_t tick) {
                              .shape = {description.rows, description.cols},
                              .model = model_name(host_, k)});
   }
+  const std::string recordings = host_.options.recordings.empty() ? host_.options.record : host_.options.recordings;
+  std::error_code error;
+  const auto folder = std::filesystem::absolute(recordings.empty() ? "." : recordings, error).parent_path();
+  const std::filesystem::space_info space = std::filesystem::space(folder, error);
+  if (!error) health.free_bytes = space.available;
   host_.parts.report(health);
   publisher_->publish(health);
 }
