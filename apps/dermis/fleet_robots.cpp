@@ -8,6 +8,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <thread>
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "dermis/live/fleet/hub.hpp"
+#include "dermis/live/fleet/robot_condition.hpp"
 #include "dermis/out/websocket/server.hpp"
 #include "fleet_connection.hpp"
 #include "server_address.hpp"
@@ -26,12 +28,11 @@ namespace dermis::app {
 namespace {
 
 constexpr std::chrono::seconds kLookEvery{1};
+constexpr std::chrono::milliseconds kSecondLook{1500};
 constexpr std::uint16_t kPagePort = 8090;
-
-struct PageOptions {
-  std::string hub;
-  out::websocket::ServerOptions server{};
-};
+constexpr std::size_t kTimeDigits = 19;  // without "UTC"
+constexpr int kLooksToHistory = 10;
+constexpr std::chrono::hours kShownHistory{24};
 
 Nanos now() {
   return std::chrono::system_clock::now().time_since_epoch();
@@ -61,46 +62,76 @@ Sums sums_of(const std::vector<live::fleet::ArrayHealth>& arrays) {
   return sums;
 }
 
-/// "arrays frames/s lost masked drift", or dashes.
+/// "arrays frames/s lost masked drift disk", or dashes. A robot that is silent has no rate.
 std::string figures_of(const live::fleet::RobotState& robot) {
-  if (!robot.health) return fmt::format("{:>6} {:>9} {:>8} {:>7} {:>6}", "-", "-", "-", "-", "-");
+  if (!robot.health) return fmt::format("{:>6} {:>9} {:>8} {:>7} {:>6} {:>9}", "-", "-", "-", "-", "-", "-");
   const Sums sums = sums_of(robot.health->arrays);
+  const std::string rate = robot.is_silent(now()) ? "-" : fmt::format("{:.1f}", sums.rate_hz);
   const std::string drift = sums.most_gain_change < 0.0 ? "-" : fmt::format("{:.0f} %", 100.0 * sums.most_gain_change);
-  return fmt::format("{:>6} {:>9.1f} {:>8} {:>7} {:>6}", robot.health->arrays.size(), sums.rate_hz, sums.lost,
-                     sums.masked_taxels, drift);
+  const auto free = robot.health->free_bytes;
+  const std::string disk = free ? fmt::format("{:.1f} GB", static_cast<double>(*free) / 1e9) : "-";
+  return fmt::format("{:>6} {:>9} {:>8} {:>7} {:>6} {:>9}", robot.health->arrays.size(), rate, sums.lost,
+                     sums.masked_taxels, drift, disk);
 }
 
-/// "silent", "chest: 2 faults; chest: calibrate".
-std::string remarks_on(const live::fleet::RobotState& robot) {
-  std::vector<std::string> remarks;
-  if (!robot.health_error.empty()) remarks.push_back(robot.health_error);
-  if (robot.is_silent(now())) remarks.emplace_back("silent");
-  if (robot.health) {
-    for (const live::fleet::ArrayHealth& array : robot.health->arrays) {
-      if (array.level != live::fleet::ArrayHealth::Level::good) remarks.push_back(array.name + ": " + array.message);
-      if (array.left_out > 0) {
-        remarks.push_back(fmt::format("{}: {} frames were not published", array.name, array.left_out));
-      }
-      const bool says_so = array.message.find("calibrate") != std::string::npos;
-      if (array.wants_calibration && !says_so) remarks.push_back(array.name + ": calibrate");
-    }
-  }
-  std::string line;
-  for (const std::string& remark : remarks) line += (line.empty() ? "" : "; ") + remark;
-  return line;
+std::string since_text(Nanos since) {
+  return since == Nanos{} ? "-" : live::fleet::utc_text(since).substr(0, kTimeDigits);
 }
+
+/// A line of figures, and one for each reason.
+void print_robot(const live::fleet::RobotState& robot) {
+  const live::fleet::RobotCondition condition = live::fleet::condition_of(robot, now());
+  fmt::print("{:<24} {:<10} {:<19} {:>12} {:>10.1f} {:>12} {:>8} {}\n", robot.name,
+             live::fleet::to_string(condition.state), since_text(condition.since), robot.messages,
+             static_cast<double>(robot.bytes) / 1e6, age_of(robot.last), robot.lag, figures_of(robot));
+  for (const std::string& reason : condition.reasons) fmt::print("  {}\n", reason);
+}
+
+}  // namespace
+
+Result<std::vector<live::fleet::RobotState>> robots_seen_twice(live::fleet::Hub& hub) {
+  const Result<std::vector<live::fleet::RobotState>> robots = hub.robots();
+  const auto seems_silent = [](const live::fleet::RobotState& robot) {
+    return robot.is_silent(now()) && robot.health_time > Nanos{};
+  };
+  if (!robots || std::none_of(robots->begin(), robots->end(), seems_silent)) return robots;
+  std::this_thread::sleep_for(kSecondLook);
+  return hub.robots();
+}
+
+namespace {
 
 Status list(const std::string& text) {
   const Result<std::unique_ptr<live::fleet::Hub>> hub = connect_fleet<live::fleet::Hub>(text);
   if (!hub) return hub.error();
+  const Result<std::vector<live::fleet::RobotState>> robots = robots_seen_twice(**hub);
+  if (!robots) return robots.error();
+  if (robots->empty()) print_notice("the hub knows no robot yet: dermis fleet add HUB --robot NAME");
+  fmt::print("{:<24} {:<10} {:<19} {:>12} {:>10} {:>12} {:>8} {:>6} {:>9} {:>8} {:>7} {:>6} {:>9}\n", "robot", "state",
+             "since (UTC)", "messages", "MB", "last before", "lag", "arrays", "frames/s", "lost", "masked", "drift",
+             "disk free");
+  for (const live::fleet::RobotState& robot : *robots) print_robot(robot);
+  return Done{};
+}
+
+struct HistoryOptions {
+  std::string hub;
+  double hours = 24.0;
+};
+
+Status show_history(const HistoryOptions& options) {
+  constexpr double kMostHours = 24.0 * 366.0;
+  if (!(options.hours > 0.0 && options.hours <= kMostHours)) return bad_input("--hours: must be above 0, at most 8784");
+  const Result<std::unique_ptr<live::fleet::Hub>> hub = connect_fleet<live::fleet::Hub>(options.hub);
+  if (!hub) return hub.error();
   const Result<std::vector<live::fleet::RobotState>> robots = (*hub)->robots();
   if (!robots) return robots.error();
-  fmt::print("{:<24} {:>12} {:>10} {:>12} {:>8} {:>12} {:>6} {:>9} {:>8} {:>7} {:>6}  {}\n", "robot", "messages", "MB",
-             "last before", "lag", "told before", "arrays", "frames/s", "lost", "masked", "drift", "remarks");
-  for (const live::fleet::RobotState& robot : *robots) {
-    fmt::print("{:<24} {:>12} {:>10.1f} {:>12} {:>8} {:>12} {}  {}\n", robot.name, robot.messages,
-               static_cast<double>(robot.bytes) / 1e6, age_of(robot.last), robot.lag, age_of(robot.health_time),
-               figures_of(robot), remarks_on(robot));
+  const Nanos since = now() - std::chrono::duration_cast<Nanos>(std::chrono::duration<double>(3600.0 * options.hours));
+  const Result<std::vector<live::fleet::RobotEvent>> events = (*hub)->history(*robots, since);
+  if (!events) return events.error();
+  if (events->empty()) print_notice("nothing has changed since " + live::fleet::utc_text(since));
+  for (const live::fleet::RobotEvent& event : *events) {
+    fmt::print("{}  {:<24} {}\n", live::fleet::utc_text(event.time), event.robot, event.text);
   }
   return Done{};
 }
@@ -116,7 +147,9 @@ std::vector<out::websocket::Asset> page_assets() {
   return assets;
 }
 
-Status serve_page(PageOptions& options) {
+}  // namespace
+
+Status serve_fleet_page(PageOptions& options, const std::function<Status()>& goes_on) {
   const std::atomic<bool>& stop = stop_flag();
   const Result<std::unique_ptr<live::fleet::Hub>> hub = connect_fleet<live::fleet::Hub>(options.hub);
   if (!hub) return hub.error();
@@ -124,11 +157,18 @@ Status serve_page(PageOptions& options) {
   const Result<std::unique_ptr<out::websocket::Server>> server =
       out::websocket::Server::create(options.server, page_assets());
   if (!server) return server.error();
-  live::fleet::FleetState fleet{.hub = live::fleet::without_password(options.hub)};
+  const std::string shown = live::fleet::without_password(options.hub);
+  live::fleet::FleetState fleet{.hub = shown.substr(0, shown.find('?'))};
+  int looks = 0;
   const auto look = [&] {
     Result<std::vector<live::fleet::RobotState>> robots = (*hub)->robots();
     fleet.error = robots ? "" : robots.error().message;
     if (robots) fleet.robots = *std::move(robots);
+    if (looks++ % kLooksToHistory == 0 && robots) {
+      if (const auto events = (*hub)->history(fleet.robots, now() - kShownHistory)) {
+        (*server)->set_document("/history.json", "application/json", live::fleet::history_to_json(*events));
+      }
+    }
     (*server)->set_document("/fleet.json", "application/json", fleet_to_json(fleet, now()));
   };
   look();
@@ -138,17 +178,25 @@ Status serve_page(PageOptions& options) {
   while (!stop) {
     std::this_thread::sleep_for(kLookEvery);
     look();
+    if (!goes_on) continue;
+    if (Status goes = goes_on(); !goes) return goes;
   }
   return Done{};
 }
-
-}  // namespace
 
 void add_fleet_list(Command& fleet) {
   auto hub = std::make_shared<std::string>();
   Command command = fleet.subcommand("list", "The robots of a hub, how they are, and how their frames come");
   command.option("hub", *hub, "nats://HOST of the hub").required();
   command.action([hub] { return list(*hub); });
+}
+
+void add_fleet_history(Command& fleet) {
+  auto options = std::make_shared<HistoryOptions>();
+  Command command = fleet.subcommand("history", "When which robot changed, and how");
+  command.option("hub", options->hub, "nats://HOST of the hub").required();
+  command.option("--hours", options->hours, "How far back").shows_default();
+  command.action([options] { return show_history(*options); });
 }
 
 void add_fleet_page(Command& fleet) {
@@ -159,7 +207,7 @@ void add_fleet_page(Command& fleet) {
   command.option("--host", options->server.host, "Address to serve at; all but loopback need a token").shows_default();
   command.option("--port", options->server.port, "Port; 0: any that is free").shows_default();
   command.option("--token", options->server.token, "Every client must present it");
-  command.action([options] { return serve_page(*options); });
+  command.action([options] { return serve_fleet_page(*options); });
 }
 
 }  // namespace dermis::app

@@ -4,9 +4,11 @@
 
 import hashlib
 import json
+import os
 import random
 import re
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -102,6 +104,21 @@ class Models(unittest.TestCase):
             self.assertLess(time.monotonic(), end, f"no '{line}' in: {text}")
             time.sleep(0.05)
 
+    def listed(self, *words):
+        return succeed(self.work, "fleet", *words[:1], self.hub, *words[1:])
+
+    def wait_for_words(self, pattern, *words):
+        end = time.monotonic() + MOST_SECONDS
+        while not re.search(pattern, text := self.listed(*words)):
+            self.assertLess(time.monotonic(), end, f"no '{pattern}' in: {text}")
+            time.sleep(0.2)
+
+    def expect_refused(self, *words, said, status=2):
+        refused = run(self.work, "fleet", *words)
+        self.assertEqual(refused.returncode, status, refused)
+        self.assertIn(said, refused.stderr)
+        self.assertEqual(refused.stderr.count("\n"), 1, refused.stderr)
+
     def push(self, model):
         succeed(self.work, "fleet", "push", self.hub, model, "--for", "anna/chest")
 
@@ -180,6 +197,60 @@ class Models(unittest.TestCase):
         self.push(self.first)
         self.wait_for("chest: model 3 of the fleet is in use")
 
+    def test_a_refused_model_shows_as_refused_and_the_one_in_use_as_in_use(self):
+        self.push(self.first)
+        self.serve()
+        self.wait_for("chest: model 1 of the fleet is in use")
+        self.push(make_model(self.folder, "finer", bits=14))
+        self.wait_for("chest: model of the fleet: 2 is refused")
+        self.wait_for_words(r"anna/chest +1 .+ in use +first\.safetensors\n", "models")
+        use = "model 2 wanted, 1 in use: refused since \\d{4}-\\d\\d-\\d\\d [0-9:]{8} UTC: it is of other readings"
+        self.wait_for_words(rf"anna/chest +\*2 .+ refused +finer\.safetensors\n  {use}", "models")
+        self.wait_for_words(rf"anna +warning +[0-9-]+ [0-9:]+ .+\n  chest: {use}", "list")
+        self.assertRegex(self.listed("history"), r"anna +chest: model 1 of the fleet is in use\n")
+        self.assertRegex(self.listed("history"), r"anna +chest: model 2 is refused: it is of other readings")
+        succeed(self.work, "fleet", "rollback", self.hub, "--for", "anna/chest")
+        self.wait_for_words(r"anna +well ", "list")
+        self.wait_for_words(r"anna/chest +\*1 .+ in use +first\.safetensors\n", "models")
+
+    def test_a_push_that_cannot_be_meant_is_refused(self):
+        waiting = run(self.work, "fleet", "push", self.hub, self.first, "--for", "anna/chest")
+        self.assertIn("the hub knows no robot yet", waiting.stderr)
+        self.serve()
+        self.wait_for_words(r"anna +well ", "list")
+        larger = make_model(self.folder, "larger", rows=3)
+        for place, model, said in (
+            ("anne/chest", self.first, "--for: the hub knows no robot 'anne'; it knows anna"),
+            ("anna/back", self.first, "--for: robot 'anna' has no array 'back'; it has chest"),
+            ("anna/chest", larger, "--for: the model is of 3x3 taxels, anna/chest has 2x3"),
+        ):
+            self.expect_refused("push", self.hub, model, "--for", place, said=said)
+        two = ("--for", "anna/chest", "--for", "anne/chest")
+        self.expect_refused("push", self.hub, self.second, *two, said="no robot 'anne'")
+        self.assertNotIn("second", self.listed("models"))  # all or none
+
+    def test_two_robots_of_one_name_are_told_there_and_on_the_hub(self):
+        self.serve()
+        self.wait_for_words(r"anna +(well|warning) ", "list")
+        self.serve()
+        self.wait_for("another robot publishes as 'anna'; give one of them another name")
+        self.wait_for_words(r"anna +error .+\n  another robot publishes under this name; rename one of them\n", "list")
+
+    def test_a_trial_shows_two_robots_and_leaves_nothing_behind(self):
+        empty = self.work / "empty"
+        empty.mkdir()
+        paths = {**os.environ, "TMPDIR": str(empty)}
+        with open(self.log, "wb") as log:
+            trial = self.start([DERMIS, "fleet", "try"], env=paths, stderr=log)
+        self.wait_for("the fleet is shown at http://127.0.0.1:")
+        hub = re.search(r"nats://\S+:\d+", self.log.read_text()).group(0)
+        listed = run(self.work, "fleet", "list", hub).stdout
+        self.assertRegex(listed, r"(?s)anna .*bob ")
+        trial.send_signal(signal.SIGINT)
+        self.assertEqual(trial.wait(30), 0)
+        self.assertEqual(list(empty.iterdir()), [])
+        self.assertEqual(run(self.work, "fleet", "list", hub).returncode, 1)
+
     def test_a_damaged_model_is_refused_until_it_is_pushed_again(self):
         self.push(self.first)
         self.damage(self.first)
@@ -220,6 +291,12 @@ class Models(unittest.TestCase):
             self.assertEqual(refused.returncode, 2, words)
             self.assertIn(said, refused.stderr)
             self.assertEqual(refused.stderr.count("\n"), 1, refused.stderr)
+        nobody = "nats://127.0.0.1:1"
+        for command in ("list", "models", "history", "watch", "page"):
+            self.expect_refused(command, nobody, said="no server answers there; see that nats-server is on", status=1)
+        self.expect_refused("watch", self.hub, said="the hub knows no robot that could be watched")
+        self.expect_refused("history", self.hub, "--hours", "0", said="--hours: must be above 0")
+        self.expect_refused("add", self.hub, "--robot", "a.b", said="robot: 'a.b' must be 1 to 64 letters")
         self.push(self.first)
         refused = run(self.work, "fleet", "rollback", self.hub, "--for", "anna/chest")
         self.assertEqual((refused.returncode, refused.stderr.count("\n")), (2, 1))
