@@ -113,7 +113,8 @@ async function shownFleet(test, size = SIZES[2]) {
 
 const rowOf = (page, robot) => page.locator(`tbody[data-robot=${robot}]`);
 const field = (page, robot, name) => rowOf(page, robot).locator(`.robot-row [data-field=${name}]`);
-const shownRobots = (page) => page.locator("tbody").evaluateAll((rows) => rows.map((row) => row.dataset.robot));
+const shownRobots = (page) =>
+  page.locator("tbody[data-robot]").evaluateAll((rows) => rows.map((row) => row.dataset.robot));
 
 describe("the page of a fleet", { skip }, () => {
   it("shows robots with their rates and what they ask for, and leads to their own pages", async () => {
@@ -155,6 +156,20 @@ describe("the page of a fleet", { skip }, () => {
     });
   });
 
+  it("tells what changed, and how a recording is got", async () => {
+    await shownFleet(async (page) => {
+      await rowOf(page, "bob").locator(".unfold").click();
+      const command = await rowOf(page, "bob").locator("code").textContent();
+      assert.equal(command, `dermis record --from '${hub}?robot=bob&array=plain&from=1&to=last' --out bob-plain.mcap`);
+      await part(page, "history").locator("summary").click();
+      await eventually(page, () =>
+        /\d{4}-\d\d-\d\d [\d:]{8} UTCbobbegins to publish/.test(
+          document.querySelector("[data-role=history]").textContent,
+        ),
+      );
+    });
+  });
+
   it("shows nonsense of a robot as what it is", async () => {
     const array = { name: "<img src=x onerror=alert(1)>\u202e", level: "error", message: "\u001b[2J\u0007" };
     await publish("dermis.anna.health", JSON.stringify({ live: "javascript:alert(1)", arrays: [array] }));
@@ -175,6 +190,7 @@ describe("the page of a fleet", { skip }, () => {
     for (const size of SIZES) {
       await shownFleet(async (page) => {
         await rowOf(page, "bob").locator(".unfold").click();
+        await part(page, "history").locator("summary").click();
         assert.equal(await page.evaluate(() => document.documentElement.scrollWidth - innerWidth), 0);
         await page.evaluate(AXE);
         for (const colorScheme of ["light", "dark"]) {

@@ -52,6 +52,11 @@ export function timeOfDay(seconds: number): string {
   return new Date(1000 * seconds).toISOString().slice(11, 23);
 }
 
+/** Seconds since 1970 as "2026-11-28 05:00:00 UTC". */
+export function dateAndTime(seconds: number): string {
+  return `${new Date(1000 * seconds).toISOString().slice(0, 19).replace("T", " ")} UTC`;
+}
+
 /** The words of what was thrown. */
 export function errorText(error: unknown): string {
   return error instanceof Error ? error.message : String(error);

@@ -6,11 +6,14 @@ import {
   isOfKind,
   isWanted,
   type Kind,
+  modelOf,
   type RobotState,
+  recordCommand,
   robotOf,
   sorted,
   span,
   stateOf,
+  stateOfArray,
   wayTo,
 } from "./fleet_data";
 
@@ -26,6 +29,9 @@ const array = (of: Partial<ArrayState> = {}): ArrayState => ({
   left_out: 0,
   masked_taxels: 0,
   wants_calibration: false,
+  wanted_model: 0,
+  used_model: 0,
+  refusal: "",
   ...of,
 });
 
@@ -36,7 +42,9 @@ const robot = (of: Partial<RobotState> = {}): RobotState => ({
   age_s: 0.1,
   lag: 0,
   health_age_s: 0.5,
-  health_error: "",
+  state: "well",
+  since_s: null,
+  reasons: [],
   silent: false,
   live: "http://anna:8080/",
   arrays: [array()],
@@ -44,25 +52,43 @@ const robot = (of: Partial<RobotState> = {}): RobotState => ({
 });
 
 describe("the state of a robot", () => {
-  it("is that of its worst array", () => {
+  it("is the word of the hub, and of its arrays that of the worst that they say", () => {
     expect(stateOf(robot())).toBe("well");
-    expect(stateOf(robot({ arrays: [array(), array({ level: "warning" })] }))).toBe("warning");
-    expect(stateOf(robot({ arrays: [array({ level: "warning" }), array({ level: "error" })] }))).toBe("error");
-    expect(stateOf(robot({ arrays: [array({ level: "\u202ewell" })] }))).toBe("error");
-    expect(stateOf(robot({ arrays: [array({ wants_calibration: true })] }))).toBe("warning");
+    expect(stateOf(robot({ state: "behind" }))).toBe("behind");
+    expect(stateOf(robot({ state: "\u202ewell" }))).toBe("unreadable");
+    expect(stateOfArray(array({ level: "\u202ewell" }))).toBe("error");
+    expect(stateOfArray(array({ refusal: "it is of another pitch" }))).toBe("warning");
   });
 
-  it("is silence, whatever it said before", () => {
-    expect(stateOf(robot({ silent: true }))).toBe("silent");
-    expect(stateOf(robot({ messages: 0, health_age_s: null, silent: true }))).toBe("silent");
-    expect(stateOf(robot({ health_age_s: null, silent: true }))).toBe("no health");
-    expect(stateOf(robot({ health_error: "health: is too large" }))).toBe("unreadable");
+  it("shows no rate of a silent robot", () => {
+    expect(robotOf(robot()).rateHz).toBe(100);
+    expect(robotOf(robot({ state: "silent", silent: true })).rateHz).toBeNaN();
+  });
+});
+
+describe("the model of an array", () => {
+  it("is told with the one that the fleet wants", () => {
+    const of = (wanted: number, used: number, refusal = ""): string =>
+      modelOf(array({ wanted_model: wanted, used_model: used, refusal }));
+    expect(of(0, 0)).toBe("chest");
+    expect(of(2, 2)).toBe("chest (2)");
+    expect(of(2, 1, "no")).toBe("model 2 refused, 1 in use");
+    expect(of(1, 0)).toBe("model 1 wanted, its own in use");
+  });
+});
+
+describe("a recording", () => {
+  it("is got from the hub by a command that holds nothing but names", () => {
+    const command = recordCommand("nats://hub", "an'na", "a'; rm b");
+    expect(command).toBe(
+      "dermis record --from 'nats://hub?robot=an?na&array=a???rm?b&from=1&to=last' --out an?na-a???rm?b.mcap",
+    );
   });
 });
 
 describe("robots", () => {
   it("are found by words and by kind", () => {
-    const one = robotOf(robot({ arrays: [array({ level: "warning", message: "2 faults" })] }));
+    const one = robotOf(robot({ state: "warning", reasons: ["chest: 2 faults"] }));
     const found = (words: string, kind: Kind = "all"): boolean => isWanted(one, { words, kind });
     expect([found(""), found("AN"), found("chest 2"), found("bob")]).toEqual([true, true, true, false]);
     expect([found("", "attention"), found("", "silent"), found("", "to calibrate")]).toEqual([true, false, false]);
@@ -73,7 +99,7 @@ describe("robots", () => {
     const robots = [
       robotOf(robot({ name: "r10", arrays: [array({ gain_change: 0.1 })] })),
       robotOf(robot({ name: "r9" })),
-      robotOf(robot({ name: "r2", silent: true, arrays: [array({ gain_change: 0.2 })] })),
+      robotOf(robot({ name: "r2", state: "silent", silent: true, arrays: [array({ gain_change: 0.2 })] })),
     ];
     const names = (key: "state" | "robot" | "drift", descends: boolean): string[] =>
       sorted(robots, { key, descends }).map(({ state }) => state.name);

@@ -8,14 +8,27 @@ export interface FleetDocument {
   readonly robots: readonly RobotState[];
 }
 
+/** The document /history.json: the changes of a day, the newest last. */
+export interface HistoryDocument {
+  readonly events: readonly RobotEvent[];
+}
+
+export interface RobotEvent {
+  readonly time_ms: number;
+  readonly robot: string;
+  readonly text: string;
+}
+
 export interface RobotState {
   readonly name: string;
+  readonly state: string;
+  readonly since_s: number | null;
+  readonly reasons: readonly string[];
   readonly messages: number;
   readonly bytes: number;
   readonly age_s: number | null;
   readonly lag: number;
   readonly health_age_s: number | null;
-  readonly health_error: string;
   readonly silent: boolean;
   readonly live: string;
   readonly arrays: readonly ArrayState[];
@@ -34,10 +47,13 @@ export interface ArrayState {
   readonly masked_taxels: number;
   readonly gain_change?: number;
   readonly wants_calibration: boolean;
+  readonly wanted_model: number;
+  readonly used_model: number;
+  readonly refusal: string;
 }
 
 /** From the worst to the best. */
-export const STATES = ["silent", "unreadable", "error", "warning", "no health", "well"] as const;
+export const STATES = ["silent", "unreadable", "error", "behind", "warning", "no health", "well"] as const;
 export type StateName = (typeof STATES)[number];
 export type Level = "good" | "warn" | "bad";
 
@@ -45,6 +61,7 @@ export const LEVELS: Readonly<Record<StateName, Level>> = {
   silent: "bad",
   unreadable: "bad",
   error: "bad",
+  behind: "warn",
   warning: "warn",
   "no health": "warn",
   well: "good",
@@ -55,15 +72,20 @@ const ARRAY_STATES: Readonly<Record<string, StateName>> = { good: "well", warnin
 
 export function stateOfArray(array: ArrayState): StateName {
   const state = ARRAY_STATES[array.level] ?? "error";
-  return state === "well" && array.wants_calibration ? "warning" : state;
+  return state === "well" && (array.wants_calibration || array.refusal !== "") ? "warning" : state;
 }
 
 export function stateOf(robot: RobotState): StateName {
-  if (robot.health_error !== "") return "unreadable";
-  if (robot.health_age_s === null) return robot.messages > 0 ? "no health" : "silent";
-  if (robot.silent) return "silent";
-  const states = robot.arrays.map(stateOfArray);
-  return STATES.find((state) => states.includes(state)) ?? "well";
+  return STATES.find((state) => state === robot.state) ?? "unreadable";
+}
+
+/** "model 2 wanted, 1 in use, refused": the model of an array, and the one that the fleet wants of it. */
+export function modelOf(array: ArrayState): string {
+  const name = array.model.replace(/\.safetensors$/, "");
+  if (array.wanted_model === 0 || array.wanted_model === array.used_model)
+    return array.used_model > 0 ? `${name} (${array.used_model})` : name;
+  const used = array.used_model > 0 ? `${array.used_model}` : "its own";
+  return `model ${array.wanted_model} ${array.refusal === "" ? "wanted" : "refused"}, ${used} in use`;
 }
 
 /** A robot with what the table shows and sorts. */
@@ -71,6 +93,7 @@ export interface Robot {
   readonly state: RobotState;
   readonly word: StateName;
   readonly severity: number;
+  /** NaN: not known, as that of a silent robot. */
   readonly rateHz: number;
   readonly lost: number;
   readonly leftOut: number;
@@ -90,22 +113,20 @@ export function robotOf(state: RobotState): Robot {
     state,
     word,
     severity: STATES.indexOf(word),
-    rateHz: sum(({ rate_hz }) => rate_hz),
+    rateHz: state.silent ? NaN : sum(({ rate_hz }) => rate_hz),
     lost: sum(({ lost }) => lost),
     leftOut: sum(({ left_out }) => left_out),
     masked: sum(({ masked_taxels }) => masked_taxels),
     drift: drifts.length > 0 ? Math.max(...drifts) : NaN,
     toCalibrate: arrays.filter(({ wants_calibration }) => wants_calibration).map(({ name }) => name),
-    remarks: remarksOn(state),
+    remarks: state.reasons.join("; "),
   };
 }
 
-function remarksOn(robot: RobotState): string {
-  const of = (array: ArrayState): string[] => [
-    ...(array.level === "good" ? [] : [`${array.name}: ${array.message}`]),
-    ...(array.left_out > 0 ? [`${array.name}: ${array.left_out} frames were not published`] : []),
-  ];
-  return [...(robot.health_error === "" ? [] : [robot.health_error]), ...robot.arrays.flatMap(of)].join("; ");
+/** The command that gets the frames of an array from the hub. Only letters that names may have are taken. */
+export function recordCommand(hub: string, robot: string, array: string): string {
+  const [from, of] = [robot, array].map((name) => name.replace(/[^A-Za-z0-9_-]/g, "?"));
+  return `dermis record --from '${hub}?robot=${from}&array=${of}&from=1&to=last' --out ${from}-${of}.mcap`;
 }
 
 /** The robots that a user looks for: words in names and remarks, and one kind of robots. */

@@ -16,6 +16,7 @@ import {
   type SortKey,
   sorted,
 } from "./fleet_data";
+import { FleetHistory } from "./fleet_history";
 import { COLUMNS, RobotRow } from "./robot_row";
 import "./fleet.css";
 
@@ -49,6 +50,7 @@ export class FleetPage {
   readonly #none = element("p", { class: "note dim", "data-role": "none", hidden: true });
   readonly #shownCount = element("span", { class: "dim", role: "status", "data-role": "shown" });
   readonly #rows: KeyedRows<Robot>;
+  readonly #history = new FleetHistory();
   #robots: readonly Robot[] = [];
   #isThere = false;
   #kind: Kind = "all";
@@ -79,13 +81,17 @@ export class FleetPage {
     this.#rows = new KeyedRows(
       this.#table,
       ({ state }) => state.name,
-      () => new RobotRow(),
+      () => new RobotRow(() => this.#hub.textContent ?? ""),
     );
   }
 
   begin(): void {
     document.body.classList.add("fleet");
-    document.body.append(this.#bar(), this.#notice, element("main", {}, this.#toolbar(), this.#panel()));
+    document.body.append(
+      this.#bar(),
+      this.#notice,
+      element("main", {}, this.#toolbar(), this.#panel(), this.#history.element),
+    );
     window.addEventListener("keydown", (event) => this.#key(event));
     this.#show();
     void this.#follow();
@@ -147,6 +153,7 @@ export class FleetPage {
         return this.#say("bad", "Wrong token", "Open the address that dermis fleet page printed.");
       if (!answer.ok) return this.#say("bad", "No answer", `The server answers with ${answer.status}.`);
       this.#take((await answer.json()) as FleetDocument);
+      await this.#history.ask();
     } catch {
       this.#say("bad", "No server", "dermis fleet page does not answer; it is asked again.");
     }
@@ -177,6 +184,7 @@ export class FleetPage {
       this.#order,
     );
     this.#rows.show(robots);
+    this.#history.filter(wanted.words);
     this.#kinds.forEach((kindButton, kind) => {
       const ofKind = this.#robots.filter((robot) => isOfKind(robot, kind)).length;
       setText(kindButton, `${KIND_WORDS[kind]} ${count(ofKind)}`);

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { element, setData, setHidden, setText } from "../dom";
-import { count, fixed } from "../format";
+import { count, dateAndTime, fixed } from "../format";
 import { KeyedRows, type Row } from "../keyed_rows";
 import {
   type ArrayState,
   LEVELS,
+  modelOf,
   type Robot,
+  recordCommand,
   type SortKey,
   type StateName,
   span,
@@ -24,7 +26,7 @@ export const COLUMNS: readonly { readonly key?: SortKey; readonly name: string; 
   { key: "faults", name: "Faults", title: "Taxels that are dead or on faulty lines" },
   { key: "drift", name: "Drift", title: "Change of the gains from taxel to taxel since the calibration" },
   { key: "calibration", name: "Calibration", title: "Arrays that ask to be calibrated" },
-  { name: "Remarks", title: "What it says of its arrays" },
+  { name: "Remarks", title: "Why, and what it says of its arrays" },
 ];
 
 function known(value: number, digits: number, unit: string): string {
@@ -96,16 +98,34 @@ class ArrayRow implements Row<ArrayOfRobot> {
     setText(this.#name, array.name);
     const texts = [
       `${count(array.rows)} \u00d7 ${count(array.cols)}`,
-      known(array.rate_hz, 1, "Hz"),
+      known(isSilent ? NaN : array.rate_hz, 1, "Hz"),
       lostWords(array.lost, array.left_out),
       "",
       count(array.masked_taxels),
       known(100 * (array.gain_change ?? NaN), 0, "%"),
-      array.wants_calibration ? "calibrate" : array.model.replace(/\.safetensors$/, ""),
-      array.message,
+      array.wants_calibration ? "calibrate" : modelOf(array),
+      array.refusal === "" ? array.message : array.refusal,
     ];
     const marks = [false, false, array.lost + array.left_out > 0, false, array.masked_taxels > 0, false];
-    showCells(this.#cells, texts, [...marks, array.wants_calibration]);
+    showCells(this.#cells, texts, [...marks, array.wants_calibration || array.refusal !== ""]);
+  }
+}
+
+/** The command that gets the frames of an array, which the hub has also while the robot is off or cannot be reached. */
+class RecordRow implements Row<string> {
+  readonly #command = element("code");
+  readonly element = element(
+    "tr",
+    { role: "row", class: "record-row" },
+    element(
+      "td",
+      { role: "cell", class: "words", colspan: String(COLUMNS.length), "data-head": "Recording" },
+      this.#command,
+    ),
+  );
+
+  show(command: string): void {
+    setText(this.#command, command);
   }
 }
 
@@ -113,16 +133,19 @@ class ArrayRow implements Row<ArrayOfRobot> {
 export class RobotRow implements Row<Robot> {
   readonly element = element("tbody", { role: "rowgroup" });
   readonly #pill = statePill();
-  readonly #told = element("span", { class: "dim", title: "Since it told how it is" });
+  readonly #told = element("span", { class: "dim", "data-role": "since" });
   readonly #toggle: HTMLButtonElement;
   readonly #name = element("span", { class: "robot-name told" });
   readonly #cells = figureCells();
-  readonly #arrays: KeyedRows<ArrayOfRobot>;
+  readonly #hub: () => string;
+  readonly #arrays: KeyedRows<ArrayOfRobot | string>;
   #live: string | undefined;
   #shown: Robot | undefined;
   #isOpen = false;
 
-  constructor() {
+  /** `hub`: its address, for commands. */
+  constructor(hub: () => string) {
+    this.#hub = hub;
     this.#toggle = element("button", {
       type: "button",
       class: "unfold",
@@ -134,8 +157,8 @@ export class RobotRow implements Row<Robot> {
     this.element.append(element("tr", { role: "row", class: "robot-row" }, state, head, ...this.#cells));
     this.#arrays = new KeyedRows(
       this.element,
-      ({ index }) => String(index),
-      () => new ArrayRow(),
+      (item) => (typeof item === "string" ? item : String(item.index)),
+      (item): Row<ArrayOfRobot | string> => (typeof item === "string" ? new RecordRow() : new ArrayRow()),
     );
   }
 
@@ -145,7 +168,9 @@ export class RobotRow implements Row<Robot> {
     setData(this.element, "robot", state.name);
     setData(this.element, "state", word);
     this.#pill.show(word);
-    setText(this.#told, word === "silent" && state.health_age_s !== null ? span(state.health_age_s) : "");
+    const isKnown = word !== "well" && state.since_s !== null;
+    setText(this.#told, isKnown ? span(state.since_s) : "");
+    this.#told.title = isKnown ? `Since ${dateAndTime(Date.now() / 1000 - state.since_s)}` : "";
     this.#showName(state.name, state.live);
     const texts = [
       count(state.arrays.length),
@@ -184,6 +209,12 @@ export class RobotRow implements Row<Robot> {
 
   #showArrays(robot: Robot): void {
     const arrays = this.#isOpen ? robot.state.arrays : [];
-    this.#arrays.show(arrays.map((array, index) => ({ index, array, isSilent: robot.word === "silent" })));
+    const { name, silent } = robot.state;
+    this.#arrays.show(
+      arrays.flatMap((array, index) => [
+        { index, array, isSilent: silent },
+        recordCommand(this.#hub(), name, array.name),
+      ]),
+    );
   }
 }
