@@ -90,7 +90,7 @@ void print_robot(const live::fleet::RobotState& robot) {
 }  // namespace
 
 Result<std::vector<live::fleet::RobotState>> robots_seen_twice(live::fleet::Hub& hub) {
-  const Result<std::vector<live::fleet::RobotState>> robots = hub.robots();
+  Result<std::vector<live::fleet::RobotState>> robots = hub.robots();
   const auto seems_silent = [](const live::fleet::RobotState& robot) {
     return robot.is_silent(now()) && robot.health_time > Nanos{};
   };
@@ -164,7 +164,7 @@ Status serve_fleet_page(PageOptions& options, const std::function<Status()>& goe
     Result<std::vector<live::fleet::RobotState>> robots = (*hub)->robots();
     fleet.error = robots ? "" : robots.error().message;
     if (robots) fleet.robots = *std::move(robots);
-    if (looks++ % kLooksToHistory == 0 && robots) {
+    if (looks++ % kLooksToHistory == 0 && fleet.error.empty()) {
       if (const auto events = (*hub)->history(fleet.robots, now() - kShownHistory)) {
         (*server)->set_document("/history.json", "application/json", live::fleet::history_to_json(*events));
       }

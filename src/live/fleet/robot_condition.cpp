@@ -117,7 +117,7 @@ std::string model_use(const ArrayHealth& array) {
   if (array.wanted_model == 0 && array.used_model == 0) return "";
   const std::string used = array.used_model > 0 ? std::to_string(array.used_model) : "its own";
   if (array.refusal.empty() && array.used_model == array.wanted_model) return fmt::format("model {} in use", used);
-  const std::string both = fmt::format("model {} wanted, {} in use", array.wanted_model, used);
+  std::string both = fmt::format("model {} wanted, {} in use", array.wanted_model, used);
   if (array.refusal.empty()) return both;
   return fmt::format("{}: refused since {}: {}", both, utc_text(array.refused), array.refusal);
 }
