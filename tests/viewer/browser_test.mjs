@@ -3,7 +3,18 @@
 // Usage: node browser_test.mjs path/to/dermis
 import assert from "node:assert/strict";
 import { describe, it } from "node:test";
-import { assertUnhurt, becomes, bench, browser, eventually, freePort, openPage, shown, useBench } from "./harness.mjs";
+import {
+  assertUnhurt,
+  becomes,
+  bench,
+  browser,
+  eventually,
+  freePort,
+  openPage,
+  shown,
+  tareAnyway,
+  useBench,
+} from "./harness.mjs";
 
 useBench();
 
@@ -163,8 +174,7 @@ describe("the bar", () => {
       await eventually(page, () => document.querySelector("[data-role=recording-file]").textContent.endsWith(".mcap"));
       await page.click("[data-role=record]");
       await page.locator("[data-role=record][aria-pressed=false]").waitFor();
-      await page.click("[data-role=tare]");
-      await page.locator("[data-role=tare][aria-pressed=true]").waitFor();
+      await tareAnyway(page);
       await page.click("[data-role=show-thresholds]");
       const force = page.locator("[data-parameter='/contacts/onset_force_n']");
       await force.fill("0.75");

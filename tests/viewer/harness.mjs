@@ -183,6 +183,15 @@ export function assertUnhurt(page) {
 
 export const part = (page, role) => page.locator(`[data-role=${role}]`);
 
+/** Tares, over a load where one stands there. */
+export async function tareAnyway(page) {
+  await part(page, "tare").click();
+  const [refused, taken] = ["[data-role=tare-force]:visible", "[data-role=tare][aria-pressed=true]"];
+  await page.locator(`${refused}, ${taken}`).first().waitFor();
+  if (await page.locator(refused).isVisible()) await page.locator(refused).click();
+  await page.locator(taken).waitFor();
+}
+
 /** Those of useBench() or useEmptyFolder(), during the tests of a file. */
 export let bench;
 export let browser;

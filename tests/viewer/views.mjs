@@ -50,6 +50,7 @@ try {
   const page = await openPage(browser, server.url);
   const press = await openPage(browser, "about:blank");
   await becomes(page, "live");
+  await page.addStyleTag({ content: ".messages { display: none }" }); // a busy machine tells of itself
   for (const view of views) {
     await page.setViewportSize({ width: SIZES[4][0], height: SIZES[4][1] });
     await page.locator(`[data-tab=${view}]`).click();
