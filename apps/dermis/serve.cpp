@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
@@ -122,6 +123,14 @@ Status open_folder(out::serve::SuitPlace& place) {
   return live::sources::write_array_source(folder->path, *found);
 }
 
+/// Those of an array with a folder of its own lie in it.
+void place_recordings(const out::serve::SuitPlace& place, out::serve::SessionOptions& session) {
+  const std::filesystem::path folder =
+      std::filesystem::path(place.suit.empty() ? place.model : place.suit).parent_path();
+  if (!live::sources::is_array_folder(folder.string())) return;
+  session.recordings = (folder / folder.filename()).string() + ".mcap";
+}
+
 Status serve_suit(ServeOptions& options) {
   if (Status opened = open_folder(options.place); !opened) return opened;
   if (Status possible = check(options); !possible) return possible;
@@ -144,6 +153,7 @@ Status serve_suit(ServeOptions& options) {
   if (*is_unknown) {
     if (Status set_up = set_up_array(options); !set_up || stop) return set_up;
   }
+  place_recordings(options.place, options.session);
   Result<out::serve::ServedSuit> suit = out::serve::open_suit(options.place, {.stop = &stop, .notice = print_notice});
   if (!suit) return suit.error();
   const std::size_t arrays = suit->arrays.size();

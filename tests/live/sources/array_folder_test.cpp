@@ -90,7 +90,7 @@ TEST_F(ArrayFolderTest, is_none_without_a_description) {
 }
 
 TEST_F(ArrayFolderTest, finds_its_source_by_frames_of_its_shape) {
-  from_after("sim:idle?rate=100&rows=3&cols=4");
+  EXPECT_EQ(from_after("sim:idle?rate=100&rows=3&cols=4"), "sim:idle?rate=100&rows=3&cols=4");
   const Result<SourceName> found = find_source(*read(), {3, 4}, {});
   ASSERT_TRUE(found) << found.error().message;
   EXPECT_EQ(found->text, "sim:idle?rate=100&rows=3&cols=4");

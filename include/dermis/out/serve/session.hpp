@@ -23,7 +23,8 @@ struct SessionOptions {
   std::vector<websocket::Asset> page{};  ///< The page for browsers; empty: there is the stream alone.
   /// A recording to begin with, .mcap; those that clients begin take their names from it. Empty: none.
   std::string record{};
-  std::string recordings{};  ///< A recording in whose folder clients record; empty: that of `record`.
+  /// A recording in whose folder and with whose name clients record; empty: those of `record`.
+  std::string recordings{};
   std::optional<live::dds::PublisherOptions> dds{};        ///< Topics for nodes of ROS 2 (docs/ros.md); empty: none.
   std::optional<live::fleet::PublisherOptions> publish{};  ///< Frames for a fleet (docs/fleet.md); empty: none.
 };

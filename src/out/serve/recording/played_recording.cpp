@@ -9,7 +9,7 @@ namespace dermis::out::serve {
 PlayedRecording::PlayedRecording(SessionOptions options, PlayedSuit suit)
     : options_(std::move(options)), suit_(std::move(suit)) {
   options_.server.port = 0;
-  options_.recordings = std::exchange(options_.record, {});
+  if (!options_.record.empty()) options_.recordings = std::exchange(options_.record, {});
   options_.dds.reset();
 }
 

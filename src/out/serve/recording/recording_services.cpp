@@ -44,7 +44,7 @@ std::string file_name(const std::string& path) {
 RecordingServices::RecordingServices(const ServedSuit& suit, const SessionOptions& options, SuitRecorder::Arrays arrays,
                                      const ModelsInUse& models, SuitRecorder& recorder, websocket::Server& server,
                                      std::optional<PlayedRecording::PlayedSuit> played)
-    : folder_(options.recordings.empty() ? options.record : options.recordings),
+    : folder_(options.record.empty() ? options.recordings : options.record),
       arrays_(std::move(arrays)),
       models_(models),
       recorder_(recorder),
