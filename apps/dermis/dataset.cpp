@@ -77,6 +77,8 @@ void add_dataset(Command& command) {
   command.flag("--tare-force", options->episodes.tare_force, "The same, whatever load stands there");
   command.flag("--follow-drift", options->episodes.follow_drift,
                "Follow the offsets of idle taxels, like 'dermis run'");
+  command.flag("--cut", options->episodes.cut,
+               "Each span of a label (marks of the recordings) is an episode; what has no label is left out");
   command.option("--hold-out", options->episodes.hold_out,
                  "Not to be trained on: a share of the episodes such as 0.2, the last ones, or recordings by name");
   command.input("--state", options->episodes.states,

@@ -47,6 +47,7 @@ std::vector<std::pair<std::string, std::string>> described(const EpisodeOptions&
     how.emplace_back("zero", zero + (options.follow_drift ? "; drift is followed" : ""));
   }
   how.emplace_back("steps", options.times.empty() ? fmt::format("{} a second", options.fps) : "at given times");
+  if (options.cut) how.emplace_back("episodes", "cut by the labels of the recordings");
   how.emplace_back("window", fmt::format("{} frame{}", options.window, options.window == 1 ? "" : "s"));
   return how;
 }
@@ -79,6 +80,7 @@ Status EpisodeOptions::validate() const {
   if (model.empty() && (tare || tare_force || follow_drift)) {
     return bad_field(follow_drift ? "follow-drift" : "tare", "needs a model: without one there are no forces");
   }
+  if (cut && !times.empty()) return bad_field("cut", "takes the steps of a clock: give no times of steps");
   return check_quantities(quantities);
 }
 

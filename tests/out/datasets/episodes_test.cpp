@@ -9,8 +9,11 @@
 #include <functional>
 #include <limits>
 
+#include "dermis/bytes/models/model_file.hpp"
+#include "dermis/bytes/recordings/marks.hpp"
 #include "dermis/bytes/recordings/suit_recording.hpp"
 #include "dermis/bytes/ros_messages/ros_messages.hpp"
+#include "support/hand_made_model.hpp"
 #include "support/joint_messages.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -129,6 +132,20 @@ void write_robot(const std::string& path, const std::vector<JointSample>& sample
   };
   write_tip(
       path, [](int, RawFrame&) {}, write_joints);
+}
+
+/// An array of 1x1 for 0.5 s, with marks.
+void write_marked(const std::string& path, const std::vector<bytes::ros_messages::Mark>& marks) {
+  const auto write_marks = [&](bytes::recordings::SuitRecordingWriter& writer, Nanos time) {
+    for (const bytes::ros_messages::Mark& mark : marks) {
+      if (mark.time != time) continue;
+      std::vector<std::uint8_t> message;
+      bytes::ros_messages::encode_mark(mark, "tip", message);
+      ASSERT_TRUE(writer.write({bytes::recordings::kMarksTopic, bytes::ros_messages::mark_type(), time, message}));
+    }
+  };
+  write_tip(
+      path, [](int, RawFrame&) {}, write_marks);
 }
 
 std::vector<Nanos> even_times(std::size_t count, Nanos first = {}) {
@@ -496,6 +513,91 @@ TEST_F(Episodes, name_what_is_wrong) {
   EXPECT_NE(error_of({folder_.file("none.mcap")}, {}).find("none.mcap"), std::string::npos);
   write_recording(folder_.file("wide.mcap"), even_times(3), 3);
   EXPECT_NE(error_of({path_, folder_.file("wide.mcap")}, {}).find("'left_hand' (1x2)"), std::string::npos);
+}
+
+// Steps at 20 Hz are at 5 ms, 55 ms and so on.
+TEST_F(Episodes, have_the_label_in_force_at_each_step) {
+  const std::string marked = folder_.file("marked.mcap");
+  write_marked(marked, {{milliseconds(100), "reach"}, {milliseconds(200), "hold"}, {milliseconds(300), ""}});
+  const std::string again = folder_.file("again.mcap");
+  write_marked(again, {{milliseconds(300), "hold"}, {milliseconds(350), "", "", "tare"}, {milliseconds(400), "lift"}});
+  const std::string bare = folder_.file("bare.mcap");
+  write_marked(bare, {});
+  Kept kept;
+  ASSERT_TRUE(make_episodes({marked, again, bare}, {.fps = 20.0}, kept));
+  EXPECT_EQ(kept.tally().labels, (std::vector<std::string>{"reach", "hold", "lift"}));
+  EXPECT_EQ(kept.names()[1], "label");
+  EXPECT_EQ(kept.ends(), (std::vector<std::size_t>{11, 22, 33}));
+  EXPECT_EQ(kept.column<std::int64_t>("label"),
+            (std::vector<std::int64_t>{-1, -1, 0,  0,  1,  1,  -1, -1, -1, -1, -1,  //
+                                       -1, -1, -1, -1, -1, -1, 1,  1,  2,  2,  2,   //
+                                       -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1}));
+  Kept alone;
+  ASSERT_TRUE(make_episodes({bare}, {.fps = 20.0}, alone));
+  EXPECT_EQ(alone.column<std::int64_t>("label").size(), 0U) << "nobody has marked anything";
+}
+
+TEST_F(Episodes, have_the_labels_that_were_edited_and_replace_what_is_no_text) {
+  const std::string marked = folder_.file("marked.mcap");
+  write_marked(marked, {{milliseconds(100), "reach"}});
+  std::ofstream(folder_.file("marked.marks.csv")) << "time_s,label\n0.4,lift\xff\n";
+  Kept kept;
+  ASSERT_TRUE(make_episodes({marked}, {.fps = 20.0}, kept));
+  EXPECT_EQ(kept.tally().labels, (std::vector<std::string>{"lift\xef\xbf\xbd"}));
+  EXPECT_EQ(kept.column<std::int64_t>("label"), (std::vector<std::int64_t>{-1, -1, -1, -1, -1, -1, -1, -1, 0, 0, 0}));
+}
+
+TEST_F(Episodes, are_cut_by_the_labels) {
+  const std::string marked = folder_.file("marked.mcap");
+  write_marked(marked, {{milliseconds(100), "reach"},
+                        {milliseconds(200), "hold"},
+                        {milliseconds(300), "hold"},
+                        {milliseconds(350), ""},
+                        {milliseconds(450), "reach"}});
+  Kept kept;
+  const Result<EpisodeTally> made = make_episodes({marked}, {.fps = 20.0, .cut = true}, kept);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_EQ(kept.ends(), (std::vector<std::size_t>{2, 4, 5, 7}));
+  EXPECT_EQ(made->episodes, 4U);
+  EXPECT_EQ(made->steps, 7U);
+  EXPECT_EQ(kept.column<std::int64_t>("label"), (std::vector<std::int64_t>{0, 0, 1, 1, 1, 0, 0}));
+  std::vector<std::int64_t> times;
+  for (const int step : {2, 3, 4, 5, 6, 9, 10}) times.push_back(5'000'000 + 50'000'000 * step);
+  EXPECT_EQ(kept.column<std::int64_t>("time_ns"), times);
+  const std::vector<float> ages = kept.column<float>("tip_age");
+  for (std::size_t k = 0; k < 6; ++k) EXPECT_FLOAT_EQ(ages[k], 0.005F) << "windows go on where nothing is labelled";
+  ASSERT_EQ(made->sources.size(), 4U);
+  EXPECT_EQ(made->sources[2].label, "hold");
+  EXPECT_EQ(made->sources[2].first, made->sources[2].last);
+  Kept held;
+  ASSERT_TRUE(make_episodes({marked}, {.fps = 20.0, .hold_out = {"0.5"}, .cut = true}, held));
+  EXPECT_EQ(held.tally().held_out, 2U);
+}
+
+TEST_F(Episodes, are_not_cut_without_a_label_to_cut_by) {
+  EXPECT_EQ(
+      error_of({path_}, {.cut = true}),
+      "cut: '" + path_ + "' has no mark with a label; set some on the time line of 'dermis serve', or leave it out");
+  const std::string marked = folder_.file("marked.mcap");
+  write_marked(marked, {{milliseconds(100), "", "", "tare"}, {milliseconds(200), ""}});
+  EXPECT_NE(error_of({marked}, {.cut = true}).find("has no mark with a label"), std::string::npos);
+  std::ofstream(folder_.file("marked.marks.csv")) << "time_s,label\n7,late\n";
+  EXPECT_EQ(error_of({marked}, {.cut = true}), "cut: " + marked + ": its labels lie at no step; mend its marks");
+  EXPECT_EQ(error_of({marked}, {.times = {{milliseconds(100)}}, .cut = true}),
+            "cut: takes the steps of a clock: give no times of steps");
+}
+
+TEST_F(Episodes, say_that_a_recording_was_tared_while_it_was_made) {
+  const std::string model = folder_.file("tip.safetensors");
+  ASSERT_TRUE(bytes::models::write_model(model, support::hand_made_model(1, 1)));
+  const std::string tared = folder_.file("tared.mcap");
+  write_marked(tared, {{milliseconds(100), "", "", "tare"}, {milliseconds(400), "", "", "tare"}});
+  EXPECT_EQ(notices_of({tared}, {.model = model}),
+            (std::vector<std::string>{
+                "'" + tared +
+                "' was tared while it was recorded, at 0.1 s, 0.4 s: make the dataset with a tare, or its "
+                "forces begin at the zero of the calibration"}));
+  EXPECT_EQ(notices_of({tared}, {}), std::vector<std::string>()) << "counts have no zero";
 }
 
 }  // namespace

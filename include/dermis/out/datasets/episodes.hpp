@@ -46,6 +46,9 @@ struct EpisodeOptions {
   /// Episodes that are not trained on: a share of them such as "0.2", or recordings by their paths or names. They
   /// become the last ones.
   std::vector<std::string> hold_out{};
+  /// Each span of a label (docs/recordings.md) is an episode, and what has no label is left out. Needs the clock of
+  /// `fps`, and a label in each recording.
+  bool cut = false;
   const std::atomic<bool>* stop = nullptr;                ///< Set: ends the work, and nothing is written.
   std::function<void(const std::string&)> notice{};       ///< Receives one line on what a user should know.
   std::function<void(const std::string&)> loss{};         ///< Receives one line, if a file is cut off at its end.
