@@ -69,8 +69,9 @@ void add_dataset(Command& command) {
   command.option("--format", options->format, "Layout: LeRobot v3, HDF5 of ACT or of robomimic, zarr replay buffer")
       .one_of(out::datasets::dataset_formats())
       .shows_default();
-  command.input_file("--model", options->episodes.model,
-                     "Model file of the array, or suit.toml of several; without one there are no forces");
+  command.input_file(
+      "--model", options->episodes.model,
+      "Model file of the array, or suit.toml of several; without it, the models that the recordings hold");
   command.flag("--tare", options->episodes.tare,
                "Take the first second of each recording (at least 10 frames) as unloaded, like 'dermis run'; refused "
                "under a load");
@@ -89,7 +90,8 @@ void add_dataset(Command& command) {
   command.option("--columns", options->episodes.quantities,
                  "Only these: forces, sigma, valid, raw, age, fresh, contacts, temperature, supply");
   command.flag("--flat", options->episodes.flat, "Every column has one dimension");
-  command.option("--task", options->task, "Sentence that says what is done (LeRobot)").shows_default();
+  command.option("--task", options->task, "Sentence that says what is done in steps without a label (LeRobot)")
+      .shows_default();
   command.action([options] { return make_dataset(*options); });
 }
 

@@ -378,13 +378,13 @@ class Dataset:
     """Recordings as episodes for learning (docs/datasets.md); each recording is one, and a gap of 10 s begins another.
     They are made when the first is asked for, and kept then.
 
-    model: of the array, or the suit.toml of several; without one there are no forces. window: each step has so many of
-    the last frames. columns: only these quantities. state, action: a topic of joints in the recordings, or a CSV with
-    time_s for each. Without a state the only topic of joints is it; () is none. times_ns: the times of the steps of
-    each recording, such as those of its images, in place of fps. Of a single recording they may be those of several
-    episodes, one after the other. tare, tare_force, follow_drift: zero as `dermis run` has it. hold_out: a share of the
-    episodes, or recordings, which then are the last episodes. cut: each span of a label in the marks of the recordings
-    is an episode, and what has no label is left out.
+    model: of the array, or the suit.toml of several; without it, those that the recordings hold. window: each step has
+    so many of the last frames. columns: only these quantities. state, action: a topic of joints in the recordings, or a
+    CSV with time_s for each. Without a state the only topic of joints is it; () is none. times_ns: the times of the
+    steps of each recording, such as those of its images, in place of fps. Of a single recording they may be those of
+    several episodes, one after the other. tare, tare_force, follow_drift: zero as `dermis run` has it. hold_out: a
+    share of the episodes, or recordings, which then are the last episodes. cut: each span of a label in the marks of
+    the recordings is an episode, and what has no label is left out.
     """
 
     def __init__(

@@ -227,11 +227,9 @@ Status Maker::write_steps(std::span<const Nanos> times) {
     steps_[k].work(times, std::span(block_.values).subspan(begins[k], begins[k + 1] - begins[k]));
   });
   if (Status tared = check_tares(); !tared) return tared;
-  const std::int64_t label = options_.cut && !times.empty() ? labels_.at(times.front()) : -1;
-  if (times.empty() || (options_.cut && label < 0)) return Done{};
-  if (steps_of_episode_ == 0) {
-    tally_.sources.push_back({from_, 0, times.front(), {}, label < 0 ? "" : labels_.names()[label]});
-  }
+  const std::string label = options_.cut && !times.empty() ? labels_.name_at(times.front()) : "";
+  if (times.empty() || (options_.cut && label.empty())) return Done{};
+  if (steps_of_episode_ == 0) tally_.sources.push_back({from_, 0, times.front(), {}, label});
   tally_.sources.back().steps += times.size();
   tally_.sources.back().last = times.back();
   steps_of_episode_ += times.size();
@@ -320,7 +318,7 @@ Status Maker::commit(std::uint64_t held_out) {
   tell_stale_steps(tally_, options_);
   tally_.held_out = held_out;
   tally_.labels = labels_.names();
-  tally_.how = described(options_);
+  tally_.how = described(options_, models_.are_recorded());
   return sink_.commit(tally_);
 }
 
@@ -372,8 +370,11 @@ Result<EpisodeTally> make_episodes(const std::vector<std::string>& recordings, c
   if (!series) return series.error();
   Result<HoldOut> hold_out = HoldOut::create(options.hold_out, recordings);
   if (!hold_out) return hold_out.error();
-  Result<ArrayModels> models = ArrayModels::read(options.model);
+  Result<ArrayModels> models = ArrayModels::read(options.model, recordings, options.notice);
   if (!models) return models.error();
+  if (!models->is_any() && (options.tare || options.tare_force || options.follow_drift)) {
+    return bad_field(options.follow_drift ? "follow-drift" : "tare", "needs a model: without one there are no forces");
+  }
   Result<StepLabels> labels = StepLabels::read(recordings, hold_out->order(), options.cut);
   if (!labels) return labels.error();
   Maker maker(options, *std::move(models), *std::move(series), *std::move(labels), sink,

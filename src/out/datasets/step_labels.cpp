@@ -100,6 +100,11 @@ std::int64_t StepLabels::at(Nanos step) const {
   return next == 0 ? -1 : marks_->spans[next - 1].label;
 }
 
+std::string StepLabels::name_at(Nanos step) const {
+  const std::int64_t label = at(step);
+  return label < 0 ? "" : names_[static_cast<std::size_t>(label)];
+}
+
 void StepLabels::append(std::span<const Nanos> steps, std::vector<std::byte>& values) const {
   for (const Nanos step : steps) {
     const std::int64_t label = at(step);

@@ -29,6 +29,8 @@ class StepLabels {
   void begin(std::size_t number) { marks_ = &recordings_[number]; }
   /// The index of the label in force; -1: none.
   [[nodiscard]] std::int64_t at(Nanos step) const;
+  /// Its name; "": none.
+  [[nodiscard]] std::string name_at(Nanos step) const;
   void append(std::span<const Nanos> steps, std::vector<std::byte>& values) const;
   /// So many of these steps, from the first on, lie between the same two marks. At least one of some.
   [[nodiscard]] std::size_t steps_of_span(std::span<const Nanos> steps) const;

@@ -105,9 +105,13 @@ struct JointSample {
 };
 
 /// An array of 1x1 whose frames are 10 ms apart, each as `change` leaves it. `beside` writes what comes with it.
+/// `model`: bytes of the model that gave its forces.
 void write_tip(const std::string& path, const std::function<void(int, RawFrame&)>& change,
-               const std::function<void(bytes::recordings::SuitRecordingWriter&, Nanos)>& beside) {
-  const auto writer = bytes::recordings::SuitRecordingWriter::create(path, {{.name = "tip", .shape = {1, 1}}});
+               const std::function<void(bytes::recordings::SuitRecordingWriter&, Nanos)>& beside,
+               const std::string& model = "") {
+  const std::vector<bytes::recordings::RecordedArray> arrays = {
+      {.name = "tip", .shape = {1, 1}, .model_hash = model.empty() ? "" : "abc", .model_file = model}};
+  const auto writer = bytes::recordings::SuitRecordingWriter::create(path, arrays);
   ASSERT_TRUE(writer) << writer.error().message;
   RawFrame frame;
   frame.counts = {1.0F};
@@ -598,6 +602,62 @@ TEST_F(Episodes, say_that_a_recording_was_tared_while_it_was_made) {
                 "' was tared while it was recorded, at 0.1 s, 0.4 s: make the dataset with a tare, or its "
                 "forces begin at the zero of the calibration"}));
   EXPECT_EQ(notices_of({tared}, {}), std::vector<std::string>()) << "counts have no zero";
+}
+
+/// Their forces are by models of different gains.
+class RecordedModels : public Episodes {
+ protected:
+  void SetUp() override {
+    for (std::size_t k = 0; k < 2; ++k) {
+      touch::pipeline::Model model = support::hand_made_model(1, 1);
+      model.networks.gain = {k == 0 ? 1.0F : 3.0F};
+      models_.push_back(folder_.file("tip" + std::to_string(k) + ".safetensors"));
+      ASSERT_TRUE(bytes::models::write_model(models_[k], model));
+      recordings_.push_back(folder_.file("rec" + std::to_string(k) + ".mcap"));
+      write(recordings_[k], support::read_bytes(models_[k]));
+    }
+  }
+  static void write(const std::string& path, const std::string& model) {
+    write_tip(
+        path, [](int k, RawFrame& frame) { frame.counts = {1e6F + 1e5F * static_cast<float>(k)}; },
+        [](bytes::recordings::SuitRecordingWriter&, Nanos) {}, model);
+  }
+  [[nodiscard]] static std::vector<float> forces(const std::vector<std::string>& recordings,
+                                                 const EpisodeOptions& options) {
+    Kept kept;
+    const Result<EpisodeTally> made = make_episodes(recordings, options, kept);
+    EXPECT_TRUE(made) << made.error().message;
+    return kept.column<float>("tip");
+  }
+
+  std::vector<std::string> models_;
+  std::vector<std::string> recordings_;
+};
+
+TEST_F(RecordedModels, give_the_forces_where_none_is_named) {
+  std::vector<float> expected;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const std::vector<float> by_file = forces({recordings_[k]}, {.model = models_[k]});
+    expected.insert(expected.end(), by_file.begin(), by_file.end());
+  }
+  ASSERT_EQ(expected.size(), 32U);
+  EXPECT_GT(expected[31], 2.0F * expected[15]) << "each by its own";
+  EXPECT_EQ(forces(recordings_, {}), expected);
+  const std::vector<float> by_first = forces(recordings_, {.model = models_[0]});
+  EXPECT_EQ(by_first[31], by_first[15]) << "one that is named goes before them";
+  EXPECT_EQ(notices_of(recordings_, {}),
+            (std::vector<std::string>{"the forces are those of the models that the recordings hold"}));
+}
+
+TEST_F(RecordedModels, must_be_in_all_recordings) {
+  const std::string bare = folder_.file("bare.mcap");
+  write(bare, "");
+  EXPECT_EQ(forces({recordings_[0], bare}, {}), std::vector<float>());
+  EXPECT_EQ(notices_of({recordings_[0], bare}, {}),
+            (std::vector<std::string>{"there are no forces: '" + bare + "' holds no model; name one for all"}));
+  EXPECT_EQ(error_of({recordings_[0], bare}, {.tare = true}), "tare: needs a model: without one there are no forces");
+  write(bare, "no model");
+  EXPECT_NE(error_of({bare}, {}).find(bare + ": its model"), std::string::npos);
 }
 
 }  // namespace
