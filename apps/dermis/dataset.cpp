@@ -69,14 +69,17 @@ void add_dataset(Command& command) {
   command.option("--format", options->format, "Layout: LeRobot v3, HDF5 of ACT or of robomimic, zarr replay buffer")
       .one_of(out::datasets::dataset_formats())
       .shows_default();
-  command.input_file("--model", options->episodes.model,
-                     "Model file of the array, or suit.toml of several; without one there are no forces");
+  command.input_file(
+      "--model", options->episodes.model,
+      "Model file of the array, or suit.toml of several; without it, the models that the recordings hold");
   command.flag("--tare", options->episodes.tare,
                "Take the first second of each recording (at least 10 frames) as unloaded, like 'dermis run'; refused "
                "under a load");
   command.flag("--tare-force", options->episodes.tare_force, "The same, whatever load stands there");
   command.flag("--follow-drift", options->episodes.follow_drift,
                "Follow the offsets of idle taxels, like 'dermis run'");
+  command.flag("--cut", options->episodes.cut,
+               "Each span of a label (marks of the recordings) is an episode; what has no label is left out");
   command.option("--hold-out", options->episodes.hold_out,
                  "Not to be trained on: a share of the episodes such as 0.2, the last ones, or recordings by name");
   command.input("--state", options->episodes.states,
@@ -87,7 +90,8 @@ void add_dataset(Command& command) {
   command.option("--columns", options->episodes.quantities,
                  "Only these: forces, sigma, valid, raw, age, fresh, contacts, temperature, supply");
   command.flag("--flat", options->episodes.flat, "Every column has one dimension");
-  command.option("--task", options->task, "Sentence that says what is done (LeRobot)").shows_default();
+  command.option("--task", options->task, "Sentence that says what is done in steps without a label (LeRobot)")
+      .shows_default();
   command.action([options] { return make_dataset(*options); });
 }
 

@@ -465,6 +465,9 @@ class WrongDatasets(SmallArray):
             with self.subTest(wanted):
                 self.refuse_dataset(("--hold-out", wanted), ["hold-out", place])
 
+    def test_a_cut_without_marks(self):
+        self.refuse_dataset(("--cut",), ["cut: ", "frames.csv' has no mark with a label", "or leave it out"])
+
     def test_recordings_of_two_arrays(self):
         other = self.frames_with(20, cols=6)
         self.refuse_dataset((), [other, "has other arrays than the first recording", "4x5"], [other])

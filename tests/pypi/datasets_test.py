@@ -192,6 +192,95 @@ class Datasets(CalibratedArray):
             self.assertEqual(json.loads((out / place).read_text())["splits"], splits)
             self.assertIn("First and last picture", (out / "summary.html").read_text())
 
+    def marked(self):
+        """The first two recordings with marks beside them."""
+        marked = []
+        for episode, rows in enumerate((("0.2,reach", "0.5,hold it", "0.8,"), ("0.3,lift", "0.6,hold it"))):
+            recording = self.folder / f"{self.id()}{episode}.mcap"
+            recording.write_bytes(self.recordings[episode].read_bytes())
+            recording.with_suffix(".marks.csv").write_text("\n".join(["time_s,label", *rows]) + "\n")
+            marked.append(recording)
+        return marked
+
+    @staticmethod
+    def labels_at(times_ns, starts_ns, marks):
+        """By numpy: the index of the last mark's label, -1 before the first."""
+        indices = numpy.array([-1, *(label for _, label in marks)])
+        return indices[numpy.searchsorted([second * 1e9 for second, _ in marks], times_ns - starts_ns, side="right")]
+
+    MARKS = (((0.2, 0), (0.5, 1), (0.8, -1)), ((0.3, 2), (0.6, 1)))
+    LABELS = ("reach", "hold it", "lift")
+
+    def make_marked(self, layout, *more):
+        out = self.folder / f"{self.id()}-{layout}{len(more)}"
+        dermis("dataset", *self.marked(), "--out", out, "--format", layout, "--fps", FPS, *more)
+        return out
+
+    def expected_labels(self, times_ns, episode):
+        return self.labels_at(times_ns, self.episodes[episode][0][0], self.MARKS[episode])
+
+    def test_labels_are_the_tasks_of_lerobot(self):
+        out = self.make_marked("lerobot", "--task", "pick the cube")
+        info, loaded = self.load(out)
+        columns = {name: numpy.asarray(values) for name, values in loaded.with_format("numpy")[:].items()}
+        labels = numpy.concatenate(
+            [self.expected_labels(columns["time_ns"][columns["episode_index"] == k], k) for k in (0, 1)]
+        )
+        self.assertEqual(set(labels), {-1, 0, 1, 2})
+        numpy.testing.assert_array_equal(columns["label"], labels)
+        numpy.testing.assert_array_equal(columns["task_index"], numpy.where(labels < 0, 3, labels))
+        tasks = pandas.read_parquet(out / "meta/tasks.parquet")
+        names = [*self.LABELS, "pick the cube"]
+        self.assertEqual((list(tasks.index), list(tasks["task_index"])), (names, [0, 1, 2, 3]))
+        self.assertEqual(info["total_tasks"], 4)
+        episodes = pyarrow.parquet.read_table(out / "meta/episodes/chunk-000/file-000.parquet").to_pylist()
+        self.assertEqual(
+            [row["tasks"] for row in episodes],
+            [["reach", "hold it", "pick the cube"], ["hold it", "lift", "pick the cube"]],
+        )
+
+    def test_an_episode_that_a_label_cuts_has_its_task(self):
+        out = self.make_marked("lerobot", "--cut")
+        info, loaded = self.load(out)
+        self.assertEqual((info["total_episodes"], info["total_tasks"]), (4, 3))
+        episodes = pyarrow.parquet.read_table(out / "meta/episodes/chunk-000/file-000.parquet").to_pylist()
+        self.assertEqual([row["tasks"] for row in episodes], [["reach"], ["hold it"], ["lift"], ["hold it"]])
+        columns = loaded.with_format("numpy")[:]
+        numpy.testing.assert_array_equal(columns["label"], columns["task_index"])
+        for row, recording in zip(episodes, (0, 0, 1, 1), strict=True):
+            times = columns["time_ns"][row["dataset_from_index"] : row["dataset_to_index"]]
+            expected = self.expected_labels(times, recording)
+            self.assertEqual({self.LABELS[label] for label in expected}, set(row["tasks"]))
+            self.assertAlmostEqual(len(times) / FPS, 0.3 if recording == 0 or row["tasks"] == ["lift"] else 0.4, 1)
+
+    def test_labels_have_names_in_the_other_layouts(self):
+        with h5py.File(self.make_marked("robomimic") / "demo.hdf5") as root:
+            self.assertEqual(json.loads(root.attrs["labels"]), list(self.LABELS))
+            for episode in (0, 1):
+                demo = root[f"data/demo_{episode}"]
+                expected = self.expected_labels(demo["time_ns"][:].ravel(), episode)
+                numpy.testing.assert_array_equal(demo["label"][:].ravel(), expected)
+        with h5py.File(self.make_marked("hdf5") / "episode_1.hdf5") as root:
+            self.assertEqual(json.loads(root.attrs["labels"]), list(self.LABELS))
+            self.assertIn("label", root)
+        out = self.make_marked("zarr", "--cut")
+        root = zarr.open(str(out), mode="r")
+        self.assertEqual(root.attrs["labels"], list(self.LABELS))
+        self.assertEqual(len(root["meta/episode_ends"][:]), 4)
+        said = json.loads((out / "tactile.json").read_text())
+        self.assertEqual(said["labels"], list(self.LABELS))
+        self.assertEqual([episode["label"] for episode in said["episodes"]], ["reach", "hold it", "lift", "hold it"])
+
+    @unittest.skipUnless(importlib.util.find_spec("dermis"), "the package of Python is not built")
+    def test_python_cuts_like_the_command(self):
+        module = importlib.import_module("dermis")
+        dataset = module.Dataset(self.marked(), fps=FPS, cut=True)
+        self.assertEqual((len(dataset), dataset.labels), (4, list(self.LABELS)))
+        written = zarr.open(str(self.make_marked("zarr", "--cut")), mode="r")["data/tactile_pad_raw"][:]
+        numpy.testing.assert_array_equal(numpy.concatenate([dataset[k]["pad_raw"] for k in range(4)]), written)
+        with self.assertRaisesRegex(module.BadInput, "has no mark with a label"):
+            len(module.Dataset(self.recordings, cut=True))
+
     def run_loading_example(self, out):
         example = Path(__file__).resolve().parents[2] / "examples/python/load_dataset.py"
         run = subprocess.run([sys.executable, example, out, "pad"], capture_output=True, text=True)

@@ -378,12 +378,13 @@ class Dataset:
     """Recordings as episodes for learning (docs/datasets.md); each recording is one, and a gap of 10 s begins another.
     They are made when the first is asked for, and kept then.
 
-    model: of the array, or the suit.toml of several; without one there are no forces. window: each step has so many of
-    the last frames. columns: only these quantities. state, action: a topic of joints in the recordings, or a CSV with
-    time_s for each. Without a state the only topic of joints is it; () is none. times_ns: the times of the steps of
-    each recording, such as those of its images, in place of fps. Of a single recording they may be those of several
-    episodes, one after the other. tare, tare_force, follow_drift: zero as `dermis run` has it. hold_out: a share of the
-    episodes, or recordings, which then are the last episodes.
+    model: of the array, or the suit.toml of several; without it, those that the recordings hold. window: each step has
+    so many of the last frames. columns: only these quantities. state, action: a topic of joints in the recordings, or a
+    CSV with time_s for each. Without a state the only topic of joints is it; () is none. times_ns: the times of the
+    steps of each recording, such as those of its images, in place of fps. Of a single recording they may be those of
+    several episodes, one after the other. tare, tare_force, follow_drift: zero as `dermis run` has it. hold_out: a
+    share of the episodes, or recordings, which then are the last episodes. cut: each span of a label in the marks of
+    the recordings is an episode, and what has no label is left out.
     """
 
     def __init__(
@@ -402,11 +403,15 @@ class Dataset:
         tare_force: bool = False,
         follow_drift: bool = False,
         hold_out: float | _Path | Sequence[_Path] | None = None,
+        cut: bool = False,
     ) -> None: ...
     def __len__(self) -> int: ...
     @property
     def held_out(self) -> list[int]:
         """Episodes that are not to be trained on."""
+    @property
+    def labels(self) -> list[str]:
+        """Names of the values of the column "label", in which -1 has none; empty: the recordings have no marks."""
     def __getitem__(self, episode: int) -> dict[str, NDArray[Any]]:
         """Columns by name, "chest" and "chest_sigma" for example; the first axis are the steps."""
     def write(self, folder: _Path, *, format: str = "lerobot", task: str = "touch") -> None:

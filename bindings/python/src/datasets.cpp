@@ -46,18 +46,21 @@ class EpisodesInMemory final : public out::datasets::EpisodeSink {
 
   Status commit(const out::datasets::EpisodeTally& tally) override {
     held_out_ = tally.held_out;
+    labels_ = tally.labels;
     return Done{};
   }
 
   [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
   [[nodiscard]] const std::vector<Episode>& episodes() const { return episodes_; }
   [[nodiscard]] std::size_t held_out() const { return held_out_; }
+  [[nodiscard]] const std::vector<std::string>& labels() const { return labels_; }
 
  private:
   std::vector<Column> columns_;
   std::vector<Episode> episodes_;
   bool is_new_ = true;
   std::size_t held_out_ = 0;
+  std::vector<std::string> labels_;
 };
 
 /// By its type in C++: pybind11 of Debian reads the size of a dtype where numpy 2 no longer has it.
@@ -91,6 +94,8 @@ class Dataset {
     std::iota(last.begin(), last.end(), size() - last.size());
     return last;
   }
+
+  [[nodiscard]] const std::vector<std::string>& labels() { return episodes().labels(); }
 
   py::dict episode(std::ptrdiff_t index) {
     const auto count = static_cast<std::ptrdiff_t>(size());
@@ -166,7 +171,7 @@ std::unique_ptr<Dataset> make_dataset(const py::object& recordings, const py::ob
                                       std::size_t window, const std::optional<std::vector<std::string>>& columns,
                                       bool flat, const py::object& state, const py::object& action,
                                       const py::object& times_ns, bool tare, bool tare_force, bool follow_drift,
-                                      const py::object& hold_out) {
+                                      const py::object& hold_out, bool cut) {
   std::vector<std::string> paths = paths_of(recordings);
   out::datasets::EpisodeOptions options{.fps = fps, .window = window, .flat = flat};
   if (!model.is_none()) options.model = path_of(model);
@@ -178,6 +183,7 @@ std::unique_ptr<Dataset> make_dataset(const py::object& recordings, const py::ob
   options.tare = tare;
   options.tare_force = tare_force;
   options.follow_drift = follow_drift;
+  options.cut = cut;
   const bool is_share = py::isinstance<py::float_>(hold_out) || py::isinstance<py::int_>(hold_out);
   options.hold_out = is_share ? std::vector{py::str(hold_out).cast<std::string>()} : paths_of(hold_out);
   return std::make_unique<Dataset>(std::move(paths), std::move(options));
@@ -197,9 +203,10 @@ void bind_datasets(py::module_& module) {
            py::arg("fps") = 30.0, py::arg("window") = 1, py::arg("columns") = py::none(), py::arg("flat") = false,
            py::arg("state") = py::none(), py::arg("action") = py::none(), py::arg("times_ns") = py::none(),
            py::arg("tare") = false, py::arg("tare_force") = false, py::arg("follow_drift") = false,
-           py::arg("hold_out") = py::none())
+           py::arg("hold_out") = py::none(), py::arg("cut") = false)
       .def("__len__", &Dataset::size)
       .def_property_readonly("held_out", &Dataset::held_out)
+      .def_property_readonly("labels", &Dataset::labels)
       .def("__getitem__", &Dataset::episode, py::arg("episode"))
       .def("write", &Dataset::write, py::arg("folder"), py::kw_only(), py::arg("format") = "lerobot",
            py::arg("task") = "touch");

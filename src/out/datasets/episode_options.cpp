@@ -38,15 +38,17 @@ bool are_split(const std::vector<std::vector<Nanos>>& times, std::size_t recordi
   return recordings == 1 && times.size() > 1;
 }
 
-std::vector<std::pair<std::string, std::string>> described(const EpisodeOptions& options) {
+std::vector<std::pair<std::string, std::string>> described(const EpisodeOptions& options, bool are_recorded) {
+  const std::string none = are_recorded ? "by the models in the recordings" : "none: without a model";
   std::vector<std::pair<std::string, std::string>> how = {
-      {"forces", options.model.empty() ? "none: without a model" : "by " + options.model}};
-  if (!options.model.empty()) {
+      {"forces", options.model.empty() ? none : "by " + options.model}};
+  if (are_recorded || !options.model.empty()) {
     const bool is_tared = options.tare || options.tare_force;
     const std::string zero = is_tared ? "the first second of each recording" : "that of the calibration";
     how.emplace_back("zero", zero + (options.follow_drift ? "; drift is followed" : ""));
   }
   how.emplace_back("steps", options.times.empty() ? fmt::format("{} a second", options.fps) : "at given times");
+  if (options.cut) how.emplace_back("episodes", "cut by the labels of the recordings");
   how.emplace_back("window", fmt::format("{} frame{}", options.window, options.window == 1 ? "" : "s"));
   return how;
 }
@@ -76,9 +78,7 @@ Status EpisodeOptions::validate() const {
   constexpr std::size_t kLongest = 1000;
   if (!(fps >= kSlowest && fps <= kFastest)) return bad_field("fps", "must be 0.001 to 10000 steps a second");
   if (window < 1 || window > kLongest) return bad_field("window", "must be 1 to 1000 frames");
-  if (model.empty() && (tare || tare_force || follow_drift)) {
-    return bad_field(follow_drift ? "follow-drift" : "tare", "needs a model: without one there are no forces");
-  }
+  if (cut && !times.empty()) return bad_field("cut", "takes the steps of a clock: give no times of steps");
   return check_quantities(quantities);
 }
 

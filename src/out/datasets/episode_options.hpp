@@ -14,8 +14,9 @@ namespace dermis::out::datasets {
 /// Each of the times is an episode of the only recording.
 [[nodiscard]] bool are_split(const std::vector<std::vector<Nanos>>& times, std::size_t recordings);
 
-/// EpisodeTally::how
-[[nodiscard]] std::vector<std::pair<std::string, std::string>> described(const EpisodeOptions& options);
+/// EpisodeTally::how. `are_recorded`: models are those of the recordings.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> described(const EpisodeOptions& options,
+                                                                         bool are_recorded);
 
 [[nodiscard]] std::vector<Nanos> joined(const std::vector<std::vector<Nanos>>& times);
 

@@ -18,7 +18,8 @@
 #include "out/datasets/hold_out.hpp"
 #include "out/datasets/recorded_arrays.hpp"
 #include "out/datasets/robot_series.hpp"
-#include "out/datasets/tally_numbers.hpp"
+#include "out/datasets/step_labels.hpp"
+#include "out/datasets/tally_checks.hpp"
 
 namespace dermis::out::datasets {
 namespace {
@@ -35,9 +36,14 @@ constexpr const char* kTimeNs = "time_ns";
 /// Many members: a batch and a block keep their buffers from one to the next.
 class Maker {
  public:
-  Maker(const EpisodeOptions& options, ArrayModels models, std::vector<RobotSeries> series, EpisodeSink& sink,
-        bool is_split)
-      : options_(options), models_(std::move(models)), series_(std::move(series)), sink_(sink), is_split_(is_split) {}
+  Maker(const EpisodeOptions& options, ArrayModels models, std::vector<RobotSeries> series, StepLabels labels,
+        EpisodeSink& sink, bool is_split)
+      : options_(options),
+        models_(std::move(models)),
+        series_(std::move(series)),
+        labels_(std::move(labels)),
+        sink_(sink),
+        is_split_(is_split) {}
 
   [[nodiscard]] Status add(const std::string& from, std::size_t number);
   [[nodiscard]] const EpisodeTally& tally() const { return tally_; }
@@ -62,15 +68,15 @@ class Maker {
   [[nodiscard]] Status write_steps(std::span<const Nanos> times);
   [[nodiscard]] Status end_split_episode();
   [[nodiscard]] std::size_t most_steps() const;
+  [[nodiscard]] Status end_cut_episode(Nanos next);
   [[nodiscard]] bool is_gap(Nanos time) const;
-  [[nodiscard]] Status check_windows() const;
   [[nodiscard]] Status check_tares() const;
-  void tell_stale_steps() const;
   [[nodiscard]] Status check_frames(const std::string& from, std::size_t number, Nanos first) const;
 
   const EpisodeOptions& options_;
   ArrayModels models_;
   std::vector<RobotSeries> series_;
+  StepLabels labels_;
   EpisodeSink& sink_;
   bool is_split_;  ///< Each of the times is an episode of the only recording.
   std::optional<RecordedArrays> recorded_;
@@ -111,6 +117,7 @@ Status Maker::decide_columns() {
     if (batch_[k].frame.supply_v) seen.supply_v = batch_[k].frame.supply_v;
   }
   columns_ = {{"", kTimeNs, ColumnType::int64, {1}, {"ns"}}};
+  if (const std::optional<Column> label = labels_.column()) columns_.push_back(*label);
   for (const RobotSeries& series : series_) columns_.push_back(series.column());
   for (std::size_t k = 0; k < arrays_.size(); ++k) {
     const std::vector<Column> of_array = columns_of(arrays_[k], first[k], options_);
@@ -205,6 +212,7 @@ Status Maker::write_steps(std::span<const Nanos> times) {
   const auto* const first = reinterpret_cast<const std::byte*>(times.data());
   block_.values[0].assign(first, first + times.size_bytes());
   std::size_t begin = 1;
+  if (!labels_.names().empty()) labels_.append(times, block_.values[begin++]);
   for (RobotSeries& series : series_) {
     std::vector<std::byte>& values = block_.values[begin++];
     for (const Nanos time : times) series.append(time, values);
@@ -219,8 +227,9 @@ Status Maker::write_steps(std::span<const Nanos> times) {
     steps_[k].work(times, std::span(block_.values).subspan(begins[k], begins[k + 1] - begins[k]));
   });
   if (Status tared = check_tares(); !tared) return tared;
-  if (times.empty()) return Done{};
-  if (steps_of_episode_ == 0) tally_.sources.push_back({from_, 0, times.front(), {}});
+  const std::string label = options_.cut && !times.empty() ? labels_.name_at(times.front()) : "";
+  if (times.empty() || (options_.cut && label.empty())) return Done{};
+  if (steps_of_episode_ == 0) tally_.sources.push_back({from_, 0, times.front(), {}, label});
   tally_.sources.back().steps += times.size();
   tally_.sources.back().last = times.back();
   steps_of_episode_ += times.size();
@@ -232,6 +241,14 @@ Status Maker::write_steps(std::span<const Nanos> times) {
 std::size_t Maker::most_steps() const {
   if (!is_split_ || tally_.episodes == options_.times.size()) return steps_of_block_;
   return std::min(steps_of_block_, options_.times[tally_.episodes].size() - steps_of_episode_);
+}
+
+/// Where the next step is behind a mark.
+Status Maker::end_cut_episode(Nanos next) {
+  if (!options_.cut || steps_of_episode_ == 0 || !labels_.is_between(tally_.sources.back().last, next)) return Done{};
+  steps_of_episode_ = 0;
+  ++tally_.episodes;
+  return sink_.end_episode();
 }
 
 /// Windows go on from one episode of a recording to the next.
@@ -247,8 +264,10 @@ Status Maker::write_steps(bool is_over) {
   std::span<const Nanos> left = due;
   do {
     if (options_.stop != nullptr && options_.stop->load()) return failed("interrupted; nothing is written");
-    const std::span<const Nanos> now = left.first(std::min(left.size(), most_steps()));
+    std::span<const Nanos> now = left.first(std::min(left.size(), most_steps()));
+    if (options_.cut) now = now.first(labels_.steps_of_span(now));
     left = left.subspan(now.size());
+    if (Status ended = now.empty() ? Status(Done{}) : end_cut_episode(now.front()); !ended) return ended;
     if (Status written = write_steps(now); !written) return written;
     if (Status ended = end_split_episode(); !ended) return ended;
   } while (!left.empty());
@@ -283,6 +302,7 @@ Status Maker::end_recording(const std::string& from, Nanos first) {
     if (!told) return told.error();
     tell(*told);
   }
+  if (models_.is_any() && !options_.tare && !options_.tare_force) tell(labels_.tare_notice(from, first));
   tally_.arrays.resize(arrays_.size());
   for (std::size_t k = 0; k < steps_.size(); ++k) {
     const Result<std::string> tared = steps_[k].tared();
@@ -293,34 +313,12 @@ Status Maker::end_recording(const std::string& from, Nanos first) {
   return Done{};
 }
 
-/// A window that is never full would be a mistake.
-Status Maker::check_windows() const {
-  std::uint64_t longest = 0;
-  for (const ArrayTally& array : tally_.arrays) longest = std::max(longest, array.most_of_episode);
-  if (longest >= options_.window) return Done{};
-  return bad_field(
-      "window", fmt::format("no episode has {} frames; {} is the longest that one can fill", options_.window, longest));
-}
-
-/// Where the clock of the steps is faster than every array.
-void Maker::tell_stale_steps() const {
-  constexpr double kFaster = 1.05;
-  if (!options_.notice || !options_.times.empty()) return;
-  const ArrayTally* fastest = nullptr;
-  for (const ArrayTally& array : tally_.arrays) {
-    if (fastest == nullptr || rate_of(array) > rate_of(*fastest)) fastest = &array;
-  }
-  if (fastest == nullptr || options_.fps <= kFaster * rate_of(*fastest) || fastest->stale_steps == 0) return;
-  options_.notice(
-      fmt::format("{} of {} steps have no new frame: {} steps a second, and no array sends more than {:.3g}",
-                  fastest->stale_steps, tally_.steps, options_.fps, rate_of(*fastest)));
-}
-
 Status Maker::commit(std::uint64_t held_out) {
-  if (Status filled = check_windows(); !filled) return filled;
-  tell_stale_steps();
+  if (Status filled = check_windows(tally_, options_); !filled) return filled;
+  tell_stale_steps(tally_, options_);
   tally_.held_out = held_out;
-  tally_.how = described(options_);
+  tally_.labels = labels_.names();
+  tally_.how = described(options_, models_.are_recorded());
   return sink_.commit(tally_);
 }
 
@@ -343,6 +341,8 @@ Status Maker::add(const std::string& from, std::size_t number) {
     if (Status begun = sink_.begin(columns_); !begun) return begun;
   }
   if (Status begun = begin_recording(from); !begun) return begun;
+  labels_.begin(number);
+  const std::uint64_t episodes_before = tally_.episodes;
   begin_episode(number);
   const Nanos first = batch_.front().frame.time;
   while (true) {
@@ -353,6 +353,9 @@ Status Maker::add(const std::string& from, std::size_t number) {
   }
   if (Status right = check_frames(from, number, first); !right) return right;
   if (Status ended = end_episode(); !ended) return ended;
+  if (options_.cut && tally_.episodes == episodes_before) {
+    return bad_field("cut", from + ": its labels lie at no step; mend its marks");
+  }
   return end_recording(from, first);
 }
 
@@ -367,9 +370,15 @@ Result<EpisodeTally> make_episodes(const std::vector<std::string>& recordings, c
   if (!series) return series.error();
   Result<HoldOut> hold_out = HoldOut::create(options.hold_out, recordings);
   if (!hold_out) return hold_out.error();
-  Result<ArrayModels> models = ArrayModels::read(options.model);
+  Result<ArrayModels> models = ArrayModels::read(options.model, recordings, options.notice);
   if (!models) return models.error();
-  Maker maker(options, *std::move(models), *std::move(series), sink, are_split(options.times, recordings.size()));
+  if (!models->is_any() && (options.tare || options.tare_force || options.follow_drift)) {
+    return bad_field(options.follow_drift ? "follow-drift" : "tare", "needs a model: without one there are no forces");
+  }
+  Result<StepLabels> labels = StepLabels::read(recordings, hold_out->order(), options.cut);
+  if (!labels) return labels.error();
+  Maker maker(options, *std::move(models), *std::move(series), *std::move(labels), sink,
+              are_split(options.times, recordings.size()));
   std::uint64_t trained = 0;
   for (std::size_t k = 0; k < recordings.size(); ++k) {
     const std::size_t number = hold_out->order()[k];

@@ -77,6 +77,7 @@ class Hdf5Writer final : public EpisodeSink {
       auto file = Hdf5Tables::create(folder_->place(name));
       if (!file) return file.error();
       file_ = *std::move(file);
+      if (Status told = write_labels(); !told) return told;
     }
     for (const Column& column : columns_) {
       const Result<std::size_t> table = file_->add(name_of(column), number_of(column.type), column.shape);
@@ -84,6 +85,14 @@ class Hdf5Writer final : public EpisodeSink {
       tables_.push_back(*table);
       const std::string axes = nlohmann::json(column.axes).dump();
       if (Status named = file_->set_text(name_of(column), "axes", axes); !named) return named;
+    }
+    return Done{};
+  }
+
+  Status write_labels() {
+    for (const Column& column : columns_) {
+      if (column.labels.empty()) continue;
+      if (Status told = file_->set_text("/", "labels", nlohmann::json(column.labels).dump()); !told) return told;
     }
     return Done{};
   }

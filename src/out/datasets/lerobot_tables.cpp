@@ -10,6 +10,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include "out/datasets/lerobot_program.hpp"
 
@@ -89,8 +90,8 @@ Status LeRobotTables::expect(std::string_view answer) const {
   return failed(kUse + (line.empty() ? "it has ended without a word" : line));
 }
 
-Status LeRobotTables::finish() const {
-  if (Status sent = send_line("{}"); !sent) return sent;
+Status LeRobotTables::finish(std::string line) const {
+  if (Status sent = send_line(std::move(line)); !sent) return sent;
   return expect("done");
 }
 

@@ -26,8 +26,8 @@ class LeRobotTables {
   /// A line of JSON, or bytes that such a line has announced.
   [[nodiscard]] Status send(std::span<const std::byte> bytes) const;
   [[nodiscard]] Status send_line(std::string line) const;
-  /// All is written.
-  [[nodiscard]] Status finish() const;
+  /// The last line; then all is written.
+  [[nodiscard]] Status finish(std::string line) const;
 
  private:
   LeRobotTables(int socket, int process) : socket_(socket), process_(process) {}

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """The Parquet files of a LeRobot dataset, written by pyarrow. dermis starts this text as a program. It sends lines of
-JSON: the columns, blocks of steps with their bytes behind them, ends of episodes, the end. The standard input is a
-socket, on which "ready" and "done" go back, or why there is none."""
+JSON: the columns, blocks of steps with their bytes behind them, ends of episodes, the tasks at the end. The standard
+input is a socket, on which "ready" and "done" go back, or why there is none."""
 
 import json
 import math
@@ -109,7 +109,7 @@ def episode_row(episode, data, plan):
         "dataset_to_index": episode["from"] + episode["length"],
         "meta/episodes/chunk_index": 0,
         "meta/episodes/file_index": 0,
-        "tasks": [plan["task"]],
+        "tasks": episode["tasks"],
     }
     for column, statistics in zip(plan["columns"], episode["statistics"]):
         for name, values in statistics.items():
@@ -144,7 +144,7 @@ class Episodes:
             self.writer.close()
 
 
-def write_tasks(folder, task):
+def write_tasks(folder, tasks):
     """A table of pandas whose index are the sentences."""
     kinds = {"task_index": ("int64", "int64"), "task": ("unicode", "object")}
     pandas = {
@@ -157,7 +157,7 @@ def write_tasks(folder, task):
         "pandas_version": "2.0.0",
     }
     schema = pyarrow.schema([("task_index", pyarrow.int64()), ("task", pyarrow.string())])
-    table = pyarrow.table([[0], [task]], schema=schema.with_metadata({"pandas": json.dumps(pandas)}))
+    table = pyarrow.table([list(range(len(tasks))), tasks], schema=schema.with_metadata({"pandas": json.dumps(pandas)}))
     pyarrow.parquet.write_table(table, folder / "meta/tasks.parquet", compression="zstd")
 
 
@@ -187,7 +187,7 @@ def main():
         else:
             data.close()
             episodes.close()
-            write_tasks(folder, plan["task"])
+            write_tasks(folder, message["tasks"])
             answer("done")
 
 

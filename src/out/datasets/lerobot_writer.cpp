@@ -13,6 +13,7 @@
 #include "out/datasets/column_statistics.hpp"
 #include "out/datasets/dataset_writers.hpp"
 #include "out/datasets/lerobot_tables.hpp"
+#include "out/datasets/lerobot_tasks.hpp"
 
 // The layout of LeRobot 0.4: "v3.0".
 namespace dermis::out::datasets {
@@ -72,10 +73,7 @@ class LeRobotWriter final : public EpisodeSink {
     columns_ = columns;
     const std::vector<Column> own = own_columns();
     columns_.insert(columns_.end(), own.begin(), own.end());
-    Json plan = {{"columns", Json::array()},
-                 {"task", options_.task},
-                 {"bytes_of_file", kBytesOfFile},
-                 {"files_of_chunk", kFilesOfChunk}};
+    Json plan = {{"columns", Json::array()}, {"bytes_of_file", kBytesOfFile}, {"files_of_chunk", kFilesOfChunk}};
     for (const Column& column : columns_) {
       statistics_.emplace_back(column);
       const bool is_number = column.shape == std::vector<std::size_t>{1};
@@ -84,6 +82,7 @@ class LeRobotWriter final : public EpisodeSink {
                                  {"shape", is_number ? Json::array() : Json(column.shape)}});
     }
     of_episode_ = statistics_;
+    tasks_ = LeRobotTasks(columns, options_.task);
     auto tables = LeRobotTables::start(options_.python, folder_->place(""));
     if (!tables) return tables.error();
     tables_ = *std::move(tables);
@@ -91,7 +90,7 @@ class LeRobotWriter final : public EpisodeSink {
   }
 
   Status write(const StepBlock& block) override {
-    const std::vector<std::vector<std::byte>> own = own_values(block.steps);
+    const std::vector<std::vector<std::byte>> own = own_values(block);
     std::vector<std::span<const std::byte>> values(block.values.begin(), block.values.end());
     values.insert(values.end(), own.begin(), own.end());
     if (Status told = tables_->send_line(Json({{"steps", block.steps}}).dump()); !told) return told;
@@ -106,8 +105,11 @@ class LeRobotWriter final : public EpisodeSink {
   Status end_episode() override {
     Json statistics = Json::array();
     for (const ColumnStatistics& of : of_episode_) statistics.push_back(statistics_of(of));
-    const Json episode = {
-        {"index", episode_++}, {"length", steps_of_episode_}, {"from", steps_}, {"statistics", statistics}};
+    const Json episode = {{"index", episode_++},
+                          {"length", steps_of_episode_},
+                          {"from", steps_},
+                          {"tasks", tasks_.take_of_episode()},
+                          {"statistics", statistics}};
     steps_ += std::exchange(steps_of_episode_, 0);
     for (std::size_t k = 0; k < columns_.size(); ++k) {
       statistics_[k].add(of_episode_[k]);
@@ -117,7 +119,7 @@ class LeRobotWriter final : public EpisodeSink {
   }
 
   Status commit(const EpisodeTally& tally) override {
-    Status done = tables_->finish();
+    Status done = tables_->finish(Json({{"tasks", tasks_.all()}}).dump());
     if (done) done = folder_->write("meta/stats.json", stats().dump(1));
     if (done) done = folder_->write("meta/info.json", info(tally).dump(4));
     return done ? folder_->commit(tally, "meta/") : done;
@@ -138,15 +140,15 @@ class LeRobotWriter final : public EpisodeSink {
     return all;
   }
 
-  [[nodiscard]] std::vector<std::vector<std::byte>> own_values(std::size_t steps) const {
+  std::vector<std::vector<std::byte>> own_values(const StepBlock& block) {
     std::vector<std::vector<std::byte>> values(own_columns().size());
-    for (std::size_t k = 0; k < steps; ++k) {
+    for (std::size_t k = 0; k < block.steps; ++k) {
       const std::size_t step = steps_of_episode_ + k;
       append(static_cast<float>(static_cast<double>(step) / options_.fps), values[0]);
       append(static_cast<std::int64_t>(step), values[1]);
       append(static_cast<std::int64_t>(episode_), values[2]);
       append(static_cast<std::int64_t>(steps_ + step), values[3]);
-      append(std::int64_t{0}, values[4]);
+      append(tasks_.of_step(block, k), values[4]);
     }
     return values;
   }
@@ -189,7 +191,7 @@ class LeRobotWriter final : public EpisodeSink {
             {"robot_type", "dermis"},
             {"total_episodes", episode_},
             {"total_frames", steps_},
-            {"total_tasks", 1},
+            {"total_tasks", tasks_.all().size()},
             {"chunks_size", kFilesOfChunk},
             {"data_files_size_in_mb", kBytesOfFile >> 20U},
             {"video_files_size_in_mb", 200},
@@ -206,6 +208,7 @@ class LeRobotWriter final : public EpisodeSink {
   std::vector<ColumnStatistics> statistics_;  ///< Of the episodes that have ended.
   std::vector<ColumnStatistics> of_episode_;
   std::unique_ptr<LeRobotTables> tables_;
+  LeRobotTasks tasks_;
   std::size_t episode_ = 0;
   std::size_t steps_ = 0;  ///< Of the episodes that have ended.
   std::size_t steps_of_episode_ = 0;

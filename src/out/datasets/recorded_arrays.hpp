@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,23 +17,31 @@
 
 namespace dermis::out::datasets {
 
+using SharedModel = std::shared_ptr<const touch::pipeline::Model>;
+
 /// Models of arrays by their names.
 class ArrayModels {
  public:
-  /// `path`: as EpisodeOptions::model.
-  [[nodiscard]] static Result<ArrayModels> read(const std::string& path);
+  /// `path`: as EpisodeOptions::model. Where it is empty, those that the recordings hold, if all arrays of all of them
+  /// have theirs.
+  [[nodiscard]] static Result<ArrayModels> read(const std::string& path, const std::vector<std::string>& recordings,
+                                                const std::function<void(const std::string&)>& notice);
 
-  [[nodiscard]] bool is_any() const noexcept { return !models_.empty(); }
-  /// Null: there are none at all. `is_only`: the recording has no other array.
-  [[nodiscard]] Result<const touch::pipeline::Model*> of(const std::string& array, bool is_only) const;
+  [[nodiscard]] bool is_any() const noexcept { return are_recorded_ || !models_.empty(); }
+  /// Each recording has its own.
+  [[nodiscard]] bool are_recorded() const noexcept { return are_recorded_; }
+  /// Null: there are none at all. `is_only`: the recording has no other array. `held`: the model that it holds.
+  [[nodiscard]] Result<SharedModel> of(const std::string& from, const std::string& array, bool is_only,
+                                       const std::string& held) const;
 
  private:
   struct Named {
     std::string array;  ///< Empty: of the only one.
-    std::unique_ptr<touch::pipeline::Model> model;
+    SharedModel model;
   };
   std::string path_;
   std::vector<Named> models_;
+  bool are_recorded_ = false;
 };
 
 /// The arrays of a file of frames, one or several. Not thread-safe.
@@ -41,7 +50,7 @@ class RecordedArrays {
   struct Array {
     std::string name;
     FrameShape shape;
-    const touch::pipeline::Model* model = nullptr;  ///< Null: there are no forces.
+    SharedModel model;  ///< Null: there are no forces.
   };
 
   [[nodiscard]] static Result<RecordedArrays> open(const std::string& from, const ArrayModels& models,
@@ -55,8 +64,7 @@ class RecordedArrays {
   [[nodiscard]] Status open_suit(const std::string& path, const ArrayModels& models);
   [[nodiscard]] Status open_single(const std::string& from, const ArrayModels& models,
                                    const live::sources::SourceOptions& options);
-  [[nodiscard]] Status add(const std::string& from, const std::string& name, FrameShape shape,
-                           const touch::pipeline::Model* model);
+  [[nodiscard]] Status add(const std::string& from, const std::string& name, FrameShape shape, SharedModel model);
 
   std::unique_ptr<bytes::recordings::SuitRecordingReader> suit_;
   std::unique_ptr<FrameSource> single_;

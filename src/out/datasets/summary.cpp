@@ -109,16 +109,17 @@ std::string summary_json(const EpisodeTally& tally) {
                         {"steps", source.steps},
                         {"first_ns", source.first.count()},
                         {"last_ns", source.last.count()}});
+    if (!source.label.empty()) episodes.back()["label"] = source.label;
   }
   Json splits = {{"train", split_text(tally, false)}};
   if (tally.held_out > 0) splits["val"] = split_text(tally, true);
   // Names of recordings may be bytes that are not UTF-8.
   Json how = Json::object();
   for (const auto& [name, words] : tally.how) how[name] = words;
-  return Json{{"how", how},       {"steps", tally.steps}, {"gaps", tally.gaps},
-              {"splits", splits}, {"arrays", arrays},     {"episodes", episodes}}
-             .dump(-1, ' ', false, Json::error_handler_t::replace) +
-         "\n";
+  Json all = {{"how", how},       {"steps", tally.steps}, {"gaps", tally.gaps},
+              {"splits", splits}, {"arrays", arrays},     {"episodes", episodes}};
+  if (!tally.labels.empty()) all["labels"] = tally.labels;
+  return all.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace dermis::out::datasets

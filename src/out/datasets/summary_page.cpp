@@ -100,7 +100,7 @@ void add_episodes(Page& page, const EpisodeTally& tally) {
     const bool is_held_out = k >= tally.episodes - tally.held_out;
     table.rows.push_back({std::nullopt,
                           std::to_string(k),
-                          {{source.recording, ""},
+                          {{source.label.empty() ? source.recording : source.recording + ": " + source.label, ""},
                            {report::grouped(source.steps), ""},
                            {duration_text(seconds_of(source.last - source.first)), ""},
                            {is_held_out ? "val" : "train", ""}}});

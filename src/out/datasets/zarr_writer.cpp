@@ -130,7 +130,9 @@ class ZarrWriter final : public EpisodeSink {
     if (!written) return written;
     Json splits = {{"train", split_text(tally, false)}};
     if (tally.held_out > 0) splits["val"] = split_text(tally, true);
-    if (Status told = folder_->write(".zattrs", Json{{"splits", splits}}.dump(2)); !told) return told;
+    Json attributes = {{"splits", splits}};
+    if (!tally.labels.empty()) attributes["labels"] = tally.labels;
+    if (Status told = folder_->write(".zattrs", attributes.dump(2)); !told) return told;
     return folder_->commit(tally, "");
   }
 

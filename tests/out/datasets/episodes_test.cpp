@@ -9,8 +9,11 @@
 #include <functional>
 #include <limits>
 
+#include "dermis/bytes/models/model_file.hpp"
+#include "dermis/bytes/recordings/marks.hpp"
 #include "dermis/bytes/recordings/suit_recording.hpp"
 #include "dermis/bytes/ros_messages/ros_messages.hpp"
+#include "support/hand_made_model.hpp"
 #include "support/joint_messages.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -102,9 +105,13 @@ struct JointSample {
 };
 
 /// An array of 1x1 whose frames are 10 ms apart, each as `change` leaves it. `beside` writes what comes with it.
+/// `model`: bytes of the model that gave its forces.
 void write_tip(const std::string& path, const std::function<void(int, RawFrame&)>& change,
-               const std::function<void(bytes::recordings::SuitRecordingWriter&, Nanos)>& beside) {
-  const auto writer = bytes::recordings::SuitRecordingWriter::create(path, {{.name = "tip", .shape = {1, 1}}});
+               const std::function<void(bytes::recordings::SuitRecordingWriter&, Nanos)>& beside,
+               const std::string& model = "") {
+  const std::vector<bytes::recordings::RecordedArray> arrays = {
+      {.name = "tip", .shape = {1, 1}, .model_hash = model.empty() ? "" : "abc", .model_file = model}};
+  const auto writer = bytes::recordings::SuitRecordingWriter::create(path, arrays);
   ASSERT_TRUE(writer) << writer.error().message;
   RawFrame frame;
   frame.counts = {1.0F};
@@ -129,6 +136,20 @@ void write_robot(const std::string& path, const std::vector<JointSample>& sample
   };
   write_tip(
       path, [](int, RawFrame&) {}, write_joints);
+}
+
+/// An array of 1x1 for 0.5 s, with marks.
+void write_marked(const std::string& path, const std::vector<bytes::ros_messages::Mark>& marks) {
+  const auto write_marks = [&](bytes::recordings::SuitRecordingWriter& writer, Nanos time) {
+    for (const bytes::ros_messages::Mark& mark : marks) {
+      if (mark.time != time) continue;
+      std::vector<std::uint8_t> message;
+      bytes::ros_messages::encode_mark(mark, "tip", message);
+      ASSERT_TRUE(writer.write({bytes::recordings::kMarksTopic, bytes::ros_messages::mark_type(), time, message}));
+    }
+  };
+  write_tip(
+      path, [](int, RawFrame&) {}, write_marks);
 }
 
 std::vector<Nanos> even_times(std::size_t count, Nanos first = {}) {
@@ -496,6 +517,147 @@ TEST_F(Episodes, name_what_is_wrong) {
   EXPECT_NE(error_of({folder_.file("none.mcap")}, {}).find("none.mcap"), std::string::npos);
   write_recording(folder_.file("wide.mcap"), even_times(3), 3);
   EXPECT_NE(error_of({path_, folder_.file("wide.mcap")}, {}).find("'left_hand' (1x2)"), std::string::npos);
+}
+
+// Steps at 20 Hz are at 5 ms, 55 ms and so on.
+TEST_F(Episodes, have_the_label_in_force_at_each_step) {
+  const std::string marked = folder_.file("marked.mcap");
+  write_marked(marked, {{milliseconds(100), "reach"}, {milliseconds(200), "hold"}, {milliseconds(300), ""}});
+  const std::string again = folder_.file("again.mcap");
+  write_marked(again, {{milliseconds(300), "hold"}, {milliseconds(350), "", "", "tare"}, {milliseconds(400), "lift"}});
+  const std::string bare = folder_.file("bare.mcap");
+  write_marked(bare, {});
+  Kept kept;
+  ASSERT_TRUE(make_episodes({marked, again, bare}, {.fps = 20.0}, kept));
+  EXPECT_EQ(kept.tally().labels, (std::vector<std::string>{"reach", "hold", "lift"}));
+  EXPECT_EQ(kept.names()[1], "label");
+  EXPECT_EQ(kept.ends(), (std::vector<std::size_t>{11, 22, 33}));
+  EXPECT_EQ(kept.column<std::int64_t>("label"),
+            (std::vector<std::int64_t>{-1, -1, 0,  0,  1,  1,  -1, -1, -1, -1, -1,  //
+                                       -1, -1, -1, -1, -1, -1, 1,  1,  2,  2,  2,   //
+                                       -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1}));
+  Kept alone;
+  ASSERT_TRUE(make_episodes({bare}, {.fps = 20.0}, alone));
+  EXPECT_EQ(alone.column<std::int64_t>("label").size(), 0U) << "nobody has marked anything";
+}
+
+TEST_F(Episodes, have_the_labels_that_were_edited_and_replace_what_is_no_text) {
+  const std::string marked = folder_.file("marked.mcap");
+  write_marked(marked, {{milliseconds(100), "reach"}});
+  std::ofstream(folder_.file("marked.marks.csv")) << "time_s,label\n0.4,lift\xff\n";
+  Kept kept;
+  ASSERT_TRUE(make_episodes({marked}, {.fps = 20.0}, kept));
+  EXPECT_EQ(kept.tally().labels, (std::vector<std::string>{"lift\xef\xbf\xbd"}));
+  EXPECT_EQ(kept.column<std::int64_t>("label"), (std::vector<std::int64_t>{-1, -1, -1, -1, -1, -1, -1, -1, 0, 0, 0}));
+}
+
+TEST_F(Episodes, are_cut_by_the_labels) {
+  const std::string marked = folder_.file("marked.mcap");
+  write_marked(marked, {{milliseconds(100), "reach"},
+                        {milliseconds(200), "hold"},
+                        {milliseconds(300), "hold"},
+                        {milliseconds(350), ""},
+                        {milliseconds(450), "reach"}});
+  Kept kept;
+  const Result<EpisodeTally> made = make_episodes({marked}, {.fps = 20.0, .cut = true}, kept);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_EQ(kept.ends(), (std::vector<std::size_t>{2, 4, 5, 7}));
+  EXPECT_EQ(made->episodes, 4U);
+  EXPECT_EQ(made->steps, 7U);
+  EXPECT_EQ(kept.column<std::int64_t>("label"), (std::vector<std::int64_t>{0, 0, 1, 1, 1, 0, 0}));
+  std::vector<std::int64_t> times;
+  for (const int step : {2, 3, 4, 5, 6, 9, 10}) times.push_back(5'000'000 + 50'000'000 * step);
+  EXPECT_EQ(kept.column<std::int64_t>("time_ns"), times);
+  const std::vector<float> ages = kept.column<float>("tip_age");
+  for (std::size_t k = 0; k < 6; ++k) EXPECT_FLOAT_EQ(ages[k], 0.005F) << "windows go on where nothing is labelled";
+  ASSERT_EQ(made->sources.size(), 4U);
+  EXPECT_EQ(made->sources[2].label, "hold");
+  EXPECT_EQ(made->sources[2].first, made->sources[2].last);
+  Kept held;
+  ASSERT_TRUE(make_episodes({marked}, {.fps = 20.0, .hold_out = {"0.5"}, .cut = true}, held));
+  EXPECT_EQ(held.tally().held_out, 2U);
+}
+
+TEST_F(Episodes, are_not_cut_without_a_label_to_cut_by) {
+  EXPECT_EQ(
+      error_of({path_}, {.cut = true}),
+      "cut: '" + path_ + "' has no mark with a label; set some on the time line of 'dermis serve', or leave it out");
+  const std::string marked = folder_.file("marked.mcap");
+  write_marked(marked, {{milliseconds(100), "", "", "tare"}, {milliseconds(200), ""}});
+  EXPECT_NE(error_of({marked}, {.cut = true}).find("has no mark with a label"), std::string::npos);
+  std::ofstream(folder_.file("marked.marks.csv")) << "time_s,label\n7,late\n";
+  EXPECT_EQ(error_of({marked}, {.cut = true}), "cut: " + marked + ": its labels lie at no step; mend its marks");
+  EXPECT_EQ(error_of({marked}, {.times = {{milliseconds(100)}}, .cut = true}),
+            "cut: takes the steps of a clock: give no times of steps");
+}
+
+TEST_F(Episodes, say_that_a_recording_was_tared_while_it_was_made) {
+  const std::string model = folder_.file("tip.safetensors");
+  ASSERT_TRUE(bytes::models::write_model(model, support::hand_made_model(1, 1)));
+  const std::string tared = folder_.file("tared.mcap");
+  write_marked(tared, {{milliseconds(100), "", "", "tare"}, {milliseconds(400), "", "", "tare"}});
+  EXPECT_EQ(notices_of({tared}, {.model = model}),
+            (std::vector<std::string>{
+                "'" + tared +
+                "' was tared while it was recorded, at 0.1 s, 0.4 s: make the dataset with a tare, or its "
+                "forces begin at the zero of the calibration"}));
+  EXPECT_EQ(notices_of({tared}, {}), std::vector<std::string>()) << "counts have no zero";
+}
+
+/// Their forces are by models of different gains.
+class RecordedModels : public Episodes {
+ protected:
+  void SetUp() override {
+    for (std::size_t k = 0; k < 2; ++k) {
+      touch::pipeline::Model model = support::hand_made_model(1, 1);
+      model.networks.gain = {k == 0 ? 1.0F : 3.0F};
+      models_.push_back(folder_.file("tip" + std::to_string(k) + ".safetensors"));
+      ASSERT_TRUE(bytes::models::write_model(models_[k], model));
+      recordings_.push_back(folder_.file("rec" + std::to_string(k) + ".mcap"));
+      write(recordings_[k], support::read_bytes(models_[k]));
+    }
+  }
+  static void write(const std::string& path, const std::string& model) {
+    write_tip(
+        path, [](int k, RawFrame& frame) { frame.counts = {1e6F + 1e5F * static_cast<float>(k)}; },
+        [](bytes::recordings::SuitRecordingWriter&, Nanos) {}, model);
+  }
+  [[nodiscard]] static std::vector<float> forces(const std::vector<std::string>& recordings,
+                                                 const EpisodeOptions& options) {
+    Kept kept;
+    const Result<EpisodeTally> made = make_episodes(recordings, options, kept);
+    EXPECT_TRUE(made) << made.error().message;
+    return kept.column<float>("tip");
+  }
+
+  std::vector<std::string> models_;
+  std::vector<std::string> recordings_;
+};
+
+TEST_F(RecordedModels, give_the_forces_where_none_is_named) {
+  std::vector<float> expected;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const std::vector<float> by_file = forces({recordings_[k]}, {.model = models_[k]});
+    expected.insert(expected.end(), by_file.begin(), by_file.end());
+  }
+  ASSERT_EQ(expected.size(), 32U);
+  EXPECT_GT(expected[31], 2.0F * expected[15]) << "each by its own";
+  EXPECT_EQ(forces(recordings_, {}), expected);
+  const std::vector<float> by_first = forces(recordings_, {.model = models_[0]});
+  EXPECT_EQ(by_first[31], by_first[15]) << "one that is named goes before them";
+  EXPECT_EQ(notices_of(recordings_, {}),
+            (std::vector<std::string>{"the forces are those of the models that the recordings hold"}));
+}
+
+TEST_F(RecordedModels, must_be_in_all_recordings) {
+  const std::string bare = folder_.file("bare.mcap");
+  write(bare, "");
+  EXPECT_EQ(forces({recordings_[0], bare}, {}), std::vector<float>());
+  EXPECT_EQ(notices_of({recordings_[0], bare}, {}),
+            (std::vector<std::string>{"there are no forces: '" + bare + "' holds no model; name one for all"}));
+  EXPECT_EQ(error_of({recordings_[0], bare}, {.tare = true}), "tare: needs a model: without one there are no forces");
+  write(bare, "no model");
+  EXPECT_NE(error_of({bare}, {}).find(bare + ": its model"), std::string::npos);
 }
 
 }  // namespace

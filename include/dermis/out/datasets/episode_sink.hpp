@@ -33,6 +33,7 @@ struct Column {
   std::vector<std::string> axes;   ///< "window", "rows", "cols": one for each dimension.
   /// Elements are of so many kinds, over and over; those of a kind have their statistics in common. 0: none have.
   std::size_t kinds = 0;
+  std::vector<std::string> labels{};  ///< Names of the values 0, 1, ...; -1 has none. Empty: of a quantity.
 
   [[nodiscard]] std::size_t elements() const noexcept;
   [[nodiscard]] std::size_t row_bytes() const noexcept { return elements() * bytes_of(type); }
@@ -78,6 +79,7 @@ struct EpisodeSource {
   std::uint64_t steps = 0;
   Nanos first{};  ///< The first step.
   Nanos last{};
+  std::string label{};  ///< That cut the episode out; empty: none.
 };
 
 struct EpisodeTally {
@@ -87,6 +89,7 @@ struct EpisodeTally {
   std::vector<EpisodeSource> sources{};  ///< One for each episode.
   std::uint64_t gaps = 0;                ///< That ended an episode.
   std::uint64_t held_out = 0;            ///< So many episodes at the end.
+  std::vector<std::string> labels{};     ///< As Column::labels of the column "label".
   /// How they were made, for people: "window", "5 frames".
   std::vector<std::pair<std::string, std::string>> how{};
 };

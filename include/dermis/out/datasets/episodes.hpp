@@ -27,10 +27,11 @@ struct EpisodeOptions {
   /// all that there are.
   std::vector<std::string> quantities{};
   /// Path as for bytes::models::read_model(); of recordings of several arrays, of the suit.toml that names theirs.
-  /// Empty: there are no forces.
+  /// Empty: each recording has the model that it holds; if one holds none, there are no forces.
   std::string model{};
-  bool tare = false;        ///< Takes the first second of each recording as unloaded; fails where a load stands there.
-  bool tare_force = false;  ///< The same, whatever stands there.
+  /// Takes the first second of each recording as unloaded; fails where a load stands there, and without a model.
+  bool tare = false;
+  bool tare_force = false;    ///< The same, whatever stands there.
   bool follow_drift = false;  ///< Follows the offsets of idle taxels.
   /// The robot's state, such as joint angles, and its actions. Either is a topic of sensor_msgs/msg/JointState that all
   /// recordings have ("/joint_states"), or a CSV for each. time_s of a CSV is on the clock of the frames. Each step has
@@ -46,6 +47,9 @@ struct EpisodeOptions {
   /// Episodes that are not trained on: a share of them such as "0.2", or recordings by their paths or names. They
   /// become the last ones.
   std::vector<std::string> hold_out{};
+  /// Each span of a label (docs/recordings.md) is an episode, and what has no label is left out. Needs the clock of
+  /// `fps`, and a label in each recording.
+  bool cut = false;
   const std::atomic<bool>* stop = nullptr;                ///< Set: ends the work, and nothing is written.
   std::function<void(const std::string&)> notice{};       ///< Receives one line on what a user should know.
   std::function<void(const std::string&)> loss{};         ///< Receives one line, if a file is cut off at its end.
