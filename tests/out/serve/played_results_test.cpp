@@ -25,6 +25,15 @@ namespace {
 using nlohmann::json;
 using support::TemporaryFolder;
 
+/// As topics have the name of its model: a recording that is played has no other.
+std::string array_name() {
+  return "hand_made";
+}
+
+std::vector<std::string> topics() {
+  return {"/" + array_name() + "/force", "/contacts"};
+}
+
 /// By topic and time.
 using Heard = std::map<std::pair<std::string, Nanos>, std::vector<std::uint8_t>>;
 
@@ -40,12 +49,12 @@ Heard hear(StreamClient& client, std::size_t messages) {
 /// What a client of a live array hears, all frames of it, while the array is recorded, tared and marked.
 Heard record(const std::string& path) {
   const std::atomic<bool> never = false;
-  Work work(session_of(small_suit({"chest"}, never), options_with(path)));
+  Work work(session_of(small_suit({array_name()}, never), options_with(path)));
   StreamClient client(work.port());
   client.set_parameter("/stream/rate_hz", "1000");
   client.set_parameter("/tare/force", "true");
   EXPECT_EQ(client.call("/marks/add", R"({"label":"grasp","by":"anna"})"), "{}");
-  client.subscribe({"/chest/force", "/contacts"});
+  client.subscribe(topics());
   Heard heard = hear(client, 1500);
   EXPECT_TRUE(work.end());
   return heard;
@@ -75,7 +84,7 @@ TEST(PlayedResults, are_forces_and_contacts_as_they_were_live_with_the_same_bits
   const Heard live = record(path);
   Work work(play(path));
   StreamClient client(work.port());
-  client.subscribe({"/chest/force", "/contacts"});
+  client.subscribe(topics());
   const auto [both, same] = compare(live, hear(client, 120));
   EXPECT_GT(both, 60);
   EXPECT_EQ(same, both);
@@ -91,7 +100,7 @@ TEST(PlayedResults, are_computed_by_another_model_where_one_is_named) {
   ASSERT_TRUE(bytes::models::write_model(folder.file("other.safetensors"), model));
   Work work(play(path, folder.file("other.safetensors")));
   StreamClient client(work.port());
-  client.subscribe({"/chest/force"});
+  client.subscribe({topics().front()});
   const auto [both, same] = compare(live, hear(client, 120));
   EXPECT_GT(both, 60);
   EXPECT_EQ(same, 0);
