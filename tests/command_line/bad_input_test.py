@@ -28,12 +28,20 @@ class Usage(SmallArray):
         for command, option in (
             ("simulate", "--array"),
             ("calibrate", "--array"),
-            ("run", "--model"),
+            ("run", "--in"),
             ("evaluate", "--model"),
             ("doctor", "--in"),
         ):
             with self.subTest(command):
                 self.refuse([command], [option])
+
+    def test_frames_that_hold_no_model(self):
+        self.refuse(["run", "--in", self.calibration / "frames.csv", "--out", self.work / "f.csv"], ["name one"])
+        recording = self.work / "bare.mcap"
+        self.succeed("convert", self.calibration / "frames.csv", recording)
+        self.refuse(
+            ["run", "--in", recording, "--out", self.work / "f.csv"], [recording, "without a model", "name one"]
+        )
 
     def test_a_number_that_is_none(self):
         self.refuse([*self.run_arguments(self.work / "f.csv"), "--settle", "soon"], ["--settle"])

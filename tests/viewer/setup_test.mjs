@@ -271,7 +271,10 @@ describe("an array of which nothing is written", { concurrency: true }, () => {
       await nextDay.locator('[data-known="board/array.toml"]').click();
       await part(nextDay, "uncalibrated").waitFor();
       await becomes(nextDay, "live");
-      assert.match(readFileSync(join(folder, "board/source.toml"), "utf8"), new RegExp(`from = "serial://${otherPort}"`));
+      assert.match(
+        readFileSync(join(folder, "board/source.toml"), "utf8"),
+        new RegExp(`from = "serial://${otherPort}"`),
+      );
       assertUnhurt(nextDay);
       await nextDay.close();
     } finally {

