@@ -17,8 +17,8 @@ constexpr std::array<std::array<double, 3>, 7> kPalette = {{{0.0479, 0.0528, 0.1
                                                             {-24.5515, -22.1484, -35.9475},
                                                             {8.755, 7.6851, 9.9848}}};
 
-/// The first percent of a scale has a tenth of the colours: what barely presses differs from nothing. There they rise by
-/// the cube of the share, so that noise looks like nothing.
+/// The first percent of a scale has a tenth of the colours: what barely presses differs from nothing. There they rise
+/// by the cube of the share, so that noise looks like nothing.
 constexpr double kToeShare = 0.01;
 constexpr double kToeColours = 0.1;
 

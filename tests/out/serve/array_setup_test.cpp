@@ -155,7 +155,8 @@ TEST_F(ArraySetupTest, serves_an_array_from_last_time_at_the_source_that_a_clien
   StreamClient client((*setup)->port());
   EXPECT_EQ(client.call("/array/use", R"({"file":"old.toml"})"), "choose where the array is first");
   const std::string known = client.call("/array/known", "{}");
-  EXPECT_NE(known.find(R"({"file":"old.toml","name":"old","rows":16,"cols":16,"calibrated":false,"from":""})"), std::string::npos)
+  EXPECT_NE(known.find(R"({"file":"old.toml","name":"old","rows":16,"cols":16,"calibrated":false,"from":""})"),
+            std::string::npos)
       << known;
   EXPECT_EQ(known.find("unrelated"), std::string::npos);
   EXPECT_EQ(client.call("/source/open", R"({"simulation":"contacts"})"), R"({"from":"sim:contacts?rate=100"})");
