@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { DisplayStatistics } from "./display_statistics";
 import { element, setHidden, setText } from "./dom";
+import { errorText } from "./format";
 import { LiveData } from "./live/live_data";
 import { DiagnosticLevel, type HealthStatus } from "./messages/statistics";
 import { makeArraySetup } from "./setup/array_setup";
@@ -196,7 +197,10 @@ export class App implements ViewContext {
 
   #markMoment(): void {
     if (this.#transport.isThere) this.#transport.mark();
-    else void this.live.marks.add(this.live.latestS, `mark ${this.live.events.marks.length + 1}`);
+    else {
+      const tell = (error: unknown): void => this.#showNotice(LEVELS.indexOf("bad"), errorText(error));
+      this.live.marks.add(this.live.latestS).catch(tell);
+    }
   }
 
   #step(by: number): void {

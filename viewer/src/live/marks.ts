@@ -19,7 +19,8 @@ export class Marks {
   constructor(stream: Stream) {
     this.#stream = stream;
     stream.services.follow((services) => {
-      if (services.has("/marks/list")) void this.#ask("/marks/list", {}, true);
+      // Lost with the connection, it is asked again with the next one.
+      if (services.has("/marks/list")) this.#ask("/marks/list", {}, true).catch(() => undefined);
     });
     stream.subscribe("/marks", (message) => this.#take([...this.all.value, readMark(message)]));
   }
@@ -29,7 +30,7 @@ export class Marks {
     return this.#stream.services.value.has("/marks/set");
   }
 
-  async add(atS: number, label: string): Promise<void> {
+  async add(atS: number, label = `mark ${this.all.value.length + 1}`): Promise<void> {
     if (this.areEdited) return this.replace([...this.all.value, { atS, label, event: "" }]);
     return this.#ask("/marks/add", { label, at_ms: Math.round(1000 * atS) }, false);
   }

@@ -8,6 +8,7 @@ import { CdrReader } from "./cdr_reader";
 import { readClassification } from "./classification";
 import { ContactPhase, ContactsFrame, readContacts, readContactsArray } from "./contacts";
 import { emptyGrid, type PointsFrame, readCounts, readGrid, readPoints, TaxelStatus } from "./grids";
+import { readMark } from "./mark";
 import { DiagnosticLevel, readHealth, readStatistics } from "./statistics";
 import { constants, type Definition, definitions, full, sample, simpleFields, written } from "./test_messages";
 import { readThreat, ThreatState } from "./threat";
@@ -187,6 +188,13 @@ describe("threats", () => {
       stampS: 1234.5,
       crossedS: sec + 0.25,
     });
+  });
+});
+
+describe("marks", () => {
+  it("read as they were written", () => {
+    const mark = { header, label: "grasp", by: "anna", event: "tare" };
+    expect(readMark(written("dermis_msgs/msg/Mark", mark))).toEqual({ atS: 1234.5, label: "grasp", event: "tare" });
   });
 });
 

@@ -91,7 +91,7 @@ export class Transport {
     if (this.#clock === undefined) return;
     const atS = this.#clock.startS + this.#clock.positionS(performance.now());
     setText(this.#problem, "");
-    this.#marks.add(atS, `mark ${this.#marks.all.value.length + 1}`).catch((error) => {
+    this.#marks.add(atS).catch((error) => {
       setText(this.#problem, errorText(error));
     });
   }

@@ -101,7 +101,7 @@ class TimeView implements View {
   /** At the moment that is shown. */
   #mark(): void {
     const { live } = this.#context;
-    live.marks.add(live.latestS, this.#label.value.trim() || `mark ${live.events.marks.length + 1}`).catch((error) => {
+    live.marks.add(live.latestS, this.#label.value.trim() || undefined).catch((error) => {
       setText(this.#lastEvent, errorText(error));
     });
     this.#linesDue = true;
