@@ -64,7 +64,8 @@ it("proposes a layout, marks what the bytes hold, and reads the device by it", a
     await page.locator("[data-role=array-setup] button[type=submit]").click();
     await part(page, "uncalibrated").waitFor();
     await becomes(page, "live");
-    assert.ok(existsSync(join(folder, "mine.toml")));
+    assert.ok(existsSync(join(folder, "mine/array.toml")));
+    assert.match(readFileSync(join(folder, "mine/source.toml"), "utf8"), /layout = "layout.toml"/);
     assertUnhurt(page);
     await page.close();
   } finally {

@@ -268,7 +268,7 @@ describe("an array of which nothing is written", { concurrency: true }, () => {
       renameSync(port, otherPort);
       server = await serveEmpty();
       const nextDay = await openPage(browser, server.url);
-      await nextDay.locator('[data-known="board/array.toml"]').click();
+      await nextDay.locator('[data-role=source-setup] [data-known="board/array.toml"]').click();
       await part(nextDay, "uncalibrated").waitFor();
       await becomes(nextDay, "live");
       assert.match(
