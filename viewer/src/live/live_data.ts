@@ -130,7 +130,7 @@ export class LiveData {
     this.events.marks = marks.map(({ atS, label, event }) => ({
       kind: event === "tare" ? "tare" : "mark",
       atS,
-      words: label === "" ? "the label ends" : label,
+      words: event !== "" ? event : label === "" ? "the label ends" : label,
       array: "",
     }));
     this.version += 1;

@@ -19,8 +19,8 @@ constexpr std::chrono::minutes kRefusedFor{1};
 
 }  // namespace
 
-Tares::Tares(const ServedSuit& suit, live::suits::LiveSuit& live, Notify notify)
-    : suit_(suit), live_(live), notify_(std::move(notify)), zeros_(suit.arrays.size()) {
+Tares::Tares(const ServedSuit& suit, live::suits::LiveSuit& live, Notify notify, Changed changed)
+    : suit_(suit), live_(live), notify_(std::move(notify)), changed_(std::move(changed)), zeros_(suit.arrays.size()) {
   for (const ServedArray& array : suit.arrays) kept_.emplace_back(suit, array);
 }
 
@@ -158,7 +158,7 @@ void Tares::end(std::size_t array, const live::suits::ArrayStatistics& statistic
     zero.is_tared = zero.was_tared;
     zero.refusal = fmt::format("{}: {}", name, load);
     zero.refused = Clock::now();
-    log(fmt::format("{} was not tared, as {} asked: {}", name, zero.client, load));
+    log(fmt::format("{} was not tared, as {} asked: {}", name, zero.client, load), Outcome::refused);
   } else {
     zero.taken = Clock::now();
     log(fmt::format("{} was tared by {}{}{}", name, zero.client, load.empty() ? "" : ": ", load));
@@ -169,11 +169,12 @@ void Tares::end(std::size_t array, const live::suits::ArrayStatistics& statistic
   zero.client.clear();
 }
 
-void Tares::log(const std::string& what) {
+void Tares::log(const std::string& what, Outcome outcome) {
   const std::time_t now = Clock::to_time_t(Clock::now());
   std::string line = fmt::format("{:%Y-%m-%d %H:%M:%S} UTC: {}", fmt::gmtime(now), what);
   log_.push_front(line);
   if (log_.size() > kMostLines) log_.pop_back();
+  if (changed_ && outcome == Outcome::changed) changed_(line);
   news_.push_back(std::move(line));
 }
 
@@ -189,14 +190,14 @@ void Tares::model_changed(std::size_t array) {
 }
 
 Result<std::unique_ptr<Part>> make_tares(Host& host) {
-  return std::unique_ptr<Part>(
-      std::make_unique<Tares>(host.suit, host.live, [&host](const std::vector<std::string>& lines) {
-        for (const std::string& line : lines) {
-          host.notify(line);
-          host.marks.add({.time = host.now(), .label = line, .event = "tare"}, host.now());
-        }
-        host.server.parameters_changed();
-      }));
+  const auto notify = [&host](const std::vector<std::string>& lines) {
+    for (const std::string& line : lines) host.notify(line);
+    host.server.parameters_changed();
+  };
+  const auto changed = [&host](const std::string& line) {
+    host.marks.add({.time = host.now(), .label = line, .event = "tare"}, host.now());
+  };
+  return std::unique_ptr<Part>(std::make_unique<Tares>(host.suit, host.live, notify, changed));
 }
 
 }  // namespace dermis::out::serve

@@ -28,8 +28,11 @@ class Tares final : public Part {
   /// Gets the lines of follow(), where there are some.
   using Notify = std::function<void(const std::vector<std::string>& lines)>;
 
+  /// Gets the line of each change of a zero; not of a tare that was refused.
+  using Changed = std::function<void(const std::string& line)>;
+
   /// `suit` and `live` must outlive it.
-  Tares(const ServedSuit& suit, live::suits::LiveSuit& live, Notify notify = {});
+  Tares(const ServedSuit& suit, live::suits::LiveSuit& live, Notify notify = {}, Changed changed = {});
 
   /// "/tare", "/tare/force", ... and "/chest/tare" of each array.
   [[nodiscard]] std::vector<LiveParameter> parameters() override;
@@ -63,13 +66,15 @@ class Tares final : public Part {
   void reset(std::size_t array, const std::string& client);
   void undo(const std::string& client);
   void end(std::size_t array, const live::suits::ArrayStatistics& statistics);
-  void log(const std::string& what);
+  enum class Outcome : std::uint8_t { changed, refused };
+  void log(const std::string& what, Outcome outcome = Outcome::changed);
   [[nodiscard]] static bool is_taken(const Zero& zero);
   [[nodiscard]] static bool can_be_undone(const Zero& zero);
 
   const ServedSuit& suit_;
   live::suits::LiveSuit& live_;
   const Notify notify_;
+  const Changed changed_;
   mutable std::mutex mutex_;       // of the following
   std::vector<Zero> zeros_;        // of each array
   std::vector<KeptZero> kept_;     // the same, in its folder
