@@ -240,8 +240,9 @@ Recording calibration_frames(const Specimen& specimen, std::uint64_t seed, Hand&
   const learn::calibration::CalibrationPlan plan = learn::calibration::default_plan(specimen.array);
   hand.record({}, kUnloadedFrames, 1, recording);
   for (std::size_t k = 0; k < plan.press_count(); ++k) {
-    hand.record({{plan.taxel_of(k), plan.weight_of(k)}}, static_cast<int>(plan.frames_per_press()), kFramesOfMean,
-                recording);
+    const std::size_t taxel = plan.taxels[k % plan.taxels.size()];
+    hand.record({{taxel, plan.weights_n[k / plan.taxels.size()]}}, static_cast<int>(plan.frames_per_press()),
+                kFramesOfMean, recording);
   }
   return recording;
 }

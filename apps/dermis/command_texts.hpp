@@ -9,9 +9,9 @@ namespace dermis::app {
 
 /// The words of --help, manual pages and docs/commands on a command, beside its options.
 struct CommandText {
-  std::string_view command;        ///< "dermis circuit invert"
-  std::string_view about;          ///< Sentences; docs/NAME.md in them is a page of the documentation.
-  std::string_view examples = "";  ///< A command a line.
+  std::string_view command;     ///< "dermis circuit invert"
+  std::string_view about;       ///< Sentences; docs/NAME.md in them is a page of the documentation.
+  std::string_view examples{};  ///< A command a line.
 };
 
 /// Empty where there is none.

@@ -273,7 +273,7 @@ describe("an array of which nothing is written", { concurrency: true }, () => {
       await becomes(nextDay, "live");
       assert.match(
         readFileSync(join(folder, "board/source.toml"), "utf8"),
-        new RegExp(`from = "serial://${otherPort}"`),
+        new RegExp(`from = "serial://${otherPort}`),
       );
       assertUnhurt(nextDay);
       await nextDay.close();

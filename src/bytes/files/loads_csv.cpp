@@ -58,7 +58,7 @@ Result<std::size_t> parse_frame(std::string_view text, std::size_t frame_count) 
 /// `unit`: of a force that has none.
 Result<double> parse_value(std::string_view text, LoadKind kind, std::string_view unit) {
   const bool is_force = kind == LoadKind::force;
-  const Result<double> value = is_force ? parse_force(text, unit) : parse_pressure(text);
+  Result<double> value = is_force ? parse_force(text, unit) : parse_pressure(text);
   if (!value) return bad_input("value " + value.error().message);
   const double most = is_force ? kMostValue : kMostValue * kPascalPerKilopascal;
   if (!(*value >= 0.0 && *value <= most)) {

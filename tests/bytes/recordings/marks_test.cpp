@@ -23,7 +23,7 @@ const std::vector<Mark> kRecorded = {{kStart, "", "", "tare"}, {kStart + Nanos(5
 
 /// A recording of one frame with marks.
 std::string recording_with(const TemporaryFolder& folder, const std::vector<Mark>& marks) {
-  const std::string path = folder.file("walk.mcap");
+  std::string path = folder.file("walk.mcap");
   const auto writer = SuitRecordingWriter::create(path, {{.name = "chest", .shape = {1, 2}}});
   RawFrame frame;
   frame.time = kStart;
