@@ -86,7 +86,7 @@ export class FleetPage {
     this.#rows = new KeyedRows(
       this.#table,
       ({ state }) => state.name,
-      () => new RobotRow(() => this.#hub.textContent ?? ""),
+      () => new RobotRow(() => this.#hub.title),
     );
   }
 

@@ -160,7 +160,7 @@ class ArraySetup::Implementation {
     if (!name_) return bad_input(kNoSource);
     const Result<ArrayDescription> array = array_request(request);
     if (!array) return array.error();
-    const Result<std::string> path = new_array_file(array->name, "array.toml");
+    Result<std::string> path = new_array_file(array->name, "array.toml");
     if (!path) return path;
     if (Status sends = check_frames(*array); !sends) return sends.error();
     if (Status made = make_array_folder(array->name); !made) return made.error();
@@ -332,7 +332,7 @@ class ArraySetup::Implementation {
     if (!request) return request.error();
     const Result<std::string> name = request->file_name("name");
     if (!name) return name.error();
-    const Result<std::string> path = new_array_file(*name, "array.toml");
+    Result<std::string> path = new_array_file(*name, "array.toml");
     if (!path) return path;
     const learn::arrangement::ArrangementFiles files = learn::arrangement::arrangement_files(*path);
     const Result<learn::arrangement::Arrangement> made = pressing_->arrange(*name);

@@ -9,6 +9,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -37,7 +38,7 @@ class Marks final : public Part {
   explicit Marks(Host& host) : host_(host) {}
 
   [[nodiscard]] std::vector<websocket::Service> services() override {
-    std::vector<websocket::Service> services = {service("/marks/list", *this, &Marks::list)};
+    std::vector<websocket::Service> services = {{"/marks/list", [this](std::string_view) { return list(); }}};
     if (host_.suit.playback) {
       services.push_back(service("/marks/set", *this, &Marks::set, kMostRequest));
     } else {
@@ -93,7 +94,7 @@ class Marks final : public Part {
     return std::string("{}");
   }
 
-  [[nodiscard]] Result<std::string> list(const JsonRequest& /*request*/) {
+  [[nodiscard]] Result<std::string> list() const {
     ordered_json answer{{"marks", ordered_json::array()}};
     for (const Mark& mark : host_.marks.marks()) {
       answer["marks"].push_back({{"time_s", std::chrono::duration<double>(mark.time).count()},
@@ -124,7 +125,7 @@ class Marks final : public Part {
       return written.error();
     }
     if (Status read = prepare(); !read) return read.error();
-    return list(request);
+    return list();
   }
 
   Host& host_;
