@@ -63,7 +63,11 @@ class SlowLine:
     def accept(self):
         while True:
             robot, _ = self.listener.accept()
-            hub = socket.create_connection(("127.0.0.1", self.to))
+            try:
+                hub = socket.create_connection(("127.0.0.1", self.to))
+            except ConnectionRefusedError:
+                robot.close()  # the hub has not begun; the robot comes again
+                continue
             for one, other, is_up in ((robot, hub, True), (hub, robot, False)):
                 threading.Thread(target=self.pump, args=(one, other, is_up), daemon=True).start()
 
