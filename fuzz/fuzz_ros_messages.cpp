@@ -21,6 +21,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (const auto shape = messages::decode_raw_frame(message, frame)) {
     if (frame.counts.size() != shape->taxel_count()) std::abort();
   }
+  dermis::ForceFrame force;
+  if (const auto shape = messages::decode_grid(message, force)) {
+    if (force.newtons.size() != shape->taxel_count() || force.taxels.size() != shape->taxel_count()) std::abort();
+  }
+  static_cast<void>(messages::decode_mark(message));
   static_cast<void>(messages::decode_text(message));
   static_cast<void>(messages::decode_acquisition(message, frame));
   static_cast<void>(messages::decode_temperature(message));

@@ -450,5 +450,45 @@ Bytes image_with(const char* encoding, std::uint8_t is_bigendian, std::uint32_t 
   return bytes;
 }
 
+TEST(RosMessages, a_grid_of_forces_reads_back_with_the_same_bits) {
+  for (const FrameShape shape : {FrameShape{1, 1}, FrameShape{3, 5}, FrameShape{64, 40}}) {
+    const ForceFrame frame = random_forces(shape.taxel_count(), 7);
+    Bytes message;
+    encode_grid(frame, shape, {0.005, 0.004}, "array", message);
+    ForceFrame read;
+    const Result<FrameShape> found = decode_grid(message, read);
+    ASSERT_TRUE(found) << found.error().message;
+    EXPECT_EQ(*found, shape);
+    EXPECT_TRUE(has_same_bits(read.newtons, frame.newtons));
+    EXPECT_TRUE(has_same_bits(read.sigma_newtons, frame.sigma_newtons));
+    EXPECT_EQ(read.taxels, frame.taxels);
+    for (std::size_t size = 0; size < message.size(); size += 7) {
+      EXPECT_FALSE(decode_grid(std::span(message).first(size), read)) << size;
+    }
+  }
+}
+
+TEST(RosMessages, a_grid_of_conductances_holds_no_forces) {
+  ConductanceFrame frame;
+  frame.siemens = frame.sigma_siemens = {1.0, 2.0};
+  frame.taxels.resize(2);
+  Bytes message;
+  encode_conductance_grid(frame, {1, 2}, {}, "array", message);
+  ForceFrame read;
+  EXPECT_FALSE(decode_grid(message, read));
+}
+
+TEST(RosMessages, a_mark_reads_back_as_it_was_set) {
+  const Mark mark{Nanos(1'700'000'000'123'456'789), "grasp", "anna", "tare"};
+  Bytes message;
+  encode_mark(mark, "suit", message);
+  const Result<Mark> read = decode_mark(message);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(*read, mark);
+  for (std::size_t size = 0; size < message.size(); ++size) {
+    EXPECT_FALSE(decode_mark(std::span(message).first(size))) << size;
+  }
+}
+
 }  // namespace
 }  // namespace dermis::bytes::ros_messages
