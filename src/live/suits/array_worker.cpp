@@ -256,9 +256,13 @@ void ArrayWorker::publish(Nanos now) {
   published_.statistics.latency_p99 = counts_.latencies.quantile(now, 0.99);
   const auto faults = pipeline_->line_faults().faults();
   published_.statistics.faults.assign(faults.begin(), faults.end());
-  published_.statistics.tare = pipeline_->last_tare();
-  const std::span<const double> offsets = pipeline_->drift().offsets();
-  published_.statistics.zero.assign(offsets.begin(), offsets.end());
+  const touch::pipeline::Tare& tare = pipeline_->last_tare();
+  const touch::pipeline::Tare& told = published_.statistics.tare;
+  if (tare.number != told.number || tare.state != told.state) {
+    const std::span<const double> offsets = pipeline_->drift().offsets();
+    published_.zero.assign(offsets.begin(), offsets.end());
+  }
+  published_.statistics.tare = tare;
   published_.statistics.standing = standing_load();
   published_.statistics.temperature_celsius = results_.temperature_celsius;
   published_.statistics.supply_v = results_.supply_v;
@@ -281,6 +285,11 @@ ArrayStatistics ArrayWorker::statistics() const {
   ArrayStatistics statistics = published_.statistics;
   if (!statistics.ended && is_silent(statistics, steady_now() - published_.at)) statistics.source.rate_hz = 0.0;
   return statistics;
+}
+
+std::vector<double> ArrayWorker::zero() const {
+  const std::lock_guard lock(published_.mutex);
+  return published_.zero;
 }
 
 }  // namespace dermis::live::suits

@@ -45,6 +45,7 @@ class ArrayWorker {
   void use_zero(std::vector<double> offsets);
   [[nodiscard]] Status set_model(const touch::pipeline::Model& model);
   [[nodiscard]] ArrayStatistics statistics() const;
+  [[nodiscard]] std::vector<double> zero() const;
 
  private:
   /// Requests of other threads.
@@ -89,7 +90,8 @@ class ArrayWorker {
   struct Published {
     mutable std::mutex mutex;
     ArrayStatistics statistics;
-    Nanos at{};  // by the steady clock
+    std::vector<double> zero;  // when the tare in the statistics changed
+    Nanos at{};                // by the steady clock
   };
 
   ArrayWorker(std::size_t index, LiveArray array, std::unique_ptr<touch::pipeline::Pipeline> pipeline,

@@ -151,4 +151,8 @@ ArrayStatistics LiveSuit::statistics(std::size_t array) const {
   return implementation_->at(array).statistics();
 }
 
+std::vector<double> LiveSuit::zero(std::size_t array) const {
+  return implementation_->at(array).zero();
+}
+
 }  // namespace dermis::live::suits

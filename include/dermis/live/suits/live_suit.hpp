@@ -58,7 +58,6 @@ struct ArrayStatistics {
   std::string error;           ///< why; empty where it just ended.
   std::vector<touch::compensation::LineFault> faults;
   touch::pipeline::Tare tare;  ///< The last one.
-  std::vector<double> zero;    ///< The offsets that are subtracted now [taxels] [S].
   /// Has stood there since the first frame, or for a minute.
   std::optional<touch::pipeline::StandingLoad> standing;
   std::optional<double> temperature_celsius;  ///< Of the last frame,
@@ -121,6 +120,8 @@ class LiveSuit {
   [[nodiscard]] Status set_model(std::size_t array, const std::shared_ptr<const touch::pipeline::Model>& model);
 
   [[nodiscard]] ArrayStatistics statistics(std::size_t array) const;
+  /// The offsets when the last tare began or ended [taxels] [S]; empty: there was none.
+  [[nodiscard]] std::vector<double> zero(std::size_t array) const;
 
  private:
   class Implementation;

@@ -138,19 +138,17 @@ void Tares::undo(const std::string& client) {
 
 std::vector<std::string> Tares::follow() {
   for (std::size_t k = 0; k < zeros_.size(); ++k) {
-    const live::suits::ArrayStatistics statistics = live_.statistics(k);
-    const touch::pipeline::Tare& tare = statistics.tare;
+    const touch::pipeline::Tare tare = live_.statistics(k).tare;
     const std::lock_guard lock(mutex_);
     const bool is_news = tare.has_ended() && tare.number != zeros_[k].seen;
     zeros_[k].seen = tare.has_ended() ? tare.number : 0;
-    if (is_news && !zeros_[k].client.empty()) end(k, statistics);
+    if (is_news && !zeros_[k].client.empty()) end(k, tare);
   }
   const std::lock_guard lock(mutex_);
   return std::exchange(news_, {});
 }
 
-void Tares::end(std::size_t array, const live::suits::ArrayStatistics& statistics) {
-  const touch::pipeline::Tare& tare = statistics.tare;
+void Tares::end(std::size_t array, const touch::pipeline::Tare& tare) {
   Zero& zero = zeros_[array];
   const std::string& name = suit_.arrays[array].name;
   const std::string load = touch::pipeline::describe(tare, suit_.arrays[array].model->array);
@@ -162,7 +160,7 @@ void Tares::end(std::size_t array, const live::suits::ArrayStatistics& statistic
   } else {
     zero.taken = Clock::now();
     log(fmt::format("{} was tared by {}{}{}", name, zero.client, load.empty() ? "" : ": ", load));
-    if (Status kept = kept_[array].write(statistics.zero); !kept) {
+    if (Status kept = kept_[array].write(live_.zero(array)); !kept) {
       log(fmt::format("the zero of {} is not kept: {}", name, kept.error().message));
     }
   }

@@ -65,7 +65,7 @@ class Tares final : public Part {
   void force(const std::string& client);
   void reset(std::size_t array, const std::string& client);
   void undo(const std::string& client);
-  void end(std::size_t array, const live::suits::ArrayStatistics& statistics);
+  void end(std::size_t array, const touch::pipeline::Tare& tare);
   enum class Outcome : std::uint8_t { changed, refused };
   void log(const std::string& what, Outcome outcome = Outcome::changed);
   [[nodiscard]] static bool is_taken(const Zero& zero);
