@@ -6,10 +6,10 @@
 
 #include "dermis/bytes/files/array_toml.hpp"
 #include "dermis/live/sources/open_source.hpp"
+#include "kept_model.hpp"
 #include "labelled_recording.hpp"
 #include "seconds.hpp"
 #include "source_options.hpp"
-#include "writable.hpp"
 
 namespace dermis::app {
 
@@ -25,7 +25,7 @@ Result<CalibrationInput> CalibrationInput::read(const CalibrationFiles& files, c
   if (!settle) return settle.error();
   Result<ArrayDescription> array = bytes::files::read_array(files.array);
   if (!array) return array.error();
-  if (Status writable = out.empty() ? Done{} : check_writable(out); !writable) return writable.error();
+  if (Status claimed = out.empty() ? Done{} : claim_model(out); !claimed) return claimed.error();
   Result<std::vector<RawFrame>> frames = live::sources::read_frames(files.frames, source_options(&*array));
   if (!frames) return frames.error();
   Result<std::vector<Load>> loads = read_told_loads(files.loads, *array, frames->size());

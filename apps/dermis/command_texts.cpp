@@ -29,7 +29,8 @@ constexpr std::array kTexts{
     CommandText{"dermis record",
                 "One thread reads frames and another writes them, so none is lost. Ctrl-C ends it with a complete "
                 "file. If the device fails, the frames before are complete in the file, and the status is 1. It is 2 "
-                "if for 5 s bytes came that are no frames of the protocol.",
+                "if for 5 s bytes came that are no frames of the protocol. Until a table such as frames.csv is "
+                "complete, frames.csv.mcap beside it keeps the frames.",
                 "dermis record --from 'serial:///dev/ttyACM0?protocol=flexitac' --out rec.mcap\n"
                 "dermis record --from 'sim:multitouch?rows=64&cols=160&rate=1000' --seconds 10 --out rec.mcap"},
     CommandText{"dermis simulate",
@@ -181,12 +182,19 @@ again is not overwritten:
 
 | what is there | what happens |
 |---|---|
-| a file that the command reads, under any name of it, one that its suit.toml names, or its other output | status 2, with `--force`, too |
+| a file that the command reads, under any name of it, one that a source or its suit.toml names, or its other output | status 2, with `--force`, too |
+| a file that another `dermis` writes, or another program has locked (`flock`) | status 2, with `--force`, too |
 | a model or classes, where the command writes such | the earlier one stays as `skin-before-20261126-140300.safetensors` (UTC), and a line says so |
 | a table of results, a picture or a report | it is replaced, and a line says so |
 | files of a simulation, in a folder with its origin.toml | they are replaced by those of another |
 | a recording of `serve --record` | the new one has the UTC time in its name, and a line names it |
 | any other file: a recording, frames, a model, a description, a dataset, notes | status 2; `--force` replaces it |
+| a file that appears while the command works | it stays; the output gets the UTC time in its name, and the status is 1 |
+
+Until it is complete, `NAME` grows as the file or folder `NAME.dermis.tmp` beside it, locked by its process. If that is
+killed, the next command that writes into the folder removes it. Until `dermis record` has completed a table such as
+`frames.csv`, the recording `frames.csv.mcap` beside it holds the same frames. It stays where the process is killed:
+`dermis convert frames.csv.mcap frames.csv` makes the table. A new recording to `frames.csv` is refused as long as it is there.
 
 ## Forces
 

@@ -7,12 +7,14 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <iterator>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "dermis/bytes/files/file_kind.hpp"
 #include "dermis/bytes/files/input.hpp"
+#include "dermis/bytes/files/output_place.hpp"
 #include "dermis/bytes/files/suit_toml.hpp"
 #include "dermis/live/sources/source_name.hpp"
 #include "status_line.hpp"
@@ -57,10 +59,10 @@ bool would_be_lost(const std::string& path) {
   return path != kStandardOutput && fs::is_regular_file(path, error) && fs::file_size(path, error) > 0;
 }
 
-/// The file of a path or of a source; empty where there is none.
-std::string file_of(const std::string& name) {
+/// Those of a path or of a source.
+std::vector<std::string> files_of(const std::string& name) {
   const Result<live::sources::SourceName> source = live::sources::SourceName::parse(name);
-  return source ? source->file : std::string();
+  return source ? source->files() : std::vector<std::string>();
 }
 
 /// The files that a suit.toml names, which are read with it; none for any other file.
@@ -76,7 +78,8 @@ std::vector<std::string> files_of_suit(const std::string& path) {
   if (!suit) return named;
   named.insert(named.end(), {suit->classes, suit->body});
   for (const SuitArray& array : suit->arrays) {
-    named.insert(named.end(), {array.model, array.classes, file_of(array.from)});
+    named.insert(named.end(), {array.model, array.classes});
+    std::ranges::move(files_of(array.from), std::back_inserter(named));
   }
   return named;
 }
@@ -84,9 +87,8 @@ std::vector<std::string> files_of_suit(const std::string& path) {
 std::vector<std::string> files_of(const std::vector<std::string>& names) {
   std::vector<std::string> files;
   for (const std::string& name : names) {
-    files.push_back(file_of(name));
-    if (!name.ends_with(".toml")) continue;
-    for (std::string& named : files_of_suit(name)) files.push_back(std::move(named));
+    std::ranges::move(files_of(name), std::back_inserter(files));
+    if (name.ends_with(".toml")) std::ranges::move(files_of_suit(name), std::back_inserter(files));
   }
   std::erase(files, "");
   return files;
@@ -99,7 +101,7 @@ std::vector<std::string> written_at(const std::string& path) {
 }  // namespace
 
 void FilePlaces::add_input(const std::string& option, const std::string& name) {
-  inputs_.push_back({option, [&name] { return files_of({name}); }});
+  inputs_.push_back({option, [&name] { return files_of(std::vector{name}); }});
 }
 
 void FilePlaces::add_input(const std::string& option, const std::vector<std::string>& names) {
@@ -160,11 +162,28 @@ Status FilePlaces::check_distinct() const {
   return Done{};
 }
 
+/// Models have their names taken by their commands, some of which are several processes.
+Status FilePlaces::claim() const {
+  for (const Place& output : outputs_) {
+    if (output.is_model) continue;
+    for (const std::string& path : output.paths()) {
+      const fs::path folder = fs::path(path).parent_path();
+      std::error_code error;
+      if (!folder.empty() && !fs::exists(folder, error)) continue;  // the command makes it, or says what is missing
+      if (Status claimed = bytes::files::claim_output(path, bytes::files::EarlierFile::stays_unread); !claimed) {
+        return claimed;
+      }
+    }
+  }
+  return Done{};
+}
+
 Status FilePlaces::check(bool is_forced) const {
   Status once = check_one_uses(kStandardInput, inputs_, "reads the standard input");
   if (once) once = check_one_uses(kStandardOutput, outputs_, "writes the standard output");
   if (!once) return once;
   if (Status distinct = check_distinct(); !distinct) return distinct;
+  if (Status claimed = claim(); !claimed) return claimed;
   std::vector<std::string> replaced;
   for (const Place& output : outputs_) {
     if (output.can_be_made_again && output.can_be_made_again()) continue;

@@ -35,6 +35,7 @@ class FilePlaces {
 
   /// Fails if an output is an input or another output, by whatever name, or two inputs are the standard input. Fails if
   /// it exists and is neither a table of results nor a picture, unless `is_forced`. Says which files will be replaced.
+  /// Takes the names of the outputs (bytes::files::claim_output()); fails if another process writes one.
   [[nodiscard]] Status check(bool is_forced) const;
 
  private:
@@ -49,6 +50,7 @@ class FilePlaces {
   [[nodiscard]] static Status check_one_uses(const std::string& stream, const std::vector<Place>& places,
                                              const char* use);
   [[nodiscard]] Status check_distinct() const;
+  [[nodiscard]] Status claim() const;
 
   std::vector<Place> inputs_;
   std::vector<Place> outputs_;

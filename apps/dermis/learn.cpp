@@ -24,7 +24,6 @@
 #include "source_options.hpp"
 #include "status_line.hpp"
 #include "touch_finding.hpp"
-#include "writable.hpp"
 
 namespace dermis::app {
 namespace {
@@ -55,11 +54,7 @@ Status check_options(const LearnOptions& options) {
     return bad_input("nothing would be written; name --out, or --splits with --predictions");
   }
   if (!options.report.empty() && options.out.empty()) return bad_input("--report: needs --out");
-  for (const std::string& path : {options.out, options.predictions, options.open_predictions}) {
-    if (path.empty()) continue;
-    if (Status writable = check_writable(path); !writable) return writable;
-  }
-  return Done{};
+  return options.out.empty() ? Done{} : claim_model(options.out);
 }
 
 Status write_predictions(const std::string& path, const LabelledFrames& data, const LearningSet& set,

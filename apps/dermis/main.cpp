@@ -90,6 +90,7 @@ int run(int argc, char** argv) {
   if (!action) return exit_status(action.error());
   if (!*action) return 0;
   const Result<int> status = perform(*action);
+  bytes::files::release_claims();
   if (!status && has_reader_gone(status.error())) return kExitReaderGone;
   const std::string lost = losses();
   if (lost.empty()) return status ? *status : exit_status(status.error());

@@ -11,7 +11,7 @@
 #include <system_error>
 
 #include "commands.hpp"
-#include "dermis/bytes/files/atomic_file.hpp"
+#include "dermis/bytes/files/output_place.hpp"
 #include "dermis/paper/bank_reproduction.hpp"
 #include "dermis/paper/paper_report.hpp"
 #include "dermis/paper/peaks_reproduction.hpp"
@@ -106,9 +106,7 @@ Status check_folder(const std::string& directory) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
   if (error) return failed("cannot make the directory '" + directory + "': " + error.message());
-  const Result<bytes::files::AtomicFile> writable = bytes::files::AtomicFile::create(directory + "/index.html");
-  if (!writable) return writable.error();
-  return Done{};
+  return bytes::files::claim_output(directory + "/index.html", bytes::files::EarlierFile::may_be_read);
 }
 
 Status paper(const PaperOptions& options) {

@@ -18,7 +18,6 @@
 #include "kept_model.hpp"
 #include "paper_commands.hpp"
 #include "status_line.hpp"
-#include "writable.hpp"
 
 namespace dermis::app {
 namespace {
@@ -65,7 +64,7 @@ void print_json(const BankTrainingReport& report, const ArrayDescription& array)
 Result<SampleDatabase> read_samples(const PaperCalibrateOptions& options) {
   if (Status valid = options.training.validate(); !valid) return valid.error();
   const std::string& checkpoint = options.training.checkpoint;
-  if (Status writable = checkpoint.empty() ? Done{} : check_writable(checkpoint); !writable) return writable.error();
+  if (Status claimed = checkpoint.empty() ? Done{} : claim_model(checkpoint); !claimed) return claimed.error();
   const Result<CalibrationInput> input = CalibrationInput::read(options.files, options.bank);
   if (!input) return input.error();
   Progress progress(input->array.name);

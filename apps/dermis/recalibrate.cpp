@@ -12,7 +12,6 @@
 #include "interruption.hpp"
 #include "kept_model.hpp"
 #include "labelled_recording.hpp"
-#include "writable.hpp"
 
 namespace dermis::app {
 namespace {
@@ -31,7 +30,7 @@ Status recalibrate(const RecalibrateOptions& options) {
     return bad_input(options.model + ": describes an array, and is no model; 'dermis calibrate' makes one");
   }
   const std::string& out = options.out.empty() ? options.model : options.out;
-  if (Status writable = check_writable(out); !writable) return writable;
+  if (Status claimed = claim_model(out); !claimed) return claimed;
   const Result<LabelledRecording> recording = LabelledRecording::read(options.model, options.frames, options.loads);
   if (!recording) return recording.error();
   const auto& [model, frames, loads] = *recording;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "commands.hpp"
 #include "dermis/bytes/devices/recorder.hpp"
@@ -117,7 +118,7 @@ Status record(const RecordOptions& options) {
   TypedMarks marks(options.out);
   const auto begin = [&](const FrameShape& shape) {
     marks.begin();
-    return live::forces::create_recording(output, shape);
+    return live::forces::create_kept_recording(output, shape);
   };
   Status recorded = bytes::devices::record(**source, begin, *recorder, last);
   line.end();
@@ -136,6 +137,10 @@ void add_record(Command& command) {
   auto options = std::make_shared<RecordOptions>();
   command.input("--from", options->from, "URI of a device or of the simulator (docs/devices.md), or a file").required();
   command.output("--out", options->out, "Recording to write: .mcap, or another format of frames").required();
+  command.outputs_beside("--out", [options] {
+    const std::string beside = live::forces::recording_beside(options->out);
+    return beside.empty() ? std::vector<std::string>() : std::vector{beside};
+  });
   command.input("--array", options->array, "array.toml, to keep with the frames");
   command.input_file("--model", options->model,
                      "Record the forces, too: of this model, or array.toml where readings are forces");

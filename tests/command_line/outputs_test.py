@@ -2,12 +2,15 @@
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """No command writes onto a file that it reads, by any name of it, and none overwrites what cannot be made again."""
 
+import fcntl
 import itertools
 import os
 import re
+import subprocess
+from pathlib import Path
 
 import support
-from support import SmallArray, dermis
+from support import SmallArray, dermis, error_lines
 
 # What each command reads and writes: options, or arguments by their place.
 COMMANDS = {
@@ -188,6 +191,126 @@ class NothingIsOverwritten(SmallArray):
                 (result.returncode, result.stderr), (2, "dermis: --out: is the file of --in; name another\n")
             )
             self.assertEqual(frames.read_bytes(), before)
+
+    def test_an_output_is_no_file_that_a_source_names(self):
+        layout = self.written("lay.toml", '[layout]\nname = "x"\n[[layout.array]]\nrows = 1\ncols = 2\n')
+        self.written("x.txt", "1,2\n" * 50)
+        sources = {
+            layout: f"file:{self.work}/x.txt?layout={layout}",
+            self.written("small.toml", support.ARRAY): f"sim:idle?frames=5&array={self.work}/small.toml",
+            self.written("hand.toml", "[can]\n"): f"candump:{self.work}/x.txt?map={self.work}/hand.toml",
+        }
+        recording = self.work / "new.mcap"
+        for named, source in sources.items():
+            before = named.read_bytes()
+            for name, alias in aliases(named, self.work).items():
+                for written, command in (
+                    ("--out", ("record", "--from", source, "--out", alias)),
+                    ("--out", ("run", "--model", self.model, "--in", source, "--out", alias)),
+                    ("--contacts", ("run", "--model", self.model, "--in", source, "--contacts", alias)),
+                    ("--totals", ("run", "--model", self.model, "--in", source, "--totals", alias)),
+                    ("--out", ("recognise", "--classes", self.model, "--in", source, "--out", alias)),
+                    ("--out", ("replay", source, "--out", alias)),
+                    ("--out", ("describe", source, "--out", alias)),
+                    ("--out", ("image", "--in", source, "--out", alias)),
+                    ("out", ("convert", source, alias)),
+                ):
+                    with self.subTest(command[0], source=source, name=name):
+                        result = dermis(*command, "--force")
+                        self.assertEqual(result.returncode, 2, result)
+                        self.assertRegex(result.stderr, rf"^dermis: {written}: is the file of .*; name another\n$")
+                        self.assertEqual(named.read_bytes(), before)
+            for name in ("link", "hard_link"):
+                (self.work / name).unlink()
+        self.assertFalse(recording.exists())
+
+    def test_an_output_is_no_file_that_is_found_in_a_folder(self):
+        bag = self.work / "bag"
+        bag.mkdir()
+        part = bag / "bag_0.mcap"
+        self.succeed("convert", self.contacts / "frames.csv", part)
+        (bag / "metadata.yaml").write_text(
+            "rosbag2_bagfile_information:\n  version: 5\n  storage_identifier: mcap\n"
+            "  relative_file_paths:\n    - bag_0.mcap\n"
+        )
+        before = part.read_bytes()
+        for alias in aliases(part, self.work).values():
+            for command in (("convert", bag, alias), ("replay", bag, "--speed", 0, "--out", alias)):
+                result = dermis(*command, "--force")
+                self.assertEqual(result.returncode, 2, result)
+                self.assertEqual(
+                    error_lines(result),
+                    [f"dermis: '{part}' is read, and would be replaced by the output; name another output"],
+                )
+                self.assertEqual(part.read_bytes(), before)
+
+    def test_an_output_that_another_writes_is_refused(self):
+        files = {
+            "calibrate": self.calibrate_arguments("")[1:-2],
+            "doctor recalibrate": (
+                "--model", self.model, "--frames", self.calibration / "frames.csv",
+                "--loads", self.calibration / "loads.csv",
+            ),
+            "recognise learn": ("--labels", self.contacts / "loads.csv", "--in", self.contacts / "frames.csv"),
+            "paper calibrate": self.calibrate_arguments("")[1:-2],
+        }  # fmt: skip
+        for command, (_, outputs) in COMMANDS.items():
+            for written in outputs:
+                path = self.work / f"there_{written.strip('-')}.csv"
+                path.write_text("time_s,status,\n")
+                with self.subTest(command=command, written=written), open(f"{path}.dermis.tmp", "wb") as held:
+                    fcntl.flock(held, fcntl.LOCK_EX)
+                    paths = {**self.inputs(command), written: path}
+                    if command in files:
+                        required = {"paper calibrate": ("--bank", path if written == "--bank" else self.work / "bank")}
+                        more = required.get(command, ()) if written != "--bank" else ()
+                        arguments = (*command.split(), *files[command], *more, written, path)
+                        for one in ("--predictions", "--open-predictions"):
+                            if written == one:
+                                arguments += ("--splits" if one == "--predictions" else "--open", self.work / "splits")
+                        result = dermis(*arguments, "--force")
+                    else:
+                        result = self.command(command, paths, "--force")
+                    self.assertEqual(
+                        (result.returncode, result.stderr.splitlines()[-1]),
+                        (2, f"dermis: '{path}' is being written by another; wait for its end, or name another file"),
+                    )
+                    self.assertEqual(path.read_text(), "time_s,status,\n")
+                for file in self.work.iterdir():
+                    file.unlink()
+
+    def test_a_file_that_appears_meanwhile_stays(self):
+        frames = (self.contacts / "frames.csv").read_text()
+        for name, command in (
+            ("rec.csv", lambda pipe, out: ("record", "--from", pipe, "--out", out)),
+            ("rec.npy", lambda pipe, out: ("record", "--from", pipe, "--out", out)),
+            ("rec.h5", lambda pipe, out: ("record", "--from", pipe, "--out", out)),
+            ("rec.mcap", lambda pipe, out: ("record", "--from", pipe, "--out", out)),
+            ("out.h5", lambda pipe, out: ("convert", pipe, out)),
+            ("out.csv", lambda pipe, out: self.run_arguments(out, **{"in": pipe})),
+            ("again.csv", lambda pipe, out: ("replay", pipe, "--speed", 0, "--out", out)),
+        ):
+            for force in ((), ("--force",)):
+                with self.subTest(name, force=force):
+                    folder = self.work / (name + "".join(force))
+                    folder.mkdir()
+                    pipe, out = folder / "pipe.csv", folder / name
+                    os.mkfifo(pipe)
+                    process = subprocess.Popen(
+                        [support.BINARY, *map(str, command(pipe, out)), *force], stderr=subprocess.PIPE, text=True
+                    )
+                    with pipe.open("w") as feed:
+                        out.write_text("notes")
+                        feed.write(frames)
+                    said = process.communicate(timeout=60)[1].splitlines()[-1]
+                    self.assertEqual(process.returncode, 1, said)
+                    self.assertEqual(out.read_text(), "notes")
+                    found = re.fullmatch(
+                        rf"dermis: '{out}' is another's by now, and stays; what was written is '(.+)'", said
+                    )
+                    self.assertTrue(found, said)
+                    self.assertGreater(Path(found.group(1)).stat().st_size, 100)
+                    self.assertEqual(len(list(folder.iterdir())), 3)
 
     def test_names_that_no_file_can_have_are_told(self):
         long = self.work / ("a" * 300)

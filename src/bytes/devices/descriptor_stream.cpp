@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "bytes/devices/serial_settings.hpp"
+#include "dermis/bytes/files/output_place.hpp"
 
 namespace dermis::bytes::devices {
 namespace {
@@ -62,6 +63,7 @@ class FileStream final : public ByteStream {
   }
 
   Result<bool> open(Nanos /*timeout*/) override {
+    if (Status readable = files::check_readable(path_); !readable) return readable.error();
     descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a pipe without a writer is waited for
     if (descriptor_ < 0) return bad_input("cannot open '" + path_ + "': " + std::strerror(errno));
     struct stat info {};

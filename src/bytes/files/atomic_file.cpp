@@ -97,9 +97,10 @@ Status AtomicFile::commit() {
   close();
   if (first_error_) return *first_error_;
   if (!unfinished_.exists()) return Done{};
-  if (Status placed = unfinished_.take_place_of(target_); !placed) return placed;
+  const Result<Placed> placed = unfinished_.take_place();
+  if (!placed) return placed.error();
   synchronise_folder_of(target_);
-  return Done{};
+  return placed->told;
 }
 
 void AtomicFile::flush() {

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "dermis/bytes/files/numbers.hpp"
+#include "dermis/bytes/files/output_place.hpp"
 
 namespace dermis::bytes::files {
 namespace {
@@ -75,6 +76,7 @@ std::string with_byte_escapes(std::string_view text) {
 }
 
 Result<std::string> read_config_text(const std::string& path) {
+  if (Status readable = check_readable(path); !readable) return readable.error();
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file) return bad_input("cannot open '" + path + "': " + std::strerror(errno));
   std::string text(kMaxBytes + 1, '\0');

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "dermis/bytes/files/output_place.hpp"
 #include "dermis/bytes/files/text.hpp"
 
 namespace dermis::bytes::files {
@@ -17,6 +18,7 @@ Result<std::unique_ptr<std::istream>> open_input(const std::string& path) {
   if (std::filesystem::is_directory(path, ignored)) {
     return bad_input("cannot open " + in_quotes(path) + ": " + std::strerror(EISDIR));
   }
+  if (Status readable = check_readable(path); !readable) return readable.error();
   errno = 0;
   auto file = std::make_unique<std::ifstream>(path, std::ios::binary);
   if (!file->is_open()) return bad_input("cannot open " + in_quotes(path) + ": " + std::strerror(errno));

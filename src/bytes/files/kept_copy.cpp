@@ -15,25 +15,26 @@ namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{1} << 30U;
 
-std::string unused_name(const std::filesystem::path& path, const std::string& stamp) {
-  const std::string stem = (path.parent_path() / path.stem()).string() + "-before-" + stamp;
-  std::string name = stem + path.extension().string();
-  for (int number = 2; std::filesystem::exists(name); ++number) {
-    name = fmt::format("{}-{}{}", stem, number, path.extension().string());
-  }
-  return name;
-}
-
 }  // namespace
 
 std::string time_stamp(std::chrono::system_clock::time_point time) {
   return fmt::format("{:%Y%m%d-%H%M%S}", fmt::gmtime(std::chrono::system_clock::to_time_t(time)));
 }
 
+std::string unused_name(const std::string& path, const std::string& suffix) {
+  const std::filesystem::path whole(path);
+  const std::string stem = (whole.parent_path() / whole.stem()).string() + "-" + suffix;
+  std::string name = stem + whole.extension().string();
+  for (int number = 2; std::filesystem::exists(name); ++number) {
+    name = fmt::format("{}-{}{}", stem, number, whole.extension().string());
+  }
+  return name;
+}
+
 Result<std::string> keep_copy(const std::string& path, std::chrono::system_clock::time_point time) {
   const Result<std::string> bytes = read_file(path, kMostBytes);
   if (!bytes) return bytes.error();
-  const std::string copy = unused_name(path, time_stamp(time));
+  const std::string copy = unused_name(path, "before-" + time_stamp(time));
   Result<AtomicFile> out = AtomicFile::create(copy);
   if (!out) return out.error();
   out->write(*bytes);

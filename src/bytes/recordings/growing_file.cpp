@@ -33,7 +33,8 @@ GrowingFile::GrowingFile(GrowingFile&& other) noexcept
       unfinished_(std::move(other.unfinished_)),
       descriptor_(std::exchange(other.descriptor_, -1)),
       size_(other.size_),
-      is_full_(other.is_full_) {}
+      is_full_(other.is_full_),
+      told_(std::move(other.told_)) {}
 
 GrowingFile::~GrowingFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
@@ -65,7 +66,8 @@ void GrowingFile::cut_back() const {
 std::string GrowingFile::place_beside() const {
   std::error_code no_folder;
   if (unfinished_.exists()) return target_ + ".index";
-  return (std::filesystem::temp_directory_path(no_folder) / "dermis.index").string();
+  const std::string name = "dermis." + std::to_string(::getpid()) + ".index";
+  return (std::filesystem::temp_directory_path(no_folder) / name).string();
 }
 
 Status GrowingFile::appear() {
@@ -73,7 +75,11 @@ Status GrowingFile::appear() {
   // Else a power failure can leave neither the earlier file nor this one.
   const bool replaces = ::access(target_.c_str(), F_OK) == 0;
   if (replaces && ::fdatasync(descriptor_) != 0) return files::cannot_write(target_, errno);
-  return unfinished_.take_place_of(target_);
+  Result<files::Placed> placed = unfinished_.take_place();
+  if (!placed) return placed.error();
+  target_ = std::move(placed->path);
+  told_ = std::move(placed->told);
+  return Done{};
 }
 
 Status GrowingFile::synchronise() const {
@@ -87,7 +93,7 @@ Status GrowingFile::close() {
   const int descriptor = std::exchange(descriptor_, -1);
   if (::close(descriptor) != 0) return files::cannot_write(target_, errno);
   files::synchronise_folder_of(target_);
-  return Done{};
+  return told_;
 }
 
 }  // namespace dermis::bytes::recordings

@@ -38,7 +38,8 @@ class GrowingFile {
   [[nodiscard]] std::string place_beside() const;
 
   /// Puts the file in its place; nothing where it is there already. A file that it replaces is gone only when the bytes
-  /// of this one are on the disk.
+  /// of this one are on the disk. Where another file has appeared there meanwhile, this one gets another name, and
+  /// close() fails and says so.
   [[nodiscard]] Status appear();
   [[nodiscard]] bool has_appeared() const noexcept { return !unfinished_.exists(); }
 
@@ -56,6 +57,7 @@ class GrowingFile {
   int descriptor_;
   std::uint64_t size_ = 0;
   bool is_full_ = false;
+  Status told_ = Done{};  ///< Of the name (files::Placed).
 };
 
 }  // namespace dermis::bytes::recordings

@@ -170,4 +170,12 @@ Result<BusAddress> parse_bus_address(const std::string& text) {
   return Parser(text).parse();
 }
 
+std::string map_of(const BusAddress& address) {
+  const auto map = [](const auto& place) {
+    if constexpr (requires { place.map; }) return place.map;
+    return std::string();
+  };
+  return std::visit(map, address.place);
+}
+
 }  // namespace dermis::live::buses

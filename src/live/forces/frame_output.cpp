@@ -5,9 +5,11 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <optional>
+#include <system_error>
 #include <utility>
 
 #include "dermis/bytes/files/array_toml.hpp"
@@ -73,6 +75,30 @@ class ForcesOnly final : public ForceSink {
   bytes::files::ForcesCsvWriter forces_;
 };
 
+class KeptTable final : public FrameSink {
+ public:
+  KeptTable(std::unique_ptr<FrameSink> table, std::unique_ptr<FrameSink> recording, std::string recording_path)
+      : table_(std::move(table)), recording_(std::move(recording)), recording_path_(std::move(recording_path)) {}
+
+  Status write(const RawFrame& frame) override {
+    const Status kept = recording_->write(frame);
+    return kept ? table_->write(frame) : kept;
+  }
+
+  Status commit() override {
+    Status written = table_->commit();
+    const Status kept = recording_->commit();
+    if (!written && kept) return failed(written.error().message + "; the frames are in '" + recording_path_ + "'");
+    if (written && kept) std::remove(recording_path_.c_str());
+    return written ? kept : written;
+  }
+
+ private:
+  std::unique_ptr<FrameSink> table_;
+  std::unique_ptr<FrameSink> recording_;
+  std::string recording_path_;
+};
+
 Result<bytes::recordings::FrameNotes> notes_of(const FrameOutput& output) {
   bytes::recordings::FrameNotes notes = output.notes;
   if (output.array != nullptr) {
@@ -135,6 +161,24 @@ Result<std::unique_ptr<FrameSink>> create_recording(const FrameOutput& output, c
     return create_live_recording(output, shape, *notes);
   }
   return bytes::recordings::create_frames(output.path, shape, *notes);
+}
+
+std::string recording_beside(const std::string& path) {
+  const Result<bytes::recordings::FrameFormat> format = bytes::recordings::output_format(path);
+  std::error_code error;
+  const bool is_stream = std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error);
+  const bool needs_none = !format || *format == bytes::recordings::FrameFormat::mcap || is_stream;
+  return needs_none ? std::string() : path + ".mcap";
+}
+
+Result<std::unique_ptr<FrameSink>> create_kept_recording(const FrameOutput& output, const FrameShape& shape) {
+  Result<std::unique_ptr<FrameSink>> table = create_recording(output, shape);
+  FrameOutput beside = output;
+  beside.path = recording_beside(output.path);
+  if (!table || beside.path.empty()) return table;
+  Result<std::unique_ptr<FrameSink>> recording = create_recording(beside, shape);
+  if (!recording) return recording;
+  return std::unique_ptr<FrameSink>(std::make_unique<KeptTable>(*std::move(table), *std::move(recording), beside.path));
 }
 
 Result<std::unique_ptr<FrameSink>> create_forces(const FrameOutput& output) {

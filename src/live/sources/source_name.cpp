@@ -72,6 +72,14 @@ Result<SourceName> SourceName::parse(const std::string& text) {
   return name;
 }
 
+std::vector<std::string> SourceName::files() const {
+  std::vector<std::string> named{file};
+  if (uri) named.insert(named.end(), {uri->protocol.layout, uri->array});
+  if (bus) named.push_back(buses::map_of(*bus));
+  std::erase(named, "");
+  return named;
+}
+
 std::string SourceName::short_name() const {
   return std::filesystem::path(file).filename().string() + (array.empty() ? "" : "#" + array);
 }

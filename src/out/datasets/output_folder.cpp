@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "out/datasets/output_folder.hpp"
 
-#include <unistd.h>
-
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
@@ -36,22 +34,13 @@ Result<std::unique_ptr<OutputFolder>> OutputFolder::create(const std::string& fo
   const fs::path parent = fs::path(target).parent_path();
   if (!parent.empty()) fs::create_directories(parent, error);
   if (error) return bytes::files::cannot_write(parent.string(), error.value());
-  // Files that a killed process has left stay apart.
-  std::string unfinished = target + "." + std::to_string(::getpid()) + ".tmp";
-  while (!fs::create_directory(unfinished, error)) {
-    if (error) return bytes::files::cannot_write(unfinished, error.value());
-    unfinished += ".tmp";
-  }
-  return std::unique_ptr<OutputFolder>(new OutputFolder(std::move(target), std::move(unfinished)));
-}
-
-OutputFolder::~OutputFolder() {
-  std::error_code error;
-  if (!unfinished_.empty()) fs::remove_all(unfinished_, error);
+  Result<bytes::files::UnfinishedFile> unfinished = bytes::files::UnfinishedFile::begin_folder(target);
+  if (!unfinished) return unfinished.error();
+  return std::unique_ptr<OutputFolder>(new OutputFolder(std::move(target), *std::move(unfinished)));
 }
 
 std::string OutputFolder::place(const std::string& name) const {
-  const fs::path path = fs::path(unfinished_) / name;
+  const fs::path path = fs::path(unfinished_.path()) / name;
   std::error_code error;
   fs::create_directories(path.parent_path(), error);
   return path.string();
@@ -68,12 +57,10 @@ Status OutputFolder::write(const std::string& name, std::string_view bytes) cons
 }
 
 Status OutputFolder::commit() {
-  std::error_code error;
-  fs::rename(unfinished_, target_, error);
-  if (error) return bytes::files::cannot_write(target_, error.value());
-  unfinished_.clear();
+  const Result<bytes::files::Placed> placed = unfinished_.take_place();
+  if (!placed) return placed.error();
   bytes::files::synchronise_folder_of(target_);
-  return Done{};
+  return placed->told;
 }
 
 Status OutputFolder::commit(const EpisodeTally& tally, const std::string& notes) {

@@ -6,20 +6,18 @@
 #include <string>
 #include <string_view>
 
+#include "dermis/bytes/files/unfinished_file.hpp"
 #include "dermis/out/datasets/episode_sink.hpp"
 #include "dermis/touch/frames/result.hpp"
 
 namespace dermis::out::datasets {
 
-/// A folder that appears complete or not at all: it grows beside its place under another name. Not thread-safe.
+/// A folder that appears complete or not at all: it grows beside its place under another name. Without commit(), all is
+/// removed. Not thread-safe.
 class OutputFolder {
  public:
-  /// Fails where the folder exists and is not empty.
+  /// Fails where the folder exists and is not empty, or another process writes it.
   [[nodiscard]] static Result<std::unique_ptr<OutputFolder>> create(const std::string& folder);
-  OutputFolder(const OutputFolder&) = delete;
-  OutputFolder& operator=(const OutputFolder&) = delete;
-  /// Without commit(), all is removed.
-  ~OutputFolder();
 
   /// Where the file of this relative name is until then; its folder is made.
   [[nodiscard]] std::string place(const std::string& name) const;
@@ -29,11 +27,11 @@ class OutputFolder {
   [[nodiscard]] Status commit(const EpisodeTally& tally, const std::string& notes);
 
  private:
-  OutputFolder(std::string target, std::string unfinished)
+  OutputFolder(std::string target, bytes::files::UnfinishedFile unfinished)
       : target_(std::move(target)), unfinished_(std::move(unfinished)) {}
 
   std::string target_;
-  std::string unfinished_;  ///< Empty after commit().
+  bytes::files::UnfinishedFile unfinished_;
 };
 
 }  // namespace dermis::out::datasets

@@ -91,8 +91,11 @@ Status BankRowsFile::write(const std::string& path, const Row& give) const {
   if (error == 0) error = write_own(place->descriptor, !shared.empty(), beginning, give);
   Status written = error == 0 ? Status(Done{}) : bytes::files::cannot_write(path, error);
   written = agreed(ranks_, written);
-  if (written && place->unfinished.exists()) written = place->unfinished.take_place_of(place->target);
-  if (written && !shared.empty() && ranks_.rank() == 0) bytes::files::synchronise_folder_of(place->target);
+  if (written && place->unfinished.exists()) {
+    const Result<bytes::files::Placed> placed = place->unfinished.take_place();
+    written = placed ? placed->told : placed.error();
+    bytes::files::synchronise_folder_of(place->target);
+  }
   return agreed(ranks_, written);
 }
 

@@ -3,13 +3,12 @@
 #include "dermis/bytes/files/output_place.hpp"
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
+#include "dermis/bytes/files/input.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace dermis::bytes::files {
@@ -43,90 +42,53 @@ TEST(OutputPlace, behind_a_link_is_the_file_and_not_the_link) {
   EXPECT_EQ(place->target, std::filesystem::canonical(folder.file("real")).string());
 }
 
-TEST(OutputPlace, an_unfinished_file_goes_or_takes_its_place) {
+TEST(OutputPlace, a_name_that_is_claimed_is_opened_once_by_whoever_claimed_it) {
   const support::TemporaryFolder folder;
-  const std::string target = folder.file("new");
-  { const Result<OutputPlace> dropped = open_output(target); }
-  EXPECT_EQ(folder.file_count(), 0U);
-  Result<OutputPlace> place = open_output(target);
-  ASSERT_TRUE(place);
-  ASSERT_TRUE(place->unfinished.take_place_of(target));
-  EXPECT_FALSE(place->unfinished.exists());
+  const std::string path = folder.file("rec");
+  ASSERT_TRUE(claim_output(path, EarlierFile::stays_unread));
+  EXPECT_FALSE(UnfinishedFile::begin(path));
+  ASSERT_TRUE(claim_output(path, EarlierFile::stays_unread));
+  const Result<OutputPlace> place = open_output(path);
+  ASSERT_TRUE(place) << place.error().message;
   ::close(place->descriptor);
+  EXPECT_FALSE(open_output(path));
+}
+
+TEST(OutputPlace, a_claim_that_is_released_leaves_nothing) {
+  const support::TemporaryFolder folder;
+  ASSERT_TRUE(claim_output(folder.file("rec"), EarlierFile::stays_unread));
   EXPECT_EQ(folder.file_count(), 1U);
-  EXPECT_TRUE(std::filesystem::exists(target));
+  release_claims();
+  EXPECT_EQ(folder.file_count(), 0U);
 }
 
-TEST(OutputPlaceDeathTest, unfinished_files_are_removed_before_the_process_ends) {
+TEST(OutputPlace, a_file_that_will_be_replaced_is_not_readable_by_any_name) {
   const support::TemporaryFolder folder;
-  const auto end_at_once = [&] {
-    const Result<OutputPlace> begun = open_output(folder.file("new"));
-    remove_unfinished_files();
-    ::_exit(begun && folder.file_count() == 0 ? 0 : 1);
-  };
-  EXPECT_EXIT(end_at_once(), testing::ExitedWithCode(0), "");
-}
-
-/// The number of a process that has ended.
-pid_t ended_process() {
-  const pid_t child = ::fork();
-  if (child == 0) ::_exit(0);
-  ::waitpid(child, nullptr, 0);
-  return child;
-}
-
-std::string temporary_of(const std::string& target, pid_t process) {
-  return target + "." + std::to_string(process) + ".0.tmp";
-}
-
-TEST(OutputPlace, removes_what_killed_processes_have_left_of_the_same_target) {
-  const support::TemporaryFolder folder;
-  const std::string target = folder.file("model");
-  const std::string left_over = temporary_of(target, ended_process());
-  const std::string of_my_number = temporary_of(target, ::getpid());
-  for (const std::string& path : {left_over, of_my_number}) support::write_bytes(path, "half");
-  const Result<OutputPlace> place = open_output(target);
-  ASSERT_TRUE(place);
-  ::close(place->descriptor);
-  EXPECT_FALSE(std::filesystem::exists(left_over));
-  EXPECT_EQ(folder.file_count(), 1U) << "the one that was opened";
-}
-
-TEST(OutputPlace, leaves_what_living_processes_write_and_what_has_another_name) {
-  const support::TemporaryFolder folder;
-  const std::string target = folder.file("model");
-  const std::string process = std::to_string(ended_process());
-  const std::vector<std::string> kept{temporary_of(target, ::getppid()),
-                                      temporary_of(target, 1),
-                                      temporary_of(folder.file("m"), ended_process()),
-                                      target + "." + process + ".tmp",
-                                      target + "." + process + ".0",
-                                      target + "." + process + ".0.tmp.tmp",
-                                      target + "." + process + ".x.tmp",
-                                      target + ".-" + process + ".0.tmp",
-                                      target + ".0" + process + ".0.tmp",
-                                      target + ".99999999999999999999.0.tmp",
-                                      target + ".0.0.tmp",
-                                      target + "x." + process + ".0.tmp"};
-  for (const std::string& path : kept) support::write_bytes(path, "mine");
-  std::filesystem::create_directory(target + "." + process + ".1.tmp");
-  const Result<OutputPlace> place = open_output(target);
-  ASSERT_TRUE(place);
-  ::close(place->descriptor);
-  for (const std::string& path : kept) EXPECT_TRUE(std::filesystem::exists(path)) << path;
-  EXPECT_TRUE(std::filesystem::exists(target + "." + process + ".1.tmp"));
-}
-
-TEST(OutputPlace, leaves_what_it_has_begun_itself) {
-  const support::TemporaryFolder folder;
-  const Result<OutputPlace> first = open_output(folder.file("model"));
-  const Result<OutputPlace> second = open_output(folder.file("model"));
-  const Result<OutputPlace> by_another_path = open_output(folder.file("./model"));
-  ASSERT_TRUE(first && second && by_another_path);
-  for (const auto* place : {&*first, &*second, &*by_another_path}) {
-    ::close(place->descriptor);
-    EXPECT_TRUE(std::filesystem::exists(place->unfinished.path()));
+  const std::string path = folder.file("lay.toml");
+  const std::string link = folder.file("link");
+  const std::string hard_link = folder.file("hard_link");
+  for (const char* const name : {"lay.toml", "other.toml"}) support::write_bytes(folder.file(name), "[layout]");
+  std::filesystem::create_symlink(path, link);
+  std::filesystem::create_hard_link(path, hard_link);
+  ASSERT_TRUE(claim_output(link, EarlierFile::stays_unread));
+  for (const std::string& name : {path, link, hard_link}) {
+    const Status readable = check_readable(name);
+    ASSERT_FALSE(readable) << name;
+    EXPECT_EQ(readable.error().message,
+              "'" + name + "' is read, and would be replaced by the output; name another output");
+    EXPECT_FALSE(open_input(name));
   }
+  EXPECT_TRUE(check_readable(folder.file("other.toml")));
+  release_claims();
+  EXPECT_TRUE(check_readable(path));
+}
+
+TEST(OutputPlace, an_earlier_model_may_be_read) {
+  const support::TemporaryFolder folder;
+  support::write_bytes(folder.file("model"), "old");
+  ASSERT_TRUE(claim_output(folder.file("model"), EarlierFile::may_be_read));
+  EXPECT_TRUE(check_readable(folder.file("model")));
+  release_claims();
 }
 
 TEST(OutputPlace, what_is_no_regular_file_is_written_directly) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "dermis/bytes/files/content_hash.hpp"
 #include "dermis/bytes/recordings/frame_file_info.hpp"
@@ -51,6 +52,36 @@ TEST(CreateRecording, takes_the_notes_of_the_source_where_no_array_is_given) {
   const auto sink = create_recording(output, kShape);
   ASSERT_TRUE(sink && support::write_all(**sink, pressed({1.0F}))) << error_of(sink);
   EXPECT_EQ(*bytes::recordings::read_frame_notes(output.path), output.notes);
+}
+
+TEST(CreateKeptRecording, keeps_the_frames_of_a_table_beside_it_until_it_is_complete) {
+  for (const char* const name : {"frames.csv", "frames.h5", "frames.npy"}) {
+    const MatFiles mat;
+    const FrameOutput output{mat.file(name), nullptr, nullptr, "", {}};
+    const std::string beside = recording_beside(output.path);
+    EXPECT_EQ(beside, mat.file(name) + std::string(".mcap"));
+    const std::vector<RawFrame> frames = pressed({1.0F, 2.0F});
+    auto sink = create_kept_recording(output, kShape);
+    ASSERT_TRUE(sink) << error_of(sink);
+    for (const RawFrame& frame : frames) ASSERT_TRUE((*sink)->write(frame));
+    sink->reset();  // as where the process dies
+    EXPECT_FALSE(std::filesystem::exists(output.path));
+    const auto kept = bytes::recordings::open_frames(beside);
+    ASSERT_TRUE(kept) << error_of(kept);
+    support::expect_same_frames(**kept, frames);
+    std::filesystem::remove(beside);
+
+    const auto whole = create_kept_recording(output, kShape);
+    ASSERT_TRUE(whole && support::write_all(**whole, frames)) << error_of(whole);
+    EXPECT_TRUE(std::filesystem::exists(output.path));
+    EXPECT_FALSE(std::filesystem::exists(beside));
+  }
+}
+
+TEST(CreateKeptRecording, needs_no_other_for_a_recording_or_a_stream) {
+  EXPECT_EQ(recording_beside("rec.mcap"), "");
+  EXPECT_EQ(recording_beside("/dev/stdout"), "");
+  EXPECT_EQ(recording_beside("frames.unknown"), "");
 }
 
 TEST(CheckOutput, tells_before_the_first_frame_what_cannot_be_written) {

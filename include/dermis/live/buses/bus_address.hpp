@@ -65,4 +65,7 @@ struct BusAddress {
 /// Fails, with the mend, on an unknown or a missing part.
 [[nodiscard]] Result<BusAddress> parse_bus_address(const std::string& text);
 
+/// Name or path of the map; empty for a topic, which has none.
+[[nodiscard]] std::string map_of(const BusAddress& address);
+
 }  // namespace dermis::live::buses

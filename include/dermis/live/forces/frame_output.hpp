@@ -30,6 +30,15 @@ struct FrameOutput {
 /// without forces.
 [[nodiscard]] Result<std::unique_ptr<FrameSink>> create_recording(const FrameOutput& output, const FrameShape& shape);
 
+/// The recording that keeps the frames of a table while it is written: "frames.csv.mcap" beside "frames.csv". Empty
+/// where the output is a recording itself, or no file.
+[[nodiscard]] std::string recording_beside(const std::string& path);
+
+/// The same for frames that do not come again: those of a table are kept by recording_beside(), until it is complete,
+/// even if the process dies.
+[[nodiscard]] Result<std::unique_ptr<FrameSink>> create_kept_recording(const FrameOutput& output,
+                                                                       const FrameShape& shape);
+
 /// The forces of the model alone, as forces.csv.
 [[nodiscard]] Result<std::unique_ptr<FrameSink>> create_forces(const FrameOutput& output);
 

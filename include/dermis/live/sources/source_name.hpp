@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "dermis/bytes/devices/source_uri.hpp"
 #include "dermis/live/buses/bus_address.hpp"
@@ -37,6 +38,8 @@ struct SourceName {
   /// refuses. Everything else is the path of a file.
   [[nodiscard]] static Result<SourceName> parse(const std::string& text);
 
+  /// The files that such a source reads, as far as the name says: of frames, a layout, an array, a map.
+  [[nodiscard]] std::vector<std::string> files() const;
   /// "rec.mcap#chest": the file without its folder, as tables name it.
   [[nodiscard]] std::string short_name() const;
   /// Frames come as fast as they are read: to be live, the name must give a rate.
