@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <modbus.h>
+#include <poll.h>
+#include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <memory>
 #include <string>
@@ -14,6 +17,10 @@ namespace dermis::live::buses {
 namespace {
 
 constexpr std::uint32_t kAnswerMicroseconds = 500'000;
+/// Of a line, before the next question: after an answer that did not come, and after one that was damaged.
+constexpr int kSilenceMilliseconds = 500;
+constexpr int kShortSilenceMilliseconds = 20;
+constexpr int kMostPieces = 100;
 
 struct Deleter {
   void operator()(modbus_t* context) const {
@@ -25,7 +32,7 @@ using Context = std::unique_ptr<modbus_t, Deleter>;
 
 class ModbusReader final : public RegisterReader {
  public:
-  explicit ModbusReader(Context context) : context_(std::move(context)) {}
+  ModbusReader(Context context, bool has_ids) : context_(std::move(context)), has_ids_(has_ids) {}
 
   [[nodiscard]] Status connect() override {
     modbus_close(context_.get());
@@ -40,7 +47,7 @@ class ModbusReader final : public RegisterReader {
     if (ask(context_.get(), address, count, words.data()) == count) return Answer::read;
     error_ = errno;
     if (error_ > MODBUS_ENOBASE && error_ <= EMBXGTAR) return Answer::refused;
-    modbus_flush(context_.get());
+    has_ids_ ? void(modbus_flush(context_.get())) : wait_for_silence();
     if (error_ == ETIMEDOUT || error_ >= MODBUS_ENOBASE) return Answer::nothing;
     return Answer::lost;
   }
@@ -48,7 +55,19 @@ class ModbusReader final : public RegisterReader {
   [[nodiscard]] std::string reason() const override { return modbus_strerror(error_); }
 
  private:
+  /// Answers on a serial line do not say to which question: a late one must not meet the next.
+  void wait_for_silence() {
+    const int silence = error_ == ETIMEDOUT ? kSilenceMilliseconds : kShortSilenceMilliseconds;
+    pollfd line = {modbus_get_socket(context_.get()), POLLIN, 0};
+    for (int piece = 0; piece < kMostPieces && poll(&line, 1, silence) > 0; ++piece) {
+      std::array<char, 256> late{};
+      if (::read(line.fd, late.data(), late.size()) <= 0) break;
+    }
+    modbus_flush(context_.get());
+  }
+
   Context context_;
+  bool has_ids_;  ///< Of questions, as TCP has them.
   int error_ = 0;
 };
 
@@ -71,5 +90,5 @@ extern "C" __attribute__((visibility("default"))) void dermis_make_register_read
     return;
   }
   made = std::unique_ptr<dermis::live::buses::RegisterReader>(
-      std::make_unique<dermis::live::buses::ModbusReader>(std::move(context)));
+      std::make_unique<dermis::live::buses::ModbusReader>(std::move(context), !place.host.empty()));
 }

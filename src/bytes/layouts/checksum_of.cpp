@@ -22,9 +22,9 @@ std::uint32_t reversed(std::uint32_t value) {
 
 /// The register has 32 bits, of which those of a shorter CRC are the highest. That of a reflected one runs to the
 /// right.
-ChecksumOf::ChecksumOf(const Checksum& checksum, unsigned bits)
-    : checksum_(checksum), unused_(32U - bits), initial_(checksum.initial << unused_) {
+ChecksumOf::ChecksumOf(const Checksum& checksum, unsigned bits) : checksum_(checksum), unused_(32U - bits) {
   if (checksum.kind != Checksum::Kind::crc) return;
+  initial_ = checksum.initial << unused_;
   if (checksum.is_reflected) initial_ = reversed(initial_);
   tables_.resize(kSlice);
   const std::uint32_t polynomial = checksum.polynomial << unused_;
@@ -41,23 +41,27 @@ ChecksumOf::ChecksumOf(const Checksum& checksum, unsigned bits)
 
 std::uint32_t ChecksumOf::operator()(std::span<const std::uint8_t> bytes) const noexcept {
   if (bytes.size() < checksum_.from) return 0;
-  const std::uint32_t plain = of(bytes.subspan(checksum_.from)) ^ checksum_.final_xor;
+  return result(add(initial_, bytes.subspan(checksum_.from)));
+}
+
+std::uint32_t ChecksumOf::add(std::uint32_t before, std::span<const std::uint8_t> bytes) const noexcept {
+  switch (checksum_.kind) {
+    case Checksum::Kind::sum: return std::accumulate(bytes.begin(), bytes.end(), before);
+    case Checksum::Kind::exclusive_or: return std::accumulate(bytes.begin(), bytes.end(), before, std::bit_xor<>());
+    case Checksum::Kind::crc: break;
+  }
+  return checksum_.is_reflected ? crc<true>(before, bytes) : crc<false>(before, bytes);
+}
+
+std::uint32_t ChecksumOf::result(std::uint32_t after) const noexcept {
+  const bool is_left = checksum_.kind == Checksum::Kind::crc && !checksum_.is_reflected;
+  const std::uint32_t plain = (is_left ? after >> unused_ : after) ^ checksum_.final_xor;
   return (checksum_.is_negated ? 0U - plain : plain) & UINT32_MAX >> unused_;
 }
 
-std::uint32_t ChecksumOf::of(std::span<const std::uint8_t> bytes) const noexcept {
-  switch (checksum_.kind) {
-    case Checksum::Kind::sum: return std::accumulate(bytes.begin(), bytes.end(), std::uint32_t{0});
-    case Checksum::Kind::exclusive_or: return std::accumulate(bytes.begin(), bytes.end(), 0U, std::bit_xor<>());
-    case Checksum::Kind::crc: break;
-  }
-  return checksum_.is_reflected ? crc<true>(bytes) : crc<false>(bytes) >> unused_;
-}
-
 template <bool IsReflected>
-std::uint32_t ChecksumOf::crc(std::span<const std::uint8_t> bytes) const noexcept {
+std::uint32_t ChecksumOf::crc(std::uint32_t crc, std::span<const std::uint8_t> bytes) const noexcept {
   constexpr auto kByteOf = [](std::uint32_t crc, unsigned k) { return crc >> 8U * (IsReflected ? k : 3U - k) & 0xFFU; };
-  std::uint32_t crc = initial_;
   for (; bytes.size() >= kSlice; bytes = bytes.subspan(kSlice)) {
     std::uint32_t sum = 0;
     for (unsigned k = 0; k < 4; ++k) sum ^= tables_[kSlice - 1 - k][bytes[k] ^ kByteOf(crc, k)];

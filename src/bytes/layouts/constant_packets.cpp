@@ -3,6 +3,7 @@
 #include "bytes/layouts/constant_packets.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -12,6 +13,9 @@ namespace dermis::bytes::layouts {
 namespace {
 
 using Packet = PacketLayout::Packet;
+
+/// Chains of every size are sought before the shortest frame is passed: all sizes together, of the shortest one.
+constexpr std::size_t kMostSizes = 5;
 
 const PacketField& mark_of(const Packet& packet) {
   return packet.front().role == Role::literal ? packet.front() : packet.back();
@@ -84,7 +88,7 @@ bool has_constant_sizes(const Layout& layout) {
       return false;
     }
   }
-  return true;
+  return std::accumulate(sizes.begin(), sizes.end(), std::size_t{0}) <= kMostSizes * *sizes.begin();
 }
 
 ConstantPackets::Form::Form(const Layout& of_packets, const Packet& packet, std::size_t array)
@@ -123,13 +127,14 @@ ConstantPackets::Form& ConstantPackets::form_of(std::size_t size) noexcept {
 
 bool ConstantPackets::fits(std::span<const std::uint8_t> packet) {
   Piece piece;
-  return form_of(packet.size()).match.read(packet, piece, numbers_) == PacketMatch::Outcome::whole;
+  return form_of(packet.size()).match.read(packet, position(), piece) == PacketMatch::Outcome::whole;
 }
 
 bool ConstantPackets::read(std::span<const std::uint8_t> packet, RawFrame& frame) {
   Form& form = form_of(packet.size());
   Piece piece;
-  if (form.match.read(packet, piece, frame.counts) != PacketMatch::Outcome::whole) return false;
+  if (form.match.read(packet, position(), piece) != PacketMatch::Outcome::whole) return false;
+  form.match.read_numbers(packet, frame.counts);
   form.fields.scale(frame.counts);
   is_sending_ = true;
   return form.fields.write(piece, frame);

@@ -56,7 +56,6 @@ class ConstantPackets final : public MarkChainDecoder {
   std::shared_ptr<const Layout> first_;  ///< Owns the mark.
   std::size_t array_;
   std::vector<std::unique_ptr<Form>> forms_;
-  std::vector<float> numbers_;  ///< Of packets that are only tried.
   bool is_sending_ = false;
 };
 

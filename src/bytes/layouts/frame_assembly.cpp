@@ -10,7 +10,7 @@ FrameAssembly::FrameAssembly(const Layout& layout, std::size_t array, const Modu
       shape_(layout.arrays[array].shape),
       fields_(layout, moduli),
       readings_(shape_.taxel_count()),
-      is_filled_(shape_.taxel_count()) {}
+      filled_in_(shape_.taxel_count()) {}
 
 bool FrameAssembly::add(const Piece& piece, std::span<const float> numbers, std::size_t bytes, RawFrame& frame) {
   if (piece.array != array_) return false;
@@ -59,9 +59,9 @@ std::optional<std::size_t> FrameAssembly::begin_of(const Piece& piece, std::size
 /// Readings that came already, but for a part that overlaps with the end of the one before.
 bool FrameAssembly::has_come(std::size_t begin, std::size_t count) const noexcept {
   if (filled_ == 0 || count == 0) return false;
-  const std::span<const std::uint8_t> part = std::span(is_filled_).subspan(begin, count);
-  const bool goes_on = part.front() == 1 && part.back() == 0;
-  return !goes_on && std::ranges::find(part, 1) != part.end();
+  const std::span<const std::uint32_t> part = std::span(filled_in_).subspan(begin, count);
+  const bool goes_on = part.front() == number_ && part.back() != number_;
+  return !goes_on && std::ranges::find(part, number_) != part.end();
 }
 
 /// The first readings come directly behind the last ones: those of this frame were lost. Two parts may come in any
@@ -73,17 +73,18 @@ bool FrameAssembly::begins_again(std::size_t begin, std::size_t count) const noe
 void FrameAssembly::begin_frame(const Piece& piece) {
   first_ = piece;
   bytes_ = 0;
-  std::fill(is_filled_.begin(), is_filled_.end(), 0);
+  if (++number_ != 0) return;
+  std::ranges::fill(filled_in_, 0);
+  number_ = 1;
 }
 
 void FrameAssembly::fill(std::size_t begin, std::span<const float> numbers) {
   const std::span<float> readings = std::span(readings_).subspan(begin, numbers.size());
-  std::copy_n(numbers.begin(), numbers.size(), readings.begin());
+  std::ranges::copy(numbers, readings.begin());
   fields_.scale(readings);
-  const auto first = is_filled_.begin() + static_cast<std::ptrdiff_t>(begin);
-  const auto last = first + static_cast<std::ptrdiff_t>(numbers.size());
-  filled_ += static_cast<std::size_t>(std::count(first, last, 0));
-  std::fill(first, last, std::uint8_t{1});
+  const std::span<std::uint32_t> filled = std::span(filled_in_).subspan(begin, numbers.size());
+  filled_ += numbers.size() - static_cast<std::size_t>(std::ranges::count(filled, number_));
+  std::ranges::fill(filled, number_);
   last_end_ = begin + numbers.size();
 }
 

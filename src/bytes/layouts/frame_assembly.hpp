@@ -50,8 +50,9 @@ class FrameAssembly {
   FrameFields fields_;
 
   std::vector<float> readings_;
-  std::vector<std::uint8_t> is_filled_;
-  std::size_t last_end_ = 0;  // of the part before
+  std::vector<std::uint32_t> filled_in_;  ///< The frame in which a reading came last, as of number_.
+  std::uint32_t number_ = 0;              ///< Of the frame that is being read, from 1 on.
+  std::size_t last_end_ = 0;              // of the part before
   std::size_t filled_ = 0;
   std::size_t bytes_ = 0;
   std::size_t most_filled_ = 0;   ///< The most of a frame that was not complete.

@@ -64,25 +64,26 @@ bool FramesInOrder::is_late(const RawFrame& frame) const noexcept {
 }
 
 void FramesInOrder::insert(const RawFrame& frame) {
-  auto place = waiting_.end();
-  while (place != waiting_.begin() &&
-         comes_late(frame.acquisition.device_time, std::prev(place)->frame.acquisition.device_time)) {
-    --place;
-  }
-  if (place != waiting_.end()) ++counts_.late_frames;
-  waiting_.insert(place, {frame, decoder_->frame_end()});
+  const std::optional<Nanos> time = frame.acquisition.device_time;
+  const std::optional<Nanos> last =
+      waiting_.empty() ? std::nullopt : waiting_.rbegin()->second.frame.acquisition.device_time;
+  const bool is_late = comes_late(time, last);
+  const bool goes_on = is_late || (time && last && *time >= *last);
+  if (is_late) ++counts_.late_frames;
+  if (!goes_on) ++run_;
+  waiting_.insert({{run_, time.value_or(Nanos{})}, {frame, decoder_->frame_end()}});
 }
 
 bool FramesInOrder::release(RawFrame& frame, bool is_all_there) {
   if (waiting_.empty()) return false;
   const bool are_too_many = waiting_.size() * frame.counts.size() > kMostWaitingReadings;
-  const std::optional<Nanos> first = waiting_.front().frame.acquisition.device_time;
-  const std::optional<Nanos> last = waiting_.back().frame.acquisition.device_time;
+  const std::optional<Nanos> first = waiting_.begin()->second.frame.acquisition.device_time;
+  const std::optional<Nanos> last = waiting_.rbegin()->second.frame.acquisition.device_time;
   const bool waits = first && last && *last - *first <= kLatest && *first - *last <= kLatest;
   if (waits && !is_all_there && !are_too_many) return false;
-  frame = std::move(waiting_.front().frame);
-  const std::uint64_t end = waiting_.front().end;
-  waiting_.pop_front();
+  auto next = waiting_.extract(waiting_.begin());
+  frame = std::move(next.mapped().frame);
+  const std::uint64_t end = next.mapped().end;
   deliver(frame, end);
   return true;
 }

@@ -3,11 +3,12 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dermis/bytes/layouts/decoder.hpp"
@@ -34,6 +35,8 @@ class FramesInOrder final : public Decoder {
   [[nodiscard]] std::string advice() const override { return decoder_->advice(); }
 
  private:
+  using Place = std::pair<std::uint64_t, Nanos>;  ///< Run and time.
+
   struct Waiting {
     RawFrame frame;
     std::uint64_t end = 0;  ///< frame_end() of the decoder.
@@ -48,8 +51,9 @@ class FramesInOrder final : public Decoder {
 
   std::unique_ptr<Decoder> decoder_;
   Late late_;
-  std::deque<Waiting> waiting_;     ///< By time.
-  Acquisition last_;                ///< Of the frame that came last,
+  std::multimap<Place, Waiting> waiting_;
+  std::uint64_t run_ = 0;  ///< Frames before a restart of the device, or before one without a time, are another run.
+  Acquisition last_;       ///< Of the frame that came last,
   std::vector<float> last_counts_;  ///< and its readings.
   std::optional<Nanos> delivered_time_;
   std::optional<std::uint64_t> delivered_number_;

@@ -103,7 +103,10 @@ Verdict MarkChainDecoder::search(Bytes bytes, bool ended) {
   if (is_short && !is_idle()) return {};
   const Bytes compared = bytes.first(std::min(needed, bytes.size()));
   chain_count_ = 0;
-  for (const std::size_t size : frame_sizes_) find_chains(compared, size);
+  for (const std::size_t size : frame_sizes_) {
+    find_chains(compared, size);
+    if (chain_count_ > chains_.size()) break;  // of which none can be the true one
+  }
 
   const Chain* chain = true_chain();
   if (is_short && (chain == nullptr || !ends_with_frame(bytes, *chain))) return {};
@@ -113,9 +116,7 @@ Verdict MarkChainDecoder::search(Bytes bytes, bool ended) {
     in_step_ = true;
     return pass(bytes, Verdict::Kind::noise, start);
   }
-  const auto mark = std::search(bytes.begin(), bytes.end(), mark_.begin(), mark_.end());
-  if (!first_mark_at_ && mark != bytes.end())
-    first_mark_at_ = position() + static_cast<std::size_t>(mark - bytes.begin());
+  if (!first_mark_at_) look_for_first_mark(compared);
   const bool more_may_tell = std::any_of(chains().begin(), chains().end(),
                                          [&](const Chain& chain) { return chain.is_whole && !is_imitation(chain); });
   if (more_may_tell && frames_compared_ < kMaxFramesCompared) {
@@ -126,6 +127,11 @@ Verdict MarkChainDecoder::search(Bytes bytes, bool ended) {
   if (!more_may_tell) frames_compared_ = marks_needed();
   // No frame begins within the shortest one; but the bytes before the next may belong to the mark before it.
   return pass(bytes, Verdict::Kind::noise, std::min(*shortest - taken_, bytes.size()));
+}
+
+void MarkChainDecoder::look_for_first_mark(Bytes bytes) {
+  const auto mark = std::search(bytes.begin(), bytes.end(), mark_.begin(), mark_.end());
+  if (mark != bytes.end()) first_mark_at_ = position() + static_cast<std::size_t>(mark - bytes.begin());
 }
 
 /// A device pauses between frames.

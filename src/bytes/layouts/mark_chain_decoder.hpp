@@ -67,6 +67,7 @@ class MarkChainDecoder : public WindowDecoder {
   [[nodiscard]] bool mark_at(Bytes bytes, std::size_t position) const noexcept;
 
   [[nodiscard]] std::size_t marks_needed() const noexcept;
+  void look_for_first_mark(Bytes bytes);
   void find_chains(Bytes bytes, std::size_t frame_size);
   [[nodiscard]] static bool ends_with_frame(Bytes bytes, const Chain& chain) noexcept;
   [[nodiscard]] bool is_imitation(const Chain& chain) const noexcept;

@@ -37,7 +37,10 @@ PacketDecoder::PacketDecoder(std::shared_ptr<const Layout> layout, std::size_t a
       array_(array),
       longest_packet_(longest_packet(*layout_)),
       assembly_(*layout_, array, moduli_of(form_)) {
-  for (const PacketLayout::Packet& packet : form_.packets) matches_.emplace_back(*layout_, packet, array);
+  for (const PacketLayout::Packet& packet : form_.packets) {
+    matches_.emplace_back(*layout_, packet, array);
+    if (packet.front().role == Role::literal) begins_mark_[packet.front().literal.front()] = true;
+  }
 }
 
 void PacketDecoder::push(std::span<const std::uint8_t> bytes) {
@@ -63,16 +66,17 @@ bool PacketDecoder::next(RawFrame& frame) {
 PacketDecoder::Found PacketDecoder::next_packet(RawFrame& frame) {
   const std::span<const std::uint8_t> bytes = window_.bytes();
   if (bytes.empty()) return Found::nothing;
-  if (const std::size_t distance = distance_to_mark(bytes); distance > 0) return skip(distance);
+  const auto mark = std::ranges::find_if(bytes, [&](std::uint8_t byte) { return begins_mark_[byte]; });
+  if (mark != bytes.begin()) return skip(static_cast<std::size_t>(mark - bytes.begin()));
   const auto [outcome, match] = read(bytes);
   if (outcome == PacketMatch::Outcome::unfinished) return Found::nothing;
   if (outcome == PacketMatch::Outcome::damaged) assembly_.damage(0);
   if (outcome != PacketMatch::Outcome::whole) return skip(1);
-  if (match->has_checksum()) return take(match->size(), frame);
+  if (match->has_checksum()) return take(*match, bytes, match->size(), frame);
   const std::span<const std::uint8_t> rest = bytes.subspan(match->size());
   const bool is_decided = rest.size() >= longest_mark(form_) || is_idle_ || has_ended_;
   if (!is_decided) return Found::nothing;
-  if (is_followed_by_packet(rest)) return take(match->size(), frame);
+  if (is_followed_by_packet(rest)) return take(*match, bytes, match->size(), frame);
   if (is_further(match->packet().size()))
     keep_misfit(match->packet().size(), "no packet stands behind these " + std::to_string(match->size()) + " bytes");
   return skip(1);
@@ -83,7 +87,7 @@ PacketDecoder::Found PacketDecoder::next_packet(RawFrame& frame) {
 PacketDecoder::Reading PacketDecoder::read(std::span<const std::uint8_t> bytes) {
   Reading reading;
   for (PacketMatch& match : matches_) {
-    const PacketMatch::Outcome outcome = match.read(bytes, piece_, numbers_);
+    const PacketMatch::Outcome outcome = match.read(bytes, window_.position(), piece_);
     if (outcome == PacketMatch::Outcome::whole) return {outcome, &match};
     if (outcome == PacketMatch::Outcome::unfinished && !has_ended_) return {outcome, &match};
     if (outcome == PacketMatch::Outcome::unfinished) continue;
@@ -102,25 +106,18 @@ bool PacketDecoder::is_followed_by_packet(std::span<const std::uint8_t> rest) co
   });
 }
 
-std::size_t PacketDecoder::distance_to_mark(std::span<const std::uint8_t> bytes) const noexcept {
-  std::size_t distance = bytes.size();
-  for (const PacketLayout::Packet& packet : form_.packets) {
-    const void* const found = std::memchr(bytes.data(), packet.front().literal.front(), distance);
-    if (found != nullptr) {
-      distance = static_cast<std::size_t>(static_cast<const std::uint8_t*>(found) - bytes.data());
-    }
-  }
-  return distance;
-}
-
 PacketDecoder::Found PacketDecoder::skip(std::size_t bytes) {
   assembly_.skip(bytes);
   window_.drop(bytes);
+  searched_ = 0;
   return Found::packet;
 }
 
-PacketDecoder::Found PacketDecoder::take(std::size_t bytes, RawFrame& frame) {
+PacketDecoder::Found PacketDecoder::take(const PacketMatch& match, std::span<const std::uint8_t> packet,
+                                         std::size_t bytes, RawFrame& frame) {
+  match.read_numbers(packet, numbers_);
   window_.drop(bytes);
+  searched_ = 0;
   const bool is_frame = assembly_.add(piece_, numbers_, bytes, frame);
   if (is_frame) frame_end_ = window_.position();
   is_sending_ = is_sending_ || is_frame;
@@ -131,22 +128,24 @@ PacketDecoder::Found PacketDecoder::next_escaped(RawFrame& frame) {
   const std::span<const std::uint8_t> bytes = window_.bytes();
   if (bytes.empty()) return Found::nothing;
   const std::size_t reach = std::min(bytes.size(), longest_packet_);
-  const void* const end = std::memchr(bytes.data(), delimiter_of(form_), reach);
+  const void* const end = std::memchr(bytes.data() + searched_, delimiter_of(form_), reach - searched_);
+  if (end == nullptr) searched_ = reach;
   if (end == nullptr) return reach == longest_packet_ ? skip(reach) : Found::nothing;
   const auto size = static_cast<std::size_t>(static_cast<const std::uint8_t*>(end) - bytes.data());
   if (size == 0) return skip(1);
-  if (undo_escapes(form_, bytes.first(size), plain_) && is_one_of_them(plain_)) return take(size + 1, frame);
+  const PacketMatch* const match = undo_escapes(form_, bytes.first(size), plain_) ? match_of(plain_) : nullptr;
+  if (match != nullptr) return take(*match, plain_, size + 1, frame);
   if (counts().frames > 0) assembly_.damage(0);
   return skip(size + 1);
 }
 
-bool PacketDecoder::is_one_of_them(std::span<const std::uint8_t> plain) {
+const PacketMatch* PacketDecoder::match_of(std::span<const std::uint8_t> plain) {
   for (PacketMatch& match : matches_) {
-    const bool is_whole = match.read(plain, piece_, numbers_) == PacketMatch::Outcome::whole;
-    if (is_whole && match.size() == plain.size()) return true;
+    const bool is_whole = match.read(plain, window_.position(), piece_) == PacketMatch::Outcome::whole;
+    if (is_whole && match.size() == plain.size()) return &match;
     if (is_further(match.fitted())) keep_misfit(match.fitted(), match.misfit());
   }
-  return false;
+  return nullptr;
 }
 
 /// The furthest that a packet fitted before the first frame, and of those that came as far the first.

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -46,19 +47,20 @@ class PacketDecoder final : public Decoder {
 
   [[nodiscard]] Found next_packet(RawFrame& frame);
   [[nodiscard]] Reading read(std::span<const std::uint8_t> bytes);
-  [[nodiscard]] bool is_one_of_them(std::span<const std::uint8_t> plain);
+  [[nodiscard]] const PacketMatch* match_of(std::span<const std::uint8_t> plain);
   [[nodiscard]] Found next_escaped(RawFrame& frame);
   [[nodiscard]] bool is_followed_by_packet(std::span<const std::uint8_t> rest) const noexcept;
-  [[nodiscard]] std::size_t distance_to_mark(std::span<const std::uint8_t> bytes) const noexcept;
   [[nodiscard]] bool is_further(std::size_t fields) const noexcept;
   void keep_misfit(std::size_t fields, const std::string& text);
   Found skip(std::size_t bytes);
-  Found take(std::size_t bytes, RawFrame& frame);
+  Found take(const PacketMatch& match, std::span<const std::uint8_t> packet, std::size_t bytes, RawFrame& frame);
 
   std::shared_ptr<const Layout> layout_;
   const PacketLayout& form_;
   std::size_t array_;
-  std::size_t longest_packet_;  ///< That is escaped.
+  std::size_t longest_packet_;           ///< That is escaped.
+  std::array<bool, 256> begins_mark_{};  ///< [byte]
+  std::size_t searched_ = 0;             ///< Bytes of the window that are known to hold no delimiter.
   ByteWindow window_;
   std::vector<PacketMatch> matches_;  ///< [packets of the layout]
   FrameAssembly assembly_;

@@ -116,33 +116,42 @@ PacketMatch::PacketMatch(const Layout& layout, const PacketLayout::Packet& packe
   for (std::size_t k = 0; k < layout.arrays.size(); ++k) shares_.push_back(shares_of(packet_, k));
   for (const PacketField& field : packet_) {
     const bool is_checksum = field.role == Role::checksum;
-    checksums_.push_back(is_checksum ? ChecksumOf(field.checksum, field.type.bits) : ChecksumOf());
+    checksums_.push_back(is_checksum ? StreamChecksum(field.checksum, field.type.bits) : StreamChecksum());
   }
 }
 
-PacketMatch::Outcome PacketMatch::read(std::span<const std::uint8_t> bytes, Piece& piece, std::vector<float>& numbers) {
+PacketMatch::Outcome PacketMatch::read(std::span<const std::uint8_t> bytes, std::uint64_t position, Piece& piece) {
   piece = {};
   piece.array = array_;
   at_ = count_ = 0;
+  numbers_.clear();
   given_count_.reset();
   end_.reset();
   for (std::size_t place = 0; place < packet_.size(); ++place) {
-    const Outcome outcome = read_field(place, bytes, piece, numbers);
+    const Outcome outcome = read_field(place, bytes, position, piece);
     if (outcome == Outcome::whole) continue;
     misfit_ = place;
     return outcome;
   }
   misfit_ = packet_.size();
-  numbers.resize(count_);
   return !end_ || *end_ == at_ ? Outcome::whole : Outcome::foreign;
 }
 
-PacketMatch::Outcome PacketMatch::read_field(std::size_t place, std::span<const std::uint8_t> bytes, Piece& piece,
-                                             std::vector<float>& numbers) {
+void PacketMatch::read_numbers(std::span<const std::uint8_t> bytes, std::vector<float>& numbers) const {
+  numbers.resize(count_);
+  std::size_t read = 0;
+  for (const Numbers& part : numbers_) {
+    layouts::read_numbers(bytes.subspan(part.at), *part.type, part.count, numbers.data() + read);
+    read += part.count;
+  }
+}
+
+PacketMatch::Outcome PacketMatch::read_field(std::size_t place, std::span<const std::uint8_t> bytes,
+                                             std::uint64_t position, Piece& piece) {
   const PacketField& field = packet_[place];
   const std::span<const std::uint8_t> rest = bytes.subspan(at_);
   if (field.role == Role::literal) return read_literal(field, rest);
-  if (field.role == Role::values) return read_values(field, rest, piece, numbers);
+  if (field.role == Role::values) return read_values(field, rest, piece);
   const std::size_t size = field.role == Role::skip ? field.count : bytes_of(field.type, 1);
   if (rest.size() < size) return Outcome::unfinished;
   const std::size_t begin = at_;
@@ -150,7 +159,7 @@ PacketMatch::Outcome PacketMatch::read_field(std::size_t place, std::span<const 
   if (field.role == Role::skip) return Outcome::whole;
   const std::uint64_t bits = bits_at(rest, field.type, 0);
   if (field.role == Role::checksum) {
-    return checksums_[place](bytes.first(begin)) == bits ? Outcome::whole : Outcome::damaged;
+    return checksums_[place](bytes.first(begin), position) == bits ? Outcome::whole : Outcome::damaged;
   }
   return use(field, number_of(bits, field.type), piece) ? Outcome::whole : Outcome::foreign;
 }
@@ -166,18 +175,18 @@ PacketMatch::Outcome PacketMatch::read_literal(const PacketField& field, std::sp
 }
 
 PacketMatch::Outcome PacketMatch::read_values(const PacketField& field, std::span<const std::uint8_t> bytes,
-                                              const Piece& piece, std::vector<float>& numbers) {
+                                              const Piece& piece) {
   const std::size_t array = names_array_ ? piece.array : field.array;
   const std::size_t taxels = layout_.arrays[array].shape.taxel_count();
   const std::size_t count = count_of(field, array, piece);
   if (count > taxels || (array == array_ && count > taxels - count_)) return Outcome::foreign;
   const std::size_t size = bytes_of(field.type, count);
   if (bytes.size() < size) return Outcome::unfinished;
+  if (array == array_) {
+    numbers_.push_back({at_, count, &field.type});
+    count_ += count;
+  }
   at_ += size;
-  if (array != array_) return Outcome::whole;
-  if (numbers.size() < count_ + count) numbers.resize(count_ + count);
-  read_numbers(bytes, field.type, count, numbers.data() + count_);
-  count_ += count;
   return Outcome::whole;
 }
 

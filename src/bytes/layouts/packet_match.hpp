@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bytes/layouts/frame_fields.hpp"
-#include "dermis/bytes/layouts/checksum_of.hpp"
+#include "bytes/layouts/stream_checksum.hpp"
 #include "dermis/bytes/layouts/layout.hpp"
 
 namespace dermis::bytes::layouts {
@@ -34,8 +34,12 @@ class PacketMatch {
   /// `packet` is one of the layout.
   PacketMatch(const Layout& layout, const PacketLayout::Packet& packet, std::size_t array);
 
-  /// Reads the packet that the bytes begin with. `numbers` become the readings of the array that is wanted.
-  [[nodiscard]] Outcome read(std::span<const std::uint8_t> bytes, Piece& piece, std::vector<float>& numbers);
+  /// Reads the packet that the bytes begin with, but for its readings. `position` is that of the bytes in the stream;
+  /// it never falls. A packet costs as much as it has fields, however large it is.
+  [[nodiscard]] Outcome read(std::span<const std::uint8_t> bytes, std::uint64_t position, Piece& piece);
+
+  /// `numbers` become the readings of the array that is wanted, of the packet that was whole.
+  void read_numbers(std::span<const std::uint8_t> bytes, std::vector<float>& numbers) const;
 
   [[nodiscard]] const PacketLayout::Packet& packet() const noexcept { return packet_; }
   [[nodiscard]] bool has_checksum() const noexcept { return has_checksum_; }
@@ -46,11 +50,17 @@ class PacketMatch {
   [[nodiscard]] std::string misfit() const;
 
  private:
-  [[nodiscard]] Outcome read_field(std::size_t place, std::span<const std::uint8_t> bytes, Piece& piece,
-                                   std::vector<float>& numbers);
+  /// Numbers of the array that is wanted.
+  struct Numbers {
+    std::size_t at;
+    std::size_t count;
+    const WireType* type;
+  };
+
+  [[nodiscard]] Outcome read_field(std::size_t place, std::span<const std::uint8_t> bytes, std::uint64_t position,
+                                   Piece& piece);
   [[nodiscard]] Outcome read_literal(const PacketField& field, std::span<const std::uint8_t> bytes);
-  [[nodiscard]] Outcome read_values(const PacketField& field, std::span<const std::uint8_t> bytes, const Piece& piece,
-                                    std::vector<float>& numbers);
+  [[nodiscard]] Outcome read_values(const PacketField& field, std::span<const std::uint8_t> bytes, const Piece& piece);
   [[nodiscard]] bool use(const PacketField& field, double number, Piece& piece);
   [[nodiscard]] std::size_t count_of(const PacketField& field, std::size_t array, const Piece& piece) const noexcept;
 
@@ -59,9 +69,10 @@ class PacketMatch {
   std::size_t array_;
   bool names_array_;  ///< A field says whose readings a packet has.
   bool has_checksum_;
-  std::vector<std::size_t> shares_;    ///< Fields of each array, which share its readings.
-  std::vector<ChecksumOf> checksums_;  ///< [fields]
-  std::size_t count_ = 0;              ///< Readings so far.
+  std::vector<std::size_t> shares_;        ///< Fields of each array, which share its readings.
+  std::vector<StreamChecksum> checksums_;  ///< [fields]
+  std::vector<Numbers> numbers_;
+  std::size_t count_ = 0;  ///< Readings so far.
   std::size_t at_ = 0;
   std::optional<std::uint64_t> given_count_;
   std::optional<std::uint64_t> end_;  ///< As a field `length` says.

@@ -34,8 +34,8 @@ RawFrames::RawFrames(std::shared_ptr<const Layout> layout, std::size_t array)
 Verdict RawFrames::judge(std::span<const std::uint8_t> bytes, bool /*ended*/, RawFrame& frame) {
   if (bytes.size() < size_) return is_idle() ? Verdict{Verdict::Kind::noise, bytes.size()} : Verdict{};
   Piece piece;
-  if (match_.read(bytes.first(size_), piece, frame.counts) != PacketMatch::Outcome::whole)
-    return {Verdict::Kind::damaged, size_};
+  if (match_.read(bytes, position(), piece) != PacketMatch::Outcome::whole) return {Verdict::Kind::damaged, size_};
+  match_.read_numbers(bytes, frame.counts);
   fields_.scale(frame.counts);
   is_sending_ = true;
   return {fields_.write(piece, frame) ? Verdict::Kind::frame : Verdict::Kind::damaged, size_};

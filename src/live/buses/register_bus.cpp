@@ -57,6 +57,7 @@ RegisterBus::RegisterBus(ModbusPlace place, RegisterMap map, std::unique_ptr<Reg
       reader_(std::move(reader)),
       name_(std::move(name)),
       words_(map_.arrays.size()),
+      filled_(map_.arrays.size()),
       has_come_(map_.arrays.size()) {
   for (std::size_t k = 0; k < words_.size(); ++k) words_[k].resize(map_.arrays[k].words());
   thread_ = std::thread([this] { run(); });
@@ -106,13 +107,18 @@ void RegisterBus::ask(const RegisterRead& read) {
   come_back();
 }
 
+/// A frame is made of the answers to one round of questions, or it is none.
 void RegisterBus::fill(const RegisterRead& read) {
   const Arrival arrival;
   for (const RegisterPart& part : read.parts) {
     std::vector<std::uint16_t>& words = words_[part.array];
+    std::size_t& filled = filled_[part.array];
+    if (part.array_begin == 0) filled = 0;
+    if (part.array_begin != filled) continue;
     std::copy_n(answer_.begin() + static_cast<std::ptrdiff_t>(part.read_begin), part.words,
                 words.begin() + static_cast<std::ptrdiff_t>(part.array_begin));
-    if (part.array_begin + part.words < words.size()) continue;
+    filled += part.words;
+    if (filled < words.size()) continue;
     decode_registers(map_.arrays[part.array], words, frame_);
     has_come_[part.array] = true;
     deliver(part.array, map_.arrays[part.array].shape, arrival, frame_);

@@ -22,7 +22,7 @@ class RegisterBus final : public Bus {
  public:
   /// Fails where the map cannot be read, the plugin is not there or the device cannot be reached.
   [[nodiscard]] static Result<std::shared_ptr<Bus>> open(const BusAddress& address);
-  /// Waits for the last answer, 0.5 s at most.
+  /// Waits for the last answer, 1 s at most where the line is silent.
   ~RegisterBus() override;
 
   [[nodiscard]] std::string name() const override { return name_; }
@@ -43,6 +43,7 @@ class RegisterBus final : public Bus {
   const std::unique_ptr<RegisterReader> reader_;
   const std::string name_;
   std::vector<std::vector<std::uint16_t>> words_;  // of each array
+  std::vector<std::size_t> filled_;                // words of each array that came in this round
   std::vector<bool> has_come_;                     // a frame of the array
   std::vector<std::uint16_t> answer_;
   RawFrame frame_;

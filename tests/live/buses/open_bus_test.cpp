@@ -30,7 +30,8 @@ class OpenBus : public ::testing::Test {
     map_ = ::testing::TempDir() + "registers_" + std::to_string(::getpid()) + ".toml";
     std::ofstream(map_) << "[registers]\narray = [{name = \"left\", address = 3000, rows = 2, cols = 3},\n"
                            "{name = \"right\", address = 3006, rows = 1, cols = 2},\n"
-                           "{name = \"other\", address = 5, rows = 1, cols = 2}]\n";
+                           "{name = \"other\", address = 5, rows = 1, cols = 2},\n"
+                           "{name = \"large\", address = 4000, rows = 16, cols = 16}]\n";
     const Opened tried = open("left");
     if (!tried && tried.error().message.find("libdermis_modbus.so") != std::string::npos) {
       GTEST_SKIP() << tried.error().message;
@@ -69,6 +70,20 @@ TEST_F(OpenBus, arrays_share_a_connection_and_get_every_answer) {
   EXPECT_EQ(frame.counts[1], frame.counts[0] + 1.0F);
   EXPECT_EQ((*right)->shape(), (FrameShape{1, 2}));
   EXPECT_GE((*left)->statistics().frames, 100U);
+}
+
+TEST_F(OpenBus, a_frame_is_made_of_the_answers_to_its_own_questions) {
+  const RegisterDevice liar(7);
+  const std::string place = "modbus-tcp://127.0.0.1:" + std::to_string(liar.port()) + "?map=" + map_ + "&array=large";
+  const Opened large = open_bus(*parse_bus_address(place), {});
+  ASSERT_TRUE(large) << large.error().message;
+  RawFrame frame;
+  for (int k = 0; k < 100; ++k) {
+    ASSERT_TRUE(*(*large)->next(frame));
+    EXPECT_EQ(frame.counts[125] - frame.counts[0], 126.0F) << "frame " << k << " has words of another round";
+    EXPECT_EQ(frame.counts[255] - frame.counts[0], 257.0F) << "frame " << k << " has words of another round";
+  }
+  EXPECT_GT((*large)->statistics().damaged_frames, 20U);
 }
 
 TEST_F(OpenBus, a_caller_of_several_sources_may_wait_for_a_descriptor) {
@@ -131,7 +146,7 @@ TEST_F(OpenBus, errors_name_the_arrays_and_the_shapes) {
             std::string::npos);
   const std::string text = address("left");
   const Opened unnamed = open_bus(*parse_bus_address(text.substr(0, text.rfind('&'))), {});
-  EXPECT_NE(error(unnamed).find("has several arrays; add array=NAME, of left, right, other"), std::string::npos);
+  EXPECT_NE(error(unnamed).find("has several arrays; add array=NAME, of left, right, other, large"), std::string::npos);
 }
 
 TEST(OpenBusFails, where_nobody_answers_or_nothing_is_known) {

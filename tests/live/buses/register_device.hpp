@@ -15,10 +15,12 @@
 namespace dermis::live::buses {
 
 /// A device that answers questions for holding registers, one client at a time, as Modbus TCP has it. The register of
-/// address a holds a + the number of the answer. Addresses below 3000 are refused.
+/// address a holds a + the number of the answer. Addresses below 3000 are refused. One in `wrong_ids` answers is that
+/// to another question, by its id; 0: none.
 class RegisterDevice {
  public:
-  RegisterDevice() : listener_(::socket(AF_INET, SOCK_STREAM, 0)) {
+  explicit RegisterDevice(unsigned wrong_ids = 0)
+      : listener_(::socket(AF_INET, SOCK_STREAM, 0)), wrong_ids_(wrong_ids) {
     sockaddr_in place{};
     place.sin_family = AF_INET;
     place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
@@ -76,6 +78,7 @@ class RegisterDevice {
         bytes.push_back(static_cast<std::uint8_t>(value));
       }
       ++answers_;
+      if (wrong_ids_ > 0 && answers_ % wrong_ids_ == 0) ++bytes[1];
     }
     bytes[5] = static_cast<std::uint8_t>(bytes.size() - 6);
     return ::send(client, bytes.data(), bytes.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(bytes.size());
@@ -85,6 +88,7 @@ class RegisterDevice {
   std::uint16_t port_ = 0;
   std::atomic<int> client_{-1};
   std::atomic<bool> stop_{false};
+  const unsigned wrong_ids_;
   unsigned answers_ = 0;
   std::thread thread_;
 };

@@ -20,10 +20,15 @@ class ChecksumOf {
 
   [[nodiscard]] std::uint32_t operator()(std::span<const std::uint8_t> bytes) const noexcept;
 
+  /// The same in parts: the register before the first byte, after some more, and the checksum that it means.
+  [[nodiscard]] std::uint32_t first_register() const noexcept { return initial_; }
+  [[nodiscard]] std::uint32_t add(std::uint32_t before, std::span<const std::uint8_t> bytes) const noexcept;
+  [[nodiscard]] std::uint32_t result(std::uint32_t after) const noexcept;
+  [[nodiscard]] const Checksum& checksum() const noexcept { return checksum_; }
+
  private:
-  [[nodiscard]] std::uint32_t of(std::span<const std::uint8_t> bytes) const noexcept;
   template <bool IsReflected>
-  [[nodiscard]] std::uint32_t crc(std::span<const std::uint8_t> bytes) const noexcept;
+  [[nodiscard]] std::uint32_t crc(std::uint32_t crc, std::span<const std::uint8_t> bytes) const noexcept;
 
   Checksum checksum_{};
   unsigned unused_ = 24;                                ///< Bits of 32.
