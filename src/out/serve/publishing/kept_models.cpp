@@ -108,9 +108,8 @@ void KeptModels::remove(const live::fleet::PushedModel& model) const {
 Status KeptModels::use(const live::fleet::ModelManifest& manifest) const {
   std::error_code error;
   filesystem::last_write_time(path_of(manifest.current_model()), filesystem::file_time_type::clock::now(), error);
-  if (Status written = write_file(manifest_path(), live::fleet::manifest_to_json(manifest)); !written) return written;
-  remove_old();
-  return Done{};
+  remove_old();  // first: a process that is killed between the two leaves no eleventh
+  return write_file(manifest_path(), live::fleet::manifest_to_json(manifest));
 }
 
 void KeptModels::remove_old() const {
