@@ -19,6 +19,7 @@ const WebSocket = require("ws");
 const PATIENCE_MS = 120_000;
 const FRAMES_WANTED = 100;
 const TAXELS = 20;
+const MARKS = "/marks"; // the only topic that nothing is sent to unless somebody does something
 const ARRAY = `[array]
 name = "small"
 rows = 4
@@ -66,12 +67,11 @@ function prepare() {
 }
 
 /** The server and the port that it says. */
-async function serve() {
-  const server = spawn(
-    dermis,
-    ["serve", "--from", path("rec.mcap"), "--model", path("model.safetensors"), "--port", "0"],
-    { stdio: ["ignore", "ignore", "pipe"], cwd: folder },
-  );
+async function serve(from) {
+  const server = spawn(dermis, ["serve", "--from", from, "--model", path("model.safetensors"), "--port", "0"], {
+    stdio: ["ignore", "ignore", "pipe"],
+    cwd: folder,
+  });
   let said = "";
   for await (const chunk of server.stderr) {
     said += chunk;
@@ -90,6 +90,25 @@ function connect(port) {
   client.on("advertise", (some) => some.forEach((channel) => channels.set(channel.topic, channel)));
   client.on("advertiseServices", (some) => some.forEach((service) => services.set(service.name, service)));
   return { client, channels, services };
+}
+
+/** The messages of these channels from now on, by topic. */
+function listen({ client }, channels) {
+  const seen = new Map();
+  const readers = new Map();
+  for (const channel of channels) {
+    assert.deepEqual([channel.encoding, channel.schemaEncoding], ["cdr", "ros2msg"], channel.topic);
+    seen.set(channel.topic, []);
+    readers.set(client.subscribe(channel.id), {
+      topic: channel.topic,
+      reader: new MessageReader(parse(channel.schema, { ros2: true })),
+    });
+  }
+  client.on("message", ({ subscriptionId, data }) => {
+    const { topic, reader } = readers.get(subscriptionId);
+    seen.get(topic).push(reader.readMessage(data));
+  });
+  return seen;
 }
 
 async function until(what, condition) {
@@ -183,12 +202,10 @@ async function checkRecording(connection, frames) {
   const after = await setParameters(connection, [{ name: "/recording", value: false }]);
   assert.equal(after.get("/recording"), false);
   const file = after.get("/recording/file");
-  assert.deepEqual(
-    readdirSync(folder).filter((name) => name.startsWith("dermis-")),
-    [file],
-  );
-  await until("the end of the recording", () => JSON.parse(run("info", "--json", path(file))).complete);
-  run("convert", path(file), path("recorded.csv"));
+  const recordings = readdirSync(folder).filter((name) => name.endsWith(".mcap") && name !== "rec.mcap");
+  assert.deepEqual(recordings.map(path), [file], "it lies in the folder of the array");
+  await until("the end of the recording", () => JSON.parse(run("info", "--json", file)).complete);
+  run("convert", file, path("recorded.csv"));
   const recorded = table("recorded.csv");
   assert.ok(recorded.rows.length > 10, `${recorded.rows.length} frames in half a second`);
   recorded.times.forEach((time, row) => assert.deepEqual(recorded.rows[row], frames.rows[Math.round(time * 100) - 1]));
@@ -212,9 +229,28 @@ async function checkRefusals(connection) {
   assert.match(lines.join("\n"), /onset_sigma.*\n.*rate_hz.*\n.*nothing/);
 }
 
+/** A mark comes when it is set, which can be done while frames are live. */
+async function checkMark() {
+  const { server, port } = await serve("sim:contacts?rows=4&cols=5&rate=100");
+  try {
+    const connection = connect(port);
+    const { client, channels, services } = connection;
+    await until("the topic and the service of marks", () => channels.has(MARKS) && services.has("/marks/add"));
+    const seen = listen(connection, [channels.get(MARKS)]);
+    assert.deepEqual(await call(connection, "/marks/add", { label: "grasp", by: "anna" }), {});
+    await until("the mark", () => seen.get(MARKS).length > 0);
+    const [{ label, by }] = seen.get(MARKS);
+    assert.deepEqual([label, by], ["grasp", "anna"]);
+    client.close();
+  } finally {
+    server.kill("SIGINT");
+  }
+}
+
 async function test() {
   prepare();
-  const { server, port } = await serve();
+  await checkMark();
+  const { server, port } = await serve(path("rec.mcap"));
   try {
     const suit = await (await fetch(`http://127.0.0.1:${port}/suit.json`)).json();
     assert.deepEqual([suit.arrays[0].name, suit.arrays[0].rows, suit.arrays[0].cols], ["small", 4, 5]);
@@ -232,20 +268,10 @@ async function test() {
     );
     await new Promise((resolve) => setTimeout(resolve, 200)); // the frame under way may have the old ones
 
-    const seen = new Map();
-    const readers = new Map();
-    for (const channel of channels.values()) {
-      assert.deepEqual([channel.encoding, channel.schemaEncoding], ["cdr", "ros2msg"], channel.topic);
-      seen.set(channel.topic, []);
-      readers.set(client.subscribe(channel.id), {
-        topic: channel.topic,
-        reader: new MessageReader(parse(channel.schema, { ros2: true })),
-      });
-    }
-    client.on("message", ({ subscriptionId, data }) => {
-      const { topic, reader } = readers.get(subscriptionId);
-      seen.get(topic).push(reader.readMessage(data));
-    });
+    const seen = listen(
+      connection,
+      [...channels.values()].filter(({ topic }) => topic !== MARKS),
+    );
     assert.deepEqual(await call(connection, "/calibration/start", { array: "small", weights_n: [1, 5] }), {});
     await until("messages", () =>
       [...seen].every(
