@@ -19,7 +19,6 @@ constexpr int kMaxMixedRounds = 40;      // under a film
 constexpr std::size_t kMixingDepth = 8;  // likewise
 constexpr int kEstimateRounds = 3;       // the estimate from a taxel's neighbours hardly depends on it
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();  // a reading that is not used
-constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr double kShortSiemens = 20.0;  // of a shorted crossing that is kept
 constexpr double kOpenSiemens = 1e-9;   // of a taxel that is counted elsewhere
 constexpr double kMostStretch = 5.0;
@@ -34,7 +33,8 @@ bool is_modelled(const ArrayDescription& array) {
 }  // namespace
 
 FaultInversion::Correction::Correction(std::size_t taxels)
-    : difference(taxels),
+    : shift(taxels),
+      difference(taxels),
       last_difference(taxels),
       last_corrected(taxels),
       healthy_ratio(taxels),
@@ -84,6 +84,9 @@ void FaultInversion::set_faults(std::span<const LineFault> faults, CrosstalkInve
     circuits_->faulty.restore();
   }
   for (const LineFault& fault : faults) add(fault);
+  const bool are_broken = lines_are_faulty_ && !has_crossings_;
+  lines_are_solved_ = healthy.set_broken(are_broken ? faults : std::span<const LineFault>()) && are_broken;
+  correction_.has_shift = false;
   add_crossings(healthy);
 }
 
@@ -202,14 +205,20 @@ void FaultInversion::add_doubt(std::span<const float> doubt_siemens, std::span<c
   const Axis driven = driven_axis(array_);
   for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
     const auto error = static_cast<double>(doubt_siemens[taxel]);
-    if (error == 0.0) continue;
-    sigma_siemens[taxel] = std::hypot(sigma_siemens[taxel], error);
-    for (const Axis axis : kAxes) {
-      const std::size_t line = line_of(array_, axis, taxel);
+    if (error != 0.0) sigma_siemens[taxel] = std::hypot(sigma_siemens[taxel], error);
+  }
+  for (const Axis axis : kAxes) {
+    for (std::size_t line = 0; line < line_count(array_, axis); ++line) {
+      double squares = 0.0;
+      for (std::size_t k = 0; k < line_length(array_, axis); ++k) {
+        const auto error = static_cast<double>(doubt_siemens[taxel_on_line(array_, axis, line, k)]);
+        squares += error * error;
+      }
+      if (squares == 0.0) continue;
       const double ohm = axis == driven ? array_.readout.drive_ohm[line] : sensed_line(array_.readout, line).rho;
       for (std::size_t k = 0; k < line_length(array_, axis); ++k) {
         const std::size_t other = taxel_on_line(array_, axis, line, k);
-        sigma_siemens[other] = std::hypot(sigma_siemens[other], ohm * error * siemens[other]);
+        sigma_siemens[other] = std::hypot(sigma_siemens[other], ohm * std::sqrt(squares) * siemens[other]);
       }
     }
   }
@@ -238,10 +247,8 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
   subtract_supplied_rows(ratio);
   average_shorted_lines();
   std::copy(measured_.begin(), measured_.end(), equivalent_.begin());
-  // The work in another circuit is no example for frames without a fault.
-  if (lines_are_faulty_ || crossings_.are_kept) healthy.start_frame(kUnbounded);
-  if (!lines_are_faulty_) return keep_estimates(healthy, siemens);
-  missing_.estimate(equivalent_);
+  if (!lines_are_faulty_ || lines_are_solved_) return keep_estimates(healthy, siemens);
+  start_circuits();
   keep_crossings(siemens);
   InversionResult result = healthy.invert(equivalent_, siemens);
   if (!circuits_) return result;
@@ -250,12 +257,30 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
     for (const std::size_t taxel : crossings_.in_first) siemens[taxel] = kOpenSiemens;
     solve_circuits(siemens);
     result.residual_ratio = misfit(siemens);
-    if (correct(round == 0) <= tolerance_) return result;
+    if (correct(round == 0) <= tolerance_) {
+      keep_shift();
+      return result;
+    }
     keep_crossings(siemens);
     result.solved = healthy.invert(equivalent_, siemens).solved;
   }
+  correction_.has_shift = false;
   result.solved = false;
   return result;
+}
+
+/// The correction of the last frame.
+void FaultInversion::start_circuits() noexcept {
+  if (!correction_.has_shift) return missing_.estimate(equivalent_);
+  for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) equivalent_[taxel] += correction_.shift[taxel];
+}
+
+void FaultInversion::keep_shift() noexcept {
+  correction_.has_shift = true;
+  for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) {
+    const double shift = equivalent_[taxel] - measured_[taxel];
+    correction_.shift[taxel] = std::isfinite(shift) ? shift : 0.0;
+  }
 }
 
 void FaultInversion::solve_circuits(std::span<const double> siemens) noexcept {
@@ -267,26 +292,37 @@ void FaultInversion::solve_circuits(std::span<const double> siemens) noexcept {
   circuits_->faulty.solve(siemens, correction_.faulty_ratio);
 }
 
-/// The lines are healthy: taxels without a reading are estimated, and the others solved with them. At first the
-/// readings of the neighbours tell of taxels that have had none for long.
+/// The inversion knows of the broken lines. Taxels without a reading are estimated, and the others solved with them.
 InversionResult FaultInversion::keep_estimates(CrosstalkInversion& healthy, std::span<double> siemens) noexcept {
-  missing_.estimate(equivalent_);
-  for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
-    if (!missing_.is_missing(taxel) || !missing_.held(taxel)) continue;
-    siemens[taxel] = *missing_.held(taxel);
-    equivalent_[taxel] = kNothing;
-  }
+  const bool has_start = start_missing(healthy, siemens);
   keep_crossings(siemens);
   InversionResult result = healthy.invert(equivalent_, siemens);
   for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) {
     if (missing_.is_missing(taxel)) equivalent_[taxel] = kNothing;
   }
-  for (int round = 1; round < kEstimateRounds; ++round) {
-    missing_.improve(siemens);
+  for (int round = has_start ? 2 : 1; round < kEstimateRounds; ++round) {
+    lines_are_solved_ ? missing_.estimate(siemens) : missing_.improve(siemens);
     keep_crossings(siemens);
     result = healthy.invert(equivalent_, siemens);
   }
   return result;
+}
+
+/// From the last frame; at first the readings of the neighbours tell of taxels. Whether all were known.
+bool FaultInversion::start_missing(const CrosstalkInversion& healthy, std::span<double> siemens) noexcept {
+  bool are_known = true;
+  for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
+    are_known = are_known && (!missing_.is_missing(taxel) || missing_.start(taxel));
+  }
+  if (!are_known) missing_.estimate(equivalent_);
+  for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
+    if (!missing_.is_missing(taxel)) continue;
+    const std::optional<double> start = missing_.start(taxel);
+    if (!start && !lines_are_solved_) continue;
+    siemens[taxel] = start.value_or(healthy.siemens_per_ratio() * std::max(equivalent_[taxel], 0.0));
+    equivalent_[taxel] = kNothing;
+  }
+  return are_known;
 }
 
 /// Their readings count where the inversion solves them; else they are what they are.

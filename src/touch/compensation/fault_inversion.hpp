@@ -26,7 +26,7 @@ namespace dermis::touch::compensation {
 /// Taxels whose conductance no reading determines (on a silent line, stuck, without a reading in this frame) are
 /// estimated (MissingTaxels). Without faults of lines, the healthy inversion keeps those estimates. An open row still
 /// couples the columns through them: eliminating it adds -g g^T / sum(g) to their equations. Lines that
-/// touch are one node with all that either touches. Shorted crossings are in both circuits: the inversion solves them,
+/// touch are one node with all that either touches. Broken lines are left to the inversion where it solves them. Shorted crossings are in both circuits: the inversion solves them,
 /// or keeps their taxels at a large conductance. For resistive lines, switches, real amplifiers, `none` and arrays of
 /// more than 256 lines there is no faulty circuit. There the readings of faulty lines are replaced by those of their
 /// neighbours, and the rest is solved as if healthy. Many members: one for each kind of fault, and work space, as
@@ -69,7 +69,10 @@ class FaultInversion {
 
   /// The frame is solved, at these conductances.
   void remember(std::span<const double> siemens) noexcept { missing_.remember(siemens); }
-  void forget() noexcept { missing_.forget(); }
+  void forget() noexcept {
+    missing_.forget();
+    correction_.has_shift = false;
+  }
 
   /// As CrosstalkInversion::invert; `healthy` inverts the circuit without faults.
   InversionResult invert(CrosstalkInversion& healthy, std::span<const double> ratio,
@@ -104,6 +107,8 @@ class FaultInversion {
   struct Correction {
     explicit Correction(std::size_t taxels);
 
+    std::vector<double> shift;       // T' less T of the last frame,
+    bool has_shift = false;          // which had the same faults
     std::vector<double> difference;  // T' found less T' put in
     std::vector<double> last_difference;
     std::vector<double> last_corrected;
@@ -117,6 +122,9 @@ class FaultInversion {
   void put_in_first_rows() noexcept;
   void hide_sensed_line(std::size_t taxel) noexcept;
   void add_crossings(CrosstalkInversion& healthy);
+  [[nodiscard]] bool start_missing(const CrosstalkInversion& healthy, std::span<double> siemens) noexcept;
+  void start_circuits() noexcept;
+  void keep_shift() noexcept;
   void add_to_circuit(const LineFault& fault, LumpedCircuit& circuit) const;
   void subtract_supplied_rows(std::span<const double> ratio) noexcept;
   void average_shorted_lines() noexcept;
@@ -134,7 +142,8 @@ class FaultInversion {
   bool any_ = false;
   bool keeps_bounds_ = true;
   bool has_crossings_ = false;     // that are shorted
-  bool lines_are_faulty_ = false;  // so that the circuit is another one
+  bool lines_are_faulty_ = false;  // so that the circuit is another one,
+  bool lines_are_solved_ = false;  // which the healthy inversion solves
   std::optional<Circuits> circuits_;
   FilmFollower film_;
   Masks is_;

@@ -66,7 +66,8 @@ GroundedRows::GroundedRows(const ArrayDescription& array, double tolerance_ratio
       sigma_column_(state_.stride) {
   state_.kept.reserve(array.taxel_count());
   state_.shorted.reserve(array.cols);
-  joined_.pairs.reserve(array.rows);
+  joined_.rows.reserve(array.rows);
+  joined_.cols.reserve(array.cols);
   const Readout& readout = array.readout;
   state_.drive_ohm = joined_.drive_ohm = readout.drive_ohm;
   const double weakest_driver = *std::max_element(state_.drive_ohm.begin(), state_.drive_ohm.end());
@@ -79,6 +80,8 @@ GroundedRows::GroundedRows(const ArrayDescription& array, double tolerance_ratio
     state_.column_ohm[col] = sensed.rho;
     state_.certificate_ratio[col] = (one_loaded ? 1.0 + weakest_driver / sensed.rho : 1.0) * sensed.gain;
   }
+  joined_.column_ohm = state_.column_ohm;
+  can_break_ = readout.circuit == Circuit::divider && !readout.film;
   if (options.counts_driver_errors && !is_absent(readout.drive_error_ohm)) {
     driver_error_.emplace(array, std::vector<double>(state_.column_ohm.begin(), state_.column_ohm.begin() + cols));
   }
@@ -100,6 +103,7 @@ InversionResult GroundedRows::invert(std::span<const double> ratio, std::span<do
   estimate_from_readings(state_);
   if (state_.film) state_.film->precision = first_precision_;
   if (has_last_) {
+    if (is_broken_) keep_open_rows();
     start_warm(state_, last_estimate_);
   } else {
     start_cold(state_);
@@ -114,6 +118,7 @@ InversionResult GroundedRows::invert(std::span<const double> ratio, std::span<do
   for (std::size_t row = 0; row < state_.rows; ++row) {
     std::copy_n(&state_.siemens[row * state_.stride], state_.cols, &siemens[row * state_.cols]);
   }
+  if (is_broken_) split_joined(siemens);
   for (const auto& [row, col, is_second] : state_.shorted) {
     siemens[row * state_.cols + col] = (1.0 / state_.column_part[col] - 1.0) / state_.column_ohm[col];
   }
@@ -125,8 +130,9 @@ InversionResult GroundedRows::invert(std::span<const double> ratio, std::span<do
 }
 
 bool GroundedRows::set_shorted(std::span<const std::size_t> taxels) noexcept {
+  if (is_broken_) return taxels.empty();
   state_.shorted.clear();
-  joined_.pairs.clear();
+  joined_.rows.clear();
   state_.drive_ohm = joined_.drive_ohm;
   const bool can =
       sources_.ratio.empty() && !state_.film && std::all_of(taxels.begin(), taxels.end(), [&](std::size_t taxel) {
@@ -134,7 +140,7 @@ bool GroundedRows::set_shorted(std::span<const std::size_t> taxels) noexcept {
       });
   if (can) return true;
   state_.shorted.clear();
-  joined_.pairs.clear();
+  joined_.rows.clear();
   state_.drive_ohm = joined_.drive_ohm;
   return taxels.empty();
 }
@@ -144,19 +150,99 @@ bool GroundedRows::add_shorted(std::size_t row, std::size_t col) noexcept {
   if (joined_.drive_ohm[row] == 0.0) return false;
   const auto in_row = [&](const auto& crossing) { return crossing.row == row; };
   const auto in_col = [&](const auto& crossing) { return crossing.col == col; };
-  const auto is_joined = [&](const JoinedRows::Pair& pair) { return pair.other == row; };
+  const auto is_joined = [&](const JoinedLines::Pair& pair) { return pair.other == row; };
   const bool row_is_shorted = std::any_of(state_.shorted.begin(), state_.shorted.end(), in_row);
   const auto column = std::find_if(state_.shorted.begin(), state_.shorted.end(), in_col);
-  if (std::any_of(joined_.pairs.begin(), joined_.pairs.end(), is_joined)) return false;
+  if (std::any_of(joined_.rows.begin(), joined_.rows.end(), is_joined)) return false;
   if (column == state_.shorted.end()) {
     state_.shorted.push_back({row, col, row_is_shorted});
     return true;
   }
   double& first_ohm = state_.drive_ohm[column->row];
   if (row_is_shorted) return false;
-  joined_.pairs.push_back({column->row, row});
+  joined_.rows.push_back({column->row, row});
   first_ohm = 1.0 / (1.0 / first_ohm + 1.0 / joined_.drive_ohm[row]);
   return true;
+}
+
+bool GroundedRows::set_broken(std::span<const LineFault> faults) noexcept {
+  if (faults.empty() && !is_broken_) return true;
+  start_anew();
+  mend_lines();
+  const auto breaks = [&](const LineFault& fault) { return break_line(fault); };
+  const auto joins = [&](const LineFault& fault) { return join_lines(fault); };
+  is_broken_ = can_break_ && !faults.empty() && std::all_of(faults.begin(), faults.end(), breaks) &&
+               std::all_of(faults.begin(), faults.end(), joins);
+  if (!is_broken_) mend_lines();
+  return is_broken_ || faults.empty();
+}
+
+void GroundedRows::mend_lines() noexcept {
+  state_.drive_ohm = joined_.drive_ohm;
+  state_.column_ohm = joined_.column_ohm;
+  joined_.rows.clear();
+  joined_.cols.clear();
+  if (can_break_) sources_.ratio.clear();
+}
+
+/// A silent line that is open takes no current from its end, one at 0 V or at the supply any. false: where one column
+/// at a time is loaded, the others have no end.
+bool GroundedRows::break_line(const LineFault& fault) noexcept {
+  const LineFaultTraits& traits = traits_of(fault.kind);
+  const bool is_supplied = traits.effect == LineFaultEffect::supplied;
+  if (!is_supplied && traits.effect != LineFaultEffect::silent) return true;
+  const double ohm = is_supplied || fault.grounded ? 0.0 : kOpenOhm;
+  if (traits.axis == Axis::row) {
+    state_.drive_ohm[fault.place] = ohm;
+    return true;
+  }
+  if (state_.idle_columns == IdleColumns::floating) return ohm > 0.0;
+  state_.column_ohm[fault.place] = ohm;
+  if (!is_supplied) return true;
+  sources_.ratio.resize(state_.stride);
+  sources_.ratio[fault.place] = 1.0;
+  return true;
+}
+
+/// false: one of them is broken otherwise, too.
+bool GroundedRows::join_lines(const LineFault& fault) noexcept {
+  const LineFaultTraits& traits = traits_of(fault.kind);
+  if (traits.effect != LineFaultEffect::shorted) return true;
+  const bool are_rows = traits.axis == Axis::row;
+  std::vector<JoinedLines::Pair>& pairs = are_rows ? joined_.rows : joined_.cols;
+  std::vector<double>& ohms = are_rows ? state_.drive_ohm : state_.column_ohm;
+  const std::vector<double>& apart = are_rows ? joined_.drive_ohm : joined_.column_ohm;
+  const std::size_t other = fault.place + 1;
+  if (ohms[fault.place] != apart[fault.place] || ohms[other] != apart[other] || ohms[other] == 0.0) return false;
+  if (are_rows || state_.idle_columns == IdleColumns::loaded) {
+    ohms[fault.place] = 1.0 / (1.0 / ohms[fault.place] + 1.0 / ohms[other]);
+  }
+  pairs.push_back({fault.place, other});
+  return true;
+}
+
+/// Their taxels go on from the currents of the last frame.
+void GroundedRows::keep_open_rows() noexcept {
+  for (const auto& [row, col, siemens] : state_.kept) {
+    const std::size_t k = row * state_.stride + col;
+    if (state_.drive_ohm[row] == kOpenOhm) state_.measured[k] = state_.explained[k];
+  }
+}
+
+/// Nothing tells the taxels of two joined lines apart.
+void GroundedRows::split_joined(std::span<double> siemens) const noexcept {
+  for (const auto& [first, other] : joined_.rows) {
+    for (std::size_t col = 0; col < state_.cols; ++col) {
+      double& whole = siemens[first * state_.cols + col];
+      siemens[other * state_.cols + col] = whole *= 0.5;
+    }
+  }
+  for (const auto& [first, other] : joined_.cols) {
+    for (std::size_t row = 0; row < state_.rows; ++row) {
+      double& whole = siemens[row * state_.cols + first];
+      siemens[row * state_.cols + other] = whole *= 0.5;
+    }
+  }
 }
 
 void GroundedRows::hold_film(const FilmConductances& film) noexcept {
@@ -181,7 +267,8 @@ void GroundedRows::load(std::span<const double> ratio, std::span<const double> s
   load_readings(ratio);
   state_.kept.clear();
   if (any_is_missing(ratio)) keep_missing(ratio, siemens);
-  if (!state_.shorted.empty()) load_shorted();
+  if (!joined_.rows.empty() || !joined_.cols.empty()) load_joined();
+  if (!state_.shorted.empty()) take_loads_away(state_);
 }
 
 DERMIS_PROCESSOR_CLONES void GroundedRows::load_readings(std::span<const double> ratio) noexcept {
@@ -203,24 +290,39 @@ void GroundedRows::keep_missing(std::span<const double> ratio, std::span<const d
   }
 }
 
-/// Joined rows are driven together; of the second of them nothing is left. Where one has no reading, both are kept.
-void GroundedRows::load_shorted() noexcept {
-  const auto is_kept = [&](std::size_t row, std::size_t col) {
-    return std::any_of(state_.kept.begin(), state_.kept.end(),
-                       [&](const auto& taxel) { return taxel.row == row && taxel.col == col; });
-  };
-  for (const auto& [first, other] : joined_.pairs) {
-    for (auto& taxel : state_.kept) {
-      if (taxel.row == other && !is_kept(first, taxel.col)) taxel.row = first;
-    }
-    std::erase_if(state_.kept, [row = other](const auto& taxel) { return taxel.row == row; });
+/// Joined rows are driven together, and joined columns sensed so; of the second of them nothing is left.
+void GroundedRows::load_joined() noexcept {
+  for (const JoinedLines::Pair& pair : joined_.rows) {
+    move_kept([](auto& taxel) -> std::size_t& { return taxel.row; }, pair);
     for (std::size_t col = 0; col < state_.cols; ++col) {
-      double& reading = state_.measured[other * state_.stride + col];
-      state_.measured[first * state_.stride + col] += reading;
-      reading = 0.0;
+      double& reading = state_.measured[pair.other * state_.stride + col];
+      state_.measured[pair.first * state_.stride + col] += std::exchange(reading, 0.0);
     }
   }
-  take_loads_away(state_);
+  const bool are_loaded = state_.idle_columns == IdleColumns::loaded;
+  for (const JoinedLines::Pair& pair : joined_.cols) {
+    move_kept([](auto& taxel) -> std::size_t& { return taxel.col; }, pair);
+    for (std::size_t k = 0; k < state_.measured.size(); k += state_.stride) {
+      const double reading = std::exchange(state_.measured[k + pair.other], 0.0);
+      state_.measured[k + pair.first] += are_loaded ? reading : 0.0;
+    }
+  }
+}
+
+/// Where one of two joined taxels has no reading, both are kept.
+template <typename Line>
+void GroundedRows::move_kept(Line line, const JoinedLines::Pair& pair) noexcept {
+  const auto is_kept = [&](const GroundedRowsState::KeptTaxel& sought) {
+    return std::any_of(state_.kept.begin(), state_.kept.end(),
+                       [&](const auto& taxel) { return taxel.row == sought.row && taxel.col == sought.col; });
+  };
+  for (auto& taxel : state_.kept) {
+    if (line(taxel) != pair.other) continue;
+    GroundedRowsState::KeptTaxel moved = taxel;
+    line(moved) = pair.first;
+    if (!is_kept(moved)) taxel = moved;
+  }
+  std::erase_if(state_.kept, [&](auto& taxel) { return line(taxel) == pair.other; });
 }
 
 double GroundedRows::certify(Precision precision) noexcept {
@@ -338,7 +440,9 @@ void GroundedRows::choose_step() noexcept {
 /// kohm, drivers up to 50 ohm, and loads of 100 ohm to 1 kohm. Near a fold of the circuit (see the class) up to three
 /// times too small.
 void GroundedRows::propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept {
-  for (std::size_t col = 0; col < state_.cols; ++col) sigma_column_[col] = sigma_ratio * reading_siemens_[col];
+  for (std::size_t col = 0; col < state_.cols; ++col) {
+    sigma_column_[col] = state_.column_ohm[col] == kOpenOhm ? 0.0 : sigma_ratio * reading_siemens_[col];
+  }
   spread_noise(state_, sigma_column_, sigma_siemens);
   if (!driver_error_) return;
   std::span<const double> between_rows;

@@ -60,6 +60,7 @@ class GroundedRows final : public CrosstalkInversion {
   GroundedRows(const ArrayDescription& array, double tolerance_ratio, const InversionOptions& options);
   [[nodiscard]] InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept override;
   [[nodiscard]] bool set_shorted(std::span<const std::size_t> taxels) noexcept override;
+  [[nodiscard]] bool set_broken(std::span<const LineFault> faults) noexcept override;
   void hold_film(const FilmConductances& film) noexcept override;
   void start_frame(double share) noexcept override { budget_.start_frame(share); }
   void forget() noexcept override;
@@ -80,15 +81,17 @@ class GroundedRows final : public CrosstalkInversion {
     std::vector<double> line_ratio;     // row voltages, over the supply [rows]
   };
 
-  /// Rows that touch one column are one row; its readings stand in the first.
-  struct JoinedRows {
+  /// Rows that touch one column, or each other, are one row; its readings stand in the first. So do those of columns.
+  struct JoinedLines {
     struct Pair {
       std::size_t first;
       std::size_t other;
     };
 
-    std::vector<Pair> pairs;
-    std::vector<double> drive_ohm;  // of the rows apart [rows]
+    std::vector<Pair> rows;
+    std::vector<Pair> cols;
+    std::vector<double> drive_ohm;   // of the rows apart [rows]
+    std::vector<double> column_ohm;  // of the columns apart [stride]
   };
 
   /// Anderson's mixing of ln G.
@@ -102,10 +105,17 @@ class GroundedRows final : public CrosstalkInversion {
   };
 
   [[nodiscard]] bool add_shorted(std::size_t row, std::size_t col) noexcept;
+  void mend_lines() noexcept;
+  [[nodiscard]] bool break_line(const LineFault& fault) noexcept;
+  [[nodiscard]] bool join_lines(const LineFault& fault) noexcept;
+  void keep_open_rows() noexcept;
+  void split_joined(std::span<double> siemens) const noexcept;
   void load(std::span<const double> ratio, std::span<const double> siemens) noexcept;
   void load_readings(std::span<const double> ratio) noexcept;
   void keep_missing(std::span<const double> ratio, std::span<const double> siemens) noexcept;
-  void load_shorted() noexcept;
+  void load_joined() noexcept;
+  template <typename Line>
+  void move_kept(Line line, const JoinedLines::Pair& pair) noexcept;
   void start_anew() noexcept;
   [[nodiscard]] double certify(Precision precision) noexcept;
   [[nodiscard]] bool follow_sources() noexcept;
@@ -121,7 +131,9 @@ class GroundedRows final : public CrosstalkInversion {
   double tolerance_;
   StepBudget budget_;  // in steps without mixing
   GroundedRowsState state_;
-  JoinedRows joined_;
+  JoinedLines joined_;
+  bool can_break_ = false;  // lines
+  bool is_broken_ = false;  // some line
   std::vector<double> reading_siemens_;  // y of a ratio of 1 [stride]
   std::vector<double> offset_siemens_;   // y of a ratio of 0 [stride]
   Sources sources_;

@@ -269,8 +269,8 @@ void noise_kernel(const View state, const double* HWY_RESTRICT sigma, double* HW
       returned = hn::MulAdd(hn::LoadU(d, &state.siemens[k]), hn::LoadU(d, &state.shunted[k]), returned);
     }
     const double own = state.line_gain[row] - state.drive_ohm[row] * hn::GetLane(hn::SumOfLanes(d, returned));
-    state.noise_gain[row] = own * own;
-    all_rows += own * own;
+    state.noise_gain[row] = state.drive_ohm[row] < kOpenOhm ? own * own : 0.0;  // else it has no reading
+    all_rows += state.noise_gain[row];
   }
   for (std::size_t col = 0; col < state.stride; col += lanes) {
     const Vec base = column_noise(d, state, sigma, col);
@@ -382,10 +382,12 @@ void estimate_from_readings(GroundedRowsState& state) noexcept {
     HWY_DYNAMIC_DISPATCH(estimate_kernel)(GroundedRowsView(state));
   }
   if (!state.shorted.empty()) estimate_with_shorted(state);
+  std::fill(state.line_gain.begin(), state.line_gain.end(), 1.0);
+  for (const auto& [row, col, siemens] : state.kept) state.line_gain[row] += state.drive_ohm[row] * siemens;
   for (const auto& [row, col, siemens] : state.kept) {
     const std::size_t k = row * state.stride + col;
     state.estimate[k] = siemens;
-    state.measured[k] = siemens / state.column_scale[col];
+    state.measured[k] = siemens / (state.column_scale[col] * state.line_gain[row]);
   }
 }
 

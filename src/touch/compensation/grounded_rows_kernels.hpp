@@ -14,6 +14,9 @@ namespace dermis::touch::compensation {
 
 struct GroundedRowsFilm;
 
+/// Of a driver or a load that is not connected.
+inline constexpr double kOpenOhm = 1e9;
+
 /// The state of the iteration of GroundedRows; grounded_rows.hpp explains the symbols. Matrices are [rows, stride],
 /// row-major: zeros fill up the columns to whole SIMD vectors. Many members: the symbols of formula (4), of the
 /// circuit, the frame and the iterate.

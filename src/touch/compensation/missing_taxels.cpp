@@ -24,6 +24,7 @@ constexpr double kUnloadedScatter = 0.02;  // at least, of the middle of a line
 constexpr double kShiftByPressed = 1.0;    // of that middle where a third is pressed, in median deviations
 constexpr std::size_t kFewest = 4;         // taxels that are evidence
 constexpr int kSteps = 8;
+constexpr double kLeastChange = 1e-4;  // of a logarithm
 
 /// The value between four of which some are known: on a parabola, as the logarithm of a Gaussian contact is. Beyond the
 /// last known taxel a contact falls on as it comes, and never rises.
@@ -62,6 +63,7 @@ MissingTaxels::MissingTaxels(const ArrayDescription& array, const ReferenceCondu
       missing_(array.taxel_count()),
       last_siemens_(array.taxel_count()),
       frames_ago_(array.taxel_count(), kLong),
+      estimated_(array.taxel_count()),
       doubt_(array.taxel_count()),
       taken_(array.taxel_count()) {
   typical_siemens_.resize(array.taxel_count(), 1.0);
@@ -95,10 +97,12 @@ DERMIS_PROCESSOR_CLONES bool MissingTaxels::mark(std::span<const TaxelStatus> ta
 
 void MissingTaxels::forget() noexcept {
   std::fill(frames_ago_.begin(), frames_ago_.end(), std::uint8_t{kLong});
+  std::fill(estimated_.begin(), estimated_.end(), 0.0);
 }
 
 void MissingTaxels::forget(std::size_t taxel) noexcept {
   frames_ago_[taxel] = kLong;
+  estimated_[taxel] = 0.0;
 }
 
 void MissingTaxels::remember(std::span<const double> siemens) noexcept {
@@ -108,6 +112,7 @@ void MissingTaxels::remember(std::span<const double> siemens) noexcept {
     return;
   }
   for (std::size_t taxel = 0; taxel < missing_.size(); ++taxel) {
+    estimated_[taxel] = is_missing(taxel) ? siemens[taxel] : 0.0;
     if (is_missing(taxel)) continue;
     last_siemens_[taxel] = siemens[taxel];
     frames_ago_[taxel] = 0;
@@ -125,6 +130,11 @@ void MissingTaxels::start_frame(Nanos time) noexcept {
 std::optional<double> MissingTaxels::held(std::size_t taxel) const noexcept {
   if (frames_ago_[taxel] == kLong) return std::nullopt;
   return last_siemens_[taxel];
+}
+
+std::optional<double> MissingTaxels::start(std::size_t taxel) const noexcept {
+  if (frames_ago_[taxel] == kLong && estimated_[taxel] > 0.0) return estimated_[taxel];
+  return held(taxel);
 }
 
 std::optional<double> MissingTaxels::logarithm(std::span<const double> values, std::size_t taxel,
@@ -175,7 +185,8 @@ void MissingTaxels::improve(std::span<double> siemens) noexcept {
   }
 }
 
-/// The middle of ln(G / unloaded) on a line, or of all: where few are pressed, that of unloaded taxels.
+/// The middle of ln(G / unloaded) on a line, or of all: where few are pressed, that of unloaded taxels. Logarithms keep
+/// the order, so the middle of the quotients is theirs.
 std::optional<MissingTaxels::Middle> MissingTaxels::change_of_unloaded(std::span<const double> siemens,
                                                                        std::optional<Axis> axis,
                                                                        std::size_t line) noexcept {
@@ -184,12 +195,12 @@ std::optional<MissingTaxels::Middle> MissingTaxels::change_of_unloaded(std::span
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t taxel = axis ? taxel_on_line(array_, *axis, line, k) : k;
     const bool tells = !is_missing(taxel) && absent_[taxel] == 0 && unloaded_siemens_[taxel] > 0.0;
-    if (tells && siemens[taxel] > 0.0) sorted_.push_back(std::log(siemens[taxel] / unloaded_siemens_[taxel]));
+    if (tells && siemens[taxel] > 0.0) sorted_.push_back(siemens[taxel] / unloaded_siemens_[taxel]);
   }
   if (sorted_.size() < kFewest) return std::nullopt;
   const double middle = median_of(sorted_);
-  for (double& value : sorted_) value = std::abs(value - middle);
-  return Middle{middle, std::hypot(kUnloadedScatter, kShiftByPressed * median_of(sorted_))};
+  for (double& value : sorted_) value = value > middle ? value / middle : middle / value;
+  return Middle{std::log(middle), std::hypot(kUnloadedScatter, kShiftByPressed * std::log(median_of(sorted_)))};
 }
 
 /// The x that is most likely after both, by Gauss and Newton in ln x.
@@ -206,7 +217,9 @@ void MissingTaxels::improve(std::size_t taxel, double taken, const Middle& lacki
     const double misfit = std::log((load_siemens + x) / (load_siemens + taken)) + lacking.value;
     const double slope = x / (load_siemens + x);
     information = weight_of_prior + weight_of_line * slope * slope;
-    log_change -= (weight_of_prior * log_change + weight_of_line * misfit * slope) / information;
+    const double change = (weight_of_prior * log_change + weight_of_line * misfit * slope) / information;
+    log_change -= change;
+    if (std::abs(change) < kLeastChange) break;
   }
   siemens[taxel] = prior * std::exp(log_change);
   doubt_[taxel] = 1.0 / std::sqrt(information);

@@ -43,6 +43,9 @@ class MissingTaxels {
   /// Where it is known, what a taxel was a moment ago.
   [[nodiscard]] std::optional<double> held(std::size_t taxel) const noexcept;
 
+  /// The same, or what it was estimated to be in the last frame.
+  [[nodiscard]] std::optional<double> start(std::size_t taxel) const noexcept;
+
   /// Relative standard deviation of a missing taxel.
   [[nodiscard]] double doubt(std::size_t taxel) const noexcept { return doubt_[taxel]; }
 
@@ -75,6 +78,7 @@ class MissingTaxels {
   bool any_ = false;                      // of them
   std::vector<double> last_siemens_;      // [taxels]
   std::vector<std::uint8_t> frames_ago_;  // of it, at most a few [taxels]
+  std::vector<double> estimated_;         // in the last frame; 0: it was not [taxels]
   Nanos last_time_{};
   std::vector<double> doubt_;   // [taxels]
   std::vector<double> taken_;   // [taxels]

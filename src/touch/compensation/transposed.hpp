@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -23,6 +24,7 @@ class Transposed final : public CrosstalkInversion {
         values_(rows * cols),
         film_(cols, rows) {
     shorted_.reserve(rows * cols);
+    broken_.reserve(3 * (rows + cols));
   }
 
   [[nodiscard]] InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept override {
@@ -36,6 +38,18 @@ class Transposed final : public CrosstalkInversion {
     shorted_.clear();
     for (const std::size_t taxel : taxels) shorted_.push_back(taxel % cols_ * rows_ + taxel / cols_);
     return inversion_->set_shorted(shorted_);
+  }
+  [[nodiscard]] bool set_broken(std::span<const LineFault> faults) noexcept override {
+    broken_.clear();
+    for (LineFault fault : faults) {
+      const auto exchanged = exchange(fault.kind);
+      const LineFaultScope scope = traits_of(fault.kind).scope;
+      if (scope == LineFaultScope::taxel || scope == LineFaultScope::driver) continue;
+      if (!exchanged || broken_.size() == broken_.capacity()) return inversion_->set_broken({}) && false;
+      fault.kind = *exchanged;
+      broken_.push_back(fault);
+    }
+    return inversion_->set_broken(broken_);
   }
   void hold_film(const FilmConductances& film) noexcept override {
     film_.between_rows = film.between_cols;
@@ -51,6 +65,17 @@ class Transposed final : public CrosstalkInversion {
   [[nodiscard]] double siemens_per_ratio() const noexcept override { return inversion_->siemens_per_ratio(); }
 
  private:
+  /// The same fault with rows and columns exchanged; none where a line is at the supply.
+  static std::optional<LineFaultKind> exchange(LineFaultKind kind) noexcept {
+    switch (kind) {
+      case LineFaultKind::silent_row: return LineFaultKind::silent_column;
+      case LineFaultKind::silent_column: return LineFaultKind::silent_row;
+      case LineFaultKind::shorted_rows: return LineFaultKind::shorted_columns;
+      case LineFaultKind::shorted_columns: return LineFaultKind::shorted_rows;
+      default: return std::nullopt;
+    }
+  }
+
   static void transpose(std::span<const double> from, std::size_t rows, std::size_t cols,
                         std::span<double> to) noexcept {
     for (std::size_t row = 0; row < rows; ++row) {
@@ -65,6 +90,7 @@ class Transposed final : public CrosstalkInversion {
   std::vector<double> values_;  // [cols, rows]
   FilmConductances film_;       // [cols, rows]
   std::vector<std::size_t> shorted_;
+  std::vector<LineFault> broken_;
 };
 
 }  // namespace dermis::touch::compensation

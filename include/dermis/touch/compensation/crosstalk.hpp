@@ -71,6 +71,11 @@ class CrosstalkInversion {
   /// at the conductance of a short, or none of their readings used. Allocates nothing.
   [[nodiscard]] virtual bool set_shorted(std::span<const std::size_t> taxels) noexcept { return taxels.empty(); }
 
+  /// From the next frame on, these lines are broken: silent, at the supply, or joined with the next one. The readings of
+  /// silent lines and of columns at the supply are not used, those of joined lines must agree. A second call replaces
+  /// the first; other kinds of fault do not matter. false: this circuit is not solved so. Allocates nothing.
+  [[nodiscard]] virtual bool set_broken(std::span<const LineFault> faults) noexcept { return faults.empty(); }
+
   /// The array has this film until further notice: its loads are known. Without a call it has the film that its taxels'
   /// conductances tell by InversionOptions::references, or an unloaded one. Arrays without a film do not listen.
   virtual void hold_film(const FilmConductances& /*film*/) noexcept {}
