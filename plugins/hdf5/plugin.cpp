@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "bytes/recordings/hdf5_plugin.hpp"
 #include "dataset_frames.hpp"
+#include "dermis/bytes/files/process_outputs.hpp"
 #include "frames.hpp"
 #include "hdf5.hpp"
 #include "matlab.hpp"
@@ -49,7 +50,8 @@ constexpr Hdf5Plugin kPlugin{
 }  // namespace
 }  // namespace dermis::bytes::recordings
 
-extern "C" __attribute__((visibility("default"))) void dermis_hdf5(
-    const dermis::bytes::recordings::Hdf5Plugin*& found) {
+extern "C" __attribute__((visibility("default"))) void dermis_hdf5(const dermis::bytes::recordings::Hdf5Plugin*& found,
+                                                                   dermis::bytes::files::ProcessOutputs& outputs) {
+  dermis::bytes::files::share_process_outputs(outputs);
   found = &dermis::bytes::recordings::kPlugin;
 }

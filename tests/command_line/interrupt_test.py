@@ -70,7 +70,7 @@ class Interrupted(SmallArray):
 
     def test_while_it_calculates(self):
         def has_begun_to_write(process):
-            while process.poll() is None and not any(self.work.rglob("*.tmp")):
+            while process.poll() is None and not any(file.stat().st_size for file in self.work.rglob("*.dermis.tmp")):
                 pass
 
         (self.work / "out").mkdir()

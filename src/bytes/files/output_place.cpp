@@ -8,12 +8,11 @@
 
 #include <cerrno>
 #include <filesystem>
-#include <map>
 #include <mutex>
-#include <set>
 #include <system_error>
 #include <utility>
 
+#include "bytes/files/known_outputs.hpp"
 #include "dermis/bytes/files/text.hpp"
 
 namespace dermis::bytes::files {
@@ -34,35 +33,38 @@ std::string resolve(const std::string& path) {
   return error ? path : real.string();
 }
 
-/// Names that this process has taken.
-struct Claims {
-  std::mutex mutex;
-  std::map<std::string, UnfinishedFile> unopened;  ///< By their targets.
-  std::set<std::string> unread;                    ///< Targets whose earlier file must not be read.
-};
-
 Claims& claims() {
-  static Claims taken;
-  return taken;
+  return process_outputs().claims;
 }
 
-Result<UnfinishedFile> begin(const std::string& target) {
+std::string key_of(const std::string& path) {
+  return std::filesystem::absolute(path).lexically_normal().string();
+}
+
+Result<BegunOutput> begin(const std::string& path) {
+  std::string target = resolve(path);
+  Result<UnfinishedFile> file = UnfinishedFile::begin(target);
+  if (!file) return file.error();
+  return BegunOutput{std::move(target), *std::move(file)};
+}
+
+Result<BegunOutput> take_claim_or_begin(const std::string& path) {
   const std::lock_guard lock(claims().mutex);
-  const auto claimed = claims().unopened.extract(target);
-  return claimed ? std::move(claimed.mapped()) : UnfinishedFile::begin(target);
+  auto claimed = claims().unopened.extract(key_of(path));
+  if (claimed) return std::move(claimed.mapped());
+  return begin(path);
 }
 
 }  // namespace
 
 Status claim_output(const std::string& path, EarlierFile earlier) {
   if (is_written_directly(path)) return Done{};
-  const std::string target = resolve(path);
   const std::lock_guard lock(claims().mutex);
-  if (claims().unopened.contains(target)) return Done{};
-  Result<UnfinishedFile> begun = UnfinishedFile::begin(target);
+  if (claims().unopened.contains(key_of(path))) return Done{};
+  Result<BegunOutput> begun = begin(path);
   if (!begun) return begun.error();
-  claims().unopened.emplace(target, *std::move(begun));
-  if (earlier == EarlierFile::stays_unread) claims().unread.insert(target);
+  if (earlier == EarlierFile::stays_unread) claims().unread.insert(begun->target);
+  claims().unopened.emplace(key_of(path), *std::move(begun));
   return Done{};
 }
 
@@ -87,12 +89,11 @@ Result<OutputPlace> open_output(const std::string& path) {
     if (descriptor < 0) return cannot_write(path, errno);
     return OutputPlace{path, UnfinishedFile(), descriptor};
   }
-  const std::string target = resolve(path);
-  Result<UnfinishedFile> begun = begin(target);
+  Result<BegunOutput> begun = take_claim_or_begin(path);
   if (!begun) return begun.error();
-  const int descriptor = begun->duplicate_descriptor();
+  const int descriptor = begun->file.duplicate_descriptor();
   if (descriptor < 0) return cannot_write(path, errno);
-  return OutputPlace{target, *std::move(begun), descriptor};
+  return OutputPlace{std::move(begun->target), std::move(begun->file), descriptor};
 }
 
 int write_all(int descriptor, std::span<const std::byte> bytes, std::optional<std::uint64_t> offset) {

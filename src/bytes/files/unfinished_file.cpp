@@ -13,11 +13,11 @@
 #include <cstring>
 #include <filesystem>
 #include <mutex>
-#include <set>
 #include <system_error>
 #include <thread>
 #include <vector>
 
+#include "bytes/files/known_outputs.hpp"
 #include "dermis/bytes/files/kept_copy.hpp"
 #include "dermis/bytes/files/text.hpp"
 
@@ -32,17 +32,8 @@ constexpr const char* kEnding = ".dermis.tmp";
 constexpr int kTries = 20;
 constexpr std::chrono::milliseconds kBetweenTries{5};
 
-/// Those of the process.
-struct UnfinishedFiles {
-  std::mutex mutex;
-  std::set<std::string> paths;
-  std::set<std::string> tidied;  ///< The folders in which nothing is left over.
-};
-
-/// Never destroyed: files of other static objects may end later.
 UnfinishedFiles& unfinished_files() {
-  static auto* const files = new UnfinishedFiles;
-  return *files;
+  return process_outputs().unfinished;
 }
 
 void remove_whole(const std::string& path) {
@@ -174,18 +165,20 @@ Result<UnfinishedFile> UnfinishedFile::begin(const std::string& target, Kind kin
   UnfinishedFiles& files = unfinished_files();
   const std::lock_guard guard(files.mutex);
   tidy_folder_of(target, files);
-  if (is_locked(target)) return is_being_written(target);
   const std::string path = target + kEnding;
   for (int tries = 0; tries < kTries; ++tries) {
     if (tries > 0) std::this_thread::sleep_for(kBetweenTries);
     const int descriptor = kind == Kind::file ? make_file(path) : make_folder(path);
-    if (descriptor >= 0 && lock(descriptor, path)) {
+    if (descriptor < 0 && errno != EEXIST) return cannot_write(target, errno);
+    const bool is_ours = descriptor >= 0 && lock(descriptor, path);
+    if (is_ours && !is_locked(target)) {
       files.paths.insert(path);
       return UnfinishedFile(target, descriptor);
     }
-    if (descriptor < 0 && errno != EEXIST) return cannot_write(target, errno);
+    if (is_ours) remove_whole(path);
     if (descriptor < 0) remove_left_over(path);
     if (descriptor >= 0) ::close(descriptor);
+    if (is_ours) break;
   }
   return is_being_written(target);
 }

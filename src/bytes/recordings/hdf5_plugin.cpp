@@ -11,7 +11,7 @@ Result<const Hdf5Plugin*> load_hdf5() {
       {"HDF5", "libdermis_hdf5.so", "(Debian: dermis), and its library (Debian: libhdf5-103-1)"}, kFindHdf5);
   if (!function) return function.error();
   const Hdf5Plugin* found = nullptr;
-  reinterpret_cast<FindHdf5>(*function)(found);
+  reinterpret_cast<FindHdf5>(*function)(found, files::process_outputs());
   return found;
 }
 

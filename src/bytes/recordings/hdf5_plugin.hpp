@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "dermis/bytes/files/process_outputs.hpp"
 #include "dermis/bytes/formats/matlab.hpp"
 #include "dermis/bytes/recordings/frame_notes.hpp"
 #include "dermis/bytes/recordings/hdf5_tables.hpp"
@@ -47,8 +48,8 @@ struct Hdf5Plugin {
   Result<std::unique_ptr<Hdf5Tables>> (*create_tables)(const std::string& path);
 };
 
-/// The function of the plugin that finds them, and its name.
-using FindHdf5 = void (*)(const Hdf5Plugin*& found);
+/// The function of the plugin that finds them, and its name. The plugin has the outputs of the process then.
+using FindHdf5 = void (*)(const Hdf5Plugin*& found, files::ProcessOutputs& outputs);
 inline constexpr const char* kFindHdf5 = "dermis_hdf5";
 
 /// Fails where the plugin or the library of HDF5 is not there.

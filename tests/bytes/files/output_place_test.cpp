@@ -54,6 +54,24 @@ TEST(OutputPlace, a_name_that_is_claimed_is_opened_once_by_whoever_claimed_it) {
   EXPECT_FALSE(open_output(path));
 }
 
+TEST(OutputPlace, a_claim_outlives_a_file_or_a_link_that_appears_there) {
+  const support::TemporaryFolder folder;
+  support::write_bytes(folder.file("elsewhere"), "another's");
+  for (const bool is_link : {false, true}) {
+    const std::string path = folder.file(is_link ? "linked" : "rec");
+    ASSERT_TRUE(claim_output(path, EarlierFile::stays_unread));
+    if (is_link) std::filesystem::create_symlink(folder.file("elsewhere"), path);
+    if (!is_link) support::write_bytes(path, "another's");
+    Result<OutputPlace> place = open_output(path);
+    ASSERT_TRUE(place) << place.error().message;
+    ::close(place->descriptor);
+    const Result<Placed> placed = place->unfinished.take_place();
+    ASSERT_TRUE(placed);
+    EXPECT_FALSE(placed->told);
+    EXPECT_EQ(support::read_bytes(path), "another's");
+  }
+}
+
 TEST(OutputPlace, a_claim_that_is_released_leaves_nothing) {
   const support::TemporaryFolder folder;
   ASSERT_TRUE(claim_output(folder.file("rec"), EarlierFile::stays_unread));
