@@ -158,9 +158,17 @@ void PacketDecoder::keep_misfit(std::size_t fields, const std::string& text) {
   misfit_.text = "byte " + std::to_string(window_.position()) + ": " + text;
 }
 
+std::string PacketDecoder::without_packet() const {
+  const std::size_t waiting = window_.bytes().size();
+  if (waiting == 0) return "no packet is in them";
+  return "the packet at byte " + std::to_string(window_.position()) + " does not end within " +
+         std::to_string(waiting) + " bytes";
+}
+
 std::string PacketDecoder::advice() const {
   if (counts().frames > 0) return {};
   const std::string incomplete = assembly_.advice();
+  if (misfit_.text.empty() && incomplete.empty()) return without_packet();
   return misfit_.text + (misfit_.text.empty() || incomplete.empty() ? "" : "; ") + incomplete;
 }
 

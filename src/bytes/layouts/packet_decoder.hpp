@@ -52,6 +52,7 @@ class PacketDecoder final : public Decoder {
   [[nodiscard]] bool is_followed_by_packet(std::span<const std::uint8_t> rest) const noexcept;
   [[nodiscard]] bool is_further(std::size_t fields) const noexcept;
   void keep_misfit(std::size_t fields, const std::string& text);
+  [[nodiscard]] std::string without_packet() const;
   Found skip(std::size_t bytes);
   Found take(const PacketMatch& match, std::span<const std::uint8_t> packet, std::size_t bytes, RawFrame& frame);
 

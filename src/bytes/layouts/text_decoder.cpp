@@ -81,6 +81,7 @@ bool TextDecoder::read_lines(RawFrame& frame, std::size_t added) {
 bool TextDecoder::read(std::span<const std::uint8_t> line, std::size_t bytes, RawFrame& frame) {
   const std::span<const std::uint8_t> text = without_end(line);
   const bool has_end = line.back() == end_byte_;
+  has_whole_line_ = has_whole_line_ || has_end;
   if (has_end && ends_frame(text)) {
     assembly_.end_frame();
   } else if (has_end && !is_comment(text)) {
@@ -138,6 +139,10 @@ bool TextDecoder::ends_frame(std::span<const std::uint8_t> line) const noexcept 
 std::string TextDecoder::advice() const {
   if (counts().frames > 0) return {};
   std::string text = assembly_.advice();
+  if (text.empty() && misfits_.empty()) {
+    return has_whole_line_ ? "no line holds readings"
+                           : "no line ends in them: give layout.line_end, the byte that ends one";
+  }
   for (auto misfit = misfits_.rbegin(); misfit != misfits_.rend(); ++misfit)
     text.insert(0, misfit->text + (text.empty() ? "" : "; "));
   return text;
