@@ -69,7 +69,7 @@ bool TextDecoder::read_lines(RawFrame& frame, std::size_t added) {
   for (;;) {
     const std::span<const std::uint8_t> line = lines_.next();
     if (line.empty()) return false;
-    ++line_number_;
+    if (line.back() == end_byte_) ++line_number_;
     const bool is_frame = read(line, line.size() - added, frame);
     frame_end_ = is_frame ? lines_.position() - added : frame_end_;
     lines_.forget();
@@ -81,7 +81,6 @@ bool TextDecoder::read_lines(RawFrame& frame, std::size_t added) {
 bool TextDecoder::read(std::span<const std::uint8_t> line, std::size_t bytes, RawFrame& frame) {
   const std::span<const std::uint8_t> text = without_end(line);
   const bool has_end = line.back() == end_byte_;
-  has_whole_line_ = has_whole_line_ || has_end;
   if (has_end && ends_frame(text)) {
     assembly_.end_frame();
   } else if (has_end && !is_comment(text)) {
@@ -140,8 +139,8 @@ std::string TextDecoder::advice() const {
   if (counts().frames > 0) return {};
   std::string text = assembly_.advice();
   if (text.empty() && misfits_.empty()) {
-    return has_whole_line_ ? "no line holds readings"
-                           : "no line ends in them: give layout.line_end, the byte that ends one";
+    return line_number_ > 0 ? "no line holds readings"
+                            : "no line ends in them: give layout.line_end, the byte that ends one";
   }
   for (auto misfit = misfits_.rbegin(); misfit != misfits_.rend(); ++misfit)
     text.insert(0, misfit->text + (text.empty() ? "" : "; "));
