@@ -196,7 +196,7 @@ while True:
         os.write(ends[1 - ends.index(end)], os.read(end, 4096))
 """
 
-# A device on a serial line: register a holds a + the number of the round. Each tenth answer comes after the question was given up.
+# A device on a serial line: register a holds a + the number of the round. Each tenth answer comes too late.
 LATE_SLAVE = """
 import os, sys, time
 line = int(sys.argv[1])
