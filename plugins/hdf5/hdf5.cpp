@@ -287,6 +287,7 @@ Hdf5Id Hdf5Output::create_dataset(const char* name, hid_t file_type, const Hdf5S
     H5Pset_shuffle(plan.get());
     H5Pset_deflate(plan.get(), kDeflateLevel);
   }
+  H5Pset_fletcher32(plan.get());  // HDF5 then refuses a chunk with a flipped bit
   H5Pset_create_intermediate_group(way.get(), 1);
   return {H5Dcreate2(file_.get(), name, file_type, space.get(), way.get(), plan.get(), H5P_DEFAULT), H5Dclose};
 }

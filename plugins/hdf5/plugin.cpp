@@ -53,5 +53,6 @@ constexpr Hdf5Plugin kPlugin{
 extern "C" __attribute__((visibility("default"))) void dermis_hdf5(const dermis::bytes::recordings::Hdf5Plugin*& found,
                                                                    dermis::bytes::files::ProcessOutputs& outputs) {
   dermis::bytes::files::share_process_outputs(outputs);
+  H5dont_atexit();  // all is closed by then; of a damaged file it would print what it could not close
   found = &dermis::bytes::recordings::kPlugin;
 }

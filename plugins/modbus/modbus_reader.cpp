@@ -17,7 +17,7 @@ namespace dermis::live::buses {
 namespace {
 
 constexpr std::uint32_t kAnswerMicroseconds = 500'000;
-/// Of a line, before the next question: after an answer that did not come, and after one that was damaged.
+/// The silence of a line before the next question: after no answer, and after a damaged one.
 constexpr int kSilenceMilliseconds = 500;
 constexpr int kShortSilenceMilliseconds = 20;
 constexpr int kMostPieces = 100;

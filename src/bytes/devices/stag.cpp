@@ -6,6 +6,7 @@
 // that streams sends a line for each row: index + 11, row + 11, two bytes for each reading, '\n'.
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "bytes/devices/protocols.hpp"
 #include "bytes/devices/wire_values.hpp"
@@ -49,11 +50,16 @@ class StagDecoder final : public WindowDecoder {
     if (ended) index_.reset();
     const std::size_t longest = std::max(reply_size(), row_line_size());
     const std::size_t reach = std::min(longest, bytes.size());
-    const void* const end = std::memchr(bytes.data(), '\n', reach);
-    if (end == nullptr) return reach < longest ? Verdict{} : Verdict{Verdict::Kind::noise, reach};
+    const std::size_t searched = std::exchange(searched_, 0);
+    const void* const end = std::memchr(bytes.data() + searched, '\n', reach - searched);
+    if (end == nullptr) {
+      if (reach == longest) return {Verdict::Kind::noise, reach};
+      searched_ = reach;
+      return {};
+    }
     const auto size = static_cast<std::size_t>(static_cast<const std::uint8_t*>(end) - bytes.data()) + 1;
     if (size == reply_size()) return judge_reply(bytes.first(size), frame);
-    if (size == row_line_size()) return judge_rows(bytes, frame);
+    if (size == row_line_size()) return judge_rows(bytes, ended, frame);
     return broken(size);
   }
 
@@ -72,8 +78,12 @@ class StagDecoder final : public WindowDecoder {
   }
 
   /// The first line has the size of a row's. Up to the last row the lines have to follow each other.
-  Verdict judge_rows(std::span<const std::uint8_t> bytes, RawFrame& frame) {
+  Verdict judge_rows(std::span<const std::uint8_t> bytes, bool ended, RawFrame& frame) {
     const std::size_t line_size = row_line_size();
+    if (bytes.size() < shape_.rows * line_size && !ended && !is_idle()) {
+      searched_ = line_size - 1;
+      return {};
+    }
     frame.counts.resize(shape_.taxel_count());
     for (std::size_t row = 0; row < shape_.rows; ++row) {
       const std::size_t begin = row * line_size;
@@ -103,6 +113,7 @@ class StagDecoder final : public WindowDecoder {
   FrameShape shape_;
   int bit_shift_;
   bool streams_ = false;
+  std::size_t searched_ = 0;           // bytes of a line that are known to hold no end
   std::optional<std::uint8_t> index_;  // as on the wire, of the last frame
   std::uint64_t sequence_ = 0;
 };

@@ -42,7 +42,8 @@ class TactileGloveDecoder final : public WindowDecoder {
   Verdict judge(std::span<const std::uint8_t> bytes, bool ended, RawFrame& frame) override {
     if (bytes.front() != kFirstIndex) return before_next_frame(bytes);
     if (!shape_ && !learn(bytes, ended)) return {};
-    return shape_ ? read(bytes, frame) : Verdict{Verdict::Kind::noise, 1};
+    next_look_ = 0;
+    return shape_ ? read(bytes, ended, frame) : Verdict{Verdict::Kind::noise, 1};
   }
 
   static Verdict before_next_frame(std::span<const std::uint8_t> bytes) {
@@ -53,6 +54,9 @@ class TactileGloveDecoder final : public WindowDecoder {
   /// Two runs of the same length, one behind the other, and the begin of a third. False where more bytes are needed;
   /// else `shape_` is known, or the bytes do not begin with a frame.
   bool learn(std::span<const std::uint8_t> bytes, bool ended) {
+    if (bytes.size() < next_look_ && !ended) return false;
+    next_look_ =
+        bytes.size() + bytes.size() / 4 + kTaxelSize;  // else each byte would be looked at with each that comes
     const std::optional<std::size_t> run = run_length(bytes);
     if (!run) return ended;
     if (*run == 0) return true;
@@ -66,8 +70,9 @@ class TactileGloveDecoder final : public WindowDecoder {
     return true;
   }
 
-  Verdict read(std::span<const std::uint8_t> bytes, RawFrame& frame) {
+  Verdict read(std::span<const std::uint8_t> bytes, bool ended, RawFrame& frame) {
     const std::size_t taxels = shape_->taxel_count();
+    if (bytes.size() < taxels * kTaxelSize && !ended) return {};
     frame.counts.resize(taxels);
     for (std::size_t index = 0; index < taxels; ++index) {
       if (bytes.size() < (index + 1) * kTaxelSize) return {};
@@ -84,6 +89,7 @@ class TactileGloveDecoder final : public WindowDecoder {
   }
 
   std::optional<FrameShape> shape_;
+  std::size_t next_look_ = 0;  ///< Bytes that must be there before learn() looks at them again.
 };
 
 class TactileGloveEncoder final : public Encoder {

@@ -45,6 +45,7 @@ std::optional<std::size_t> find_taxels(std::span<const std::uint8_t> bytes, cons
   const std::size_t size = format.size();
   for (std::size_t at = 0; at < kReach && at + 2 * size <= bytes.size(); ++at) {
     const std::uint8_t* const number = &bytes[at + format.number_offset()];
+    if (static_cast<std::uint8_t>(number[size] - number[0]) != 1) continue;  // of most, which one look tells
     if (read_little<std::uint32_t>(number + size) - read_little<std::uint32_t>(number) != 1) continue;
     if (const std::optional<std::size_t> taxels = learn_taxels(bytes.subspan(at), format)) return taxels;
   }

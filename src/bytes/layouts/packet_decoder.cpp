@@ -35,8 +35,8 @@ PacketDecoder::PacketDecoder(std::shared_ptr<const Layout> layout, std::size_t a
     : layout_(std::move(layout)),
       form_(std::get<PacketLayout>(layout_->form)),
       array_(array),
-      longest_packet_(longest_packet(*layout_)),
       assembly_(*layout_, array, moduli_of(form_)) {
+  escaped_.longest = longest_packet(*layout_);
   for (const PacketLayout::Packet& packet : form_.packets) {
     matches_.emplace_back(*layout_, packet, array);
     if (packet.front().role == Role::literal) begins_mark_[packet.front().literal.front()] = true;
@@ -109,7 +109,7 @@ bool PacketDecoder::is_followed_by_packet(std::span<const std::uint8_t> rest) co
 PacketDecoder::Found PacketDecoder::skip(std::size_t bytes) {
   assembly_.skip(bytes);
   window_.drop(bytes);
-  searched_ = 0;
+  escaped_.searched = 0;
   return Found::packet;
 }
 
@@ -117,7 +117,7 @@ PacketDecoder::Found PacketDecoder::take(const PacketMatch& match, std::span<con
                                          std::size_t bytes, RawFrame& frame) {
   match.read_numbers(packet, numbers_);
   window_.drop(bytes);
-  searched_ = 0;
+  escaped_.searched = 0;
   const bool is_frame = assembly_.add(piece_, numbers_, bytes, frame);
   if (is_frame) frame_end_ = window_.position();
   is_sending_ = is_sending_ || is_frame;
@@ -127,14 +127,15 @@ PacketDecoder::Found PacketDecoder::take(const PacketMatch& match, std::span<con
 PacketDecoder::Found PacketDecoder::next_escaped(RawFrame& frame) {
   const std::span<const std::uint8_t> bytes = window_.bytes();
   if (bytes.empty()) return Found::nothing;
-  const std::size_t reach = std::min(bytes.size(), longest_packet_);
-  const void* const end = std::memchr(bytes.data() + searched_, delimiter_of(form_), reach - searched_);
-  if (end == nullptr) searched_ = reach;
-  if (end == nullptr) return reach == longest_packet_ ? skip(reach) : Found::nothing;
+  const std::size_t reach = std::min(bytes.size(), escaped_.longest);
+  const void* const end = std::memchr(bytes.data() + escaped_.searched, delimiter_of(form_), reach - escaped_.searched);
+  if (end == nullptr) escaped_.searched = reach;
+  if (end == nullptr) return reach == escaped_.longest ? skip(reach) : Found::nothing;
   const auto size = static_cast<std::size_t>(static_cast<const std::uint8_t*>(end) - bytes.data());
   if (size == 0) return skip(1);
-  const PacketMatch* const match = undo_escapes(form_, bytes.first(size), plain_) ? match_of(plain_) : nullptr;
-  if (match != nullptr) return take(*match, plain_, size + 1, frame);
+  const PacketMatch* const match =
+      undo_escapes(form_, bytes.first(size), escaped_.plain) ? match_of(escaped_.plain) : nullptr;
+  if (match != nullptr) return take(*match, escaped_.plain, size + 1, frame);
   if (counts().frames > 0) assembly_.damage(0);
   return skip(size + 1);
 }
@@ -158,9 +159,17 @@ void PacketDecoder::keep_misfit(std::size_t fields, const std::string& text) {
   misfit_.text = "byte " + std::to_string(window_.position()) + ": " + text;
 }
 
+std::string PacketDecoder::without_packet() const {
+  const std::size_t waiting = window_.bytes().size();
+  if (waiting == 0) return "no packet is in them";
+  return "the packet at byte " + std::to_string(window_.position()) + " does not end within " +
+         std::to_string(waiting) + " bytes";
+}
+
 std::string PacketDecoder::advice() const {
   if (counts().frames > 0) return {};
   const std::string incomplete = assembly_.advice();
+  if (misfit_.text.empty() && incomplete.empty()) return without_packet();
   return misfit_.text + (misfit_.text.empty() || incomplete.empty() ? "" : "; ") + incomplete;
 }
 

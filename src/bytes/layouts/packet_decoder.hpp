@@ -52,21 +52,24 @@ class PacketDecoder final : public Decoder {
   [[nodiscard]] bool is_followed_by_packet(std::span<const std::uint8_t> rest) const noexcept;
   [[nodiscard]] bool is_further(std::size_t fields) const noexcept;
   void keep_misfit(std::size_t fields, const std::string& text);
+  [[nodiscard]] std::string without_packet() const;
   Found skip(std::size_t bytes);
   Found take(const PacketMatch& match, std::span<const std::uint8_t> packet, std::size_t bytes, RawFrame& frame);
 
   std::shared_ptr<const Layout> layout_;
   const PacketLayout& form_;
   std::size_t array_;
-  std::size_t longest_packet_;           ///< That is escaped.
   std::array<bool, 256> begins_mark_{};  ///< [byte]
-  std::size_t searched_ = 0;             ///< Bytes of the window that are known to hold no delimiter.
   ByteWindow window_;
   std::vector<PacketMatch> matches_;  ///< [packets of the layout]
   FrameAssembly assembly_;
   Piece piece_;
-  std::vector<float> numbers_;       ///< Of the last packet.
-  std::vector<std::uint8_t> plain_;  ///< A packet whose escapes are undone.
+  std::vector<float> numbers_;  ///< Of the last packet.
+  struct {
+    std::size_t longest = 0;            ///< Bytes of a packet.
+    std::size_t searched = 0;           ///< Bytes of the window that are known to hold no delimiter.
+    std::vector<std::uint8_t> plain{};  ///< A packet whose escapes are undone.
+  } escaped_;
   std::uint64_t frame_end_ = 0;
   struct {
     std::string text{};

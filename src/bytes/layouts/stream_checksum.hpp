@@ -19,7 +19,7 @@ class StreamChecksum {
   /// `bits`: 8, 16, 24 or 32.
   StreamChecksum(const Checksum& checksum, unsigned bits) : checksum_(checksum, bits) {}
 
-  /// Of `bytes`, which stand at `position` in the stream. Positions never fall.
+  /// The checksum of `bytes`, which stand at `position` in the stream. Positions never fall.
   [[nodiscard]] std::uint32_t operator()(std::span<const std::uint8_t> bytes, std::uint64_t position);
 
  private:
@@ -32,7 +32,7 @@ class StreamChecksum {
 
   ChecksumOf checksum_;
   std::uint64_t seen_end_ = 0;            ///< The end of the parts so far.
-  std::uint64_t begin_ = 0;               ///< Of the bytes whose registers are known.
+  std::uint64_t begin_ = 0;               ///< The first byte whose register is known.
   std::vector<std::uint32_t> registers_;  ///< Before each byte from there on, and behind the last.
   std::vector<ByteTables> powers_;        ///< A register after 1, 2, 4, 8 ... bytes of 0.
 };

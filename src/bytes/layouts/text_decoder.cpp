@@ -69,7 +69,7 @@ bool TextDecoder::read_lines(RawFrame& frame, std::size_t added) {
   for (;;) {
     const std::span<const std::uint8_t> line = lines_.next();
     if (line.empty()) return false;
-    ++line_number_;
+    if (line.back() == end_byte_) ++line_number_;
     const bool is_frame = read(line, line.size() - added, frame);
     frame_end_ = is_frame ? lines_.position() - added : frame_end_;
     lines_.forget();
@@ -138,6 +138,10 @@ bool TextDecoder::ends_frame(std::span<const std::uint8_t> line) const noexcept 
 std::string TextDecoder::advice() const {
   if (counts().frames > 0) return {};
   std::string text = assembly_.advice();
+  if (text.empty() && misfits_.empty()) {
+    return line_number_ > 0 ? "no line holds readings"
+                            : "no line ends in them: give layout.line_end, the byte that ends one";
+  }
   for (auto misfit = misfits_.rbegin(); misfit != misfits_.rend(); ++misfit)
     text.insert(0, misfit->text + (text.empty() ? "" : "; "));
   return text;

@@ -59,7 +59,7 @@ class TextDecoder final : public Decoder {
   LineMatch match_;
   FrameAssembly assembly_;
   Piece piece_;
-  std::uint64_t line_number_ = 0;
+  std::uint64_t line_number_ = 0;  ///< Of lines that end.
   std::uint64_t frame_end_ = 0;
   std::vector<Misfit> misfits_;  ///< Of lines before the first frame.
   bool has_ended_ = false;

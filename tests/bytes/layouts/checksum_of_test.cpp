@@ -4,9 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
+#include <span>
 #include <vector>
 
+#include "bytes/layouts/stream_checksum.hpp"
 #include "dermis/touch/frames/random.hpp"
 
 namespace dermis::bytes::layouts {
@@ -41,6 +45,27 @@ TEST(ChecksumOf, is_the_remainder_of_any_bytes) {
         std::vector<std::uint8_t> bytes(size);
         for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random.bits());
         EXPECT_EQ(computed(bytes), crc_of(checksum, bits, bytes)) << bits << " bits of " << size << " bytes";
+      }
+    }
+  }
+}
+
+TEST(StreamChecksum, of_any_part_is_that_of_its_bytes) {
+  Random random(2);
+  std::vector<std::uint8_t> stream(3000);
+  for (std::uint8_t& byte : stream) byte = static_cast<std::uint8_t>(random.bits());
+  for (const auto kind : {Checksum::Kind::sum, Checksum::Kind::exclusive_or, Checksum::Kind::crc}) {
+    for (const unsigned bits : {8U, 16U, 24U, 32U}) {
+      for (const bool is_reflected : {false, true}) {
+        const auto any = [&] { return static_cast<std::uint32_t>(random.bits()) >> (32U - bits); };
+        const Checksum checksum = {kind, random.below(3), any(), any(), any(), is_reflected, random.below(2) == 1};
+        const ChecksumOf expected(checksum, bits);
+        StreamChecksum of_stream(checksum, bits);
+        for (std::size_t at = 0; at < stream.size(); at += random.below(random.below(4) == 0 ? 600 : 3)) {
+          const std::size_t size = random.below(std::min<std::uint64_t>(stream.size() - at, 500)) + 1;
+          const std::span<const std::uint8_t> part = std::span(stream).subspan(at, size);
+          ASSERT_EQ(of_stream(part, at), expected(part)) << size << " bytes from " << at << " on, " << bits << " bits";
+        }
       }
     }
   }

@@ -15,6 +15,8 @@
 #include <string_view>
 #include <vector>
 
+#include "dermis/bytes/layouts/checksum_of.hpp"
+
 namespace dermis::bytes::layouts {
 namespace {
 
@@ -460,6 +462,43 @@ TEST(PacketLayout, cites_the_byte_where_a_packet_came_furthest) {
   EXPECT_EQ(advice_of("packet = [\"AA 55\", \"values u8\"]\n", {9, 9, 0xAA, 0x55, 1, 2, 3, 0xAA, 0x55, 1, 2, 3}),
             "the mark AA 55 of byte 2 does not come again after 6 bytes");
   EXPECT_EQ(advice_of("packet = [\"values u16be\"]\n", {1, 2, 3}), "they are less than the 8 bytes of a frame");
+}
+
+TEST(Layout, says_what_bytes_without_a_line_or_packet_lack) {
+  const auto advice_of = [](const std::string& keys, const Bytes& bytes) {
+    const auto decoder = make_decoder(layout_of(kTwoByTwo + keys), 0, false);
+    RawFrame frame;
+    decoder->push(bytes);
+    EXPECT_FALSE(decoder->next(frame));
+    return decoder->advice();
+  };
+  const std::string packet = "packet = [\"AA\", \"values u8\", \"checksum sum8\"]\n";
+  EXPECT_EQ(advice_of(packet, {1, 2, 3}), "no packet is in them");
+  EXPECT_EQ(advice_of(packet, {1, 2, 0xAA, 3}), "the packet at byte 2 does not end within 2 bytes");
+  EXPECT_EQ(advice_of("line = \"{values}\"\n", bytes_of("1 2 3")),
+            "no line ends in them: give layout.line_end, the byte that ends one");
+  EXPECT_EQ(advice_of("line = \"{values}\"\n", bytes_of("\n\n")), "no line holds readings");
+}
+
+TEST(PacketLayout, a_packet_is_found_in_a_run_of_its_mark) {
+  for (const char* checksum : {"sum8", "xor8", "crc8", "crc16be", "crc32be"}) {
+    const auto layout = layout_of("[layout]\nrows = 8\ncols = 8\npacket = [\"AA\", \"values u8\", \"checksum " +
+                                  std::string(checksum) + "\"]\n");
+    const PacketField& field = std::get<PacketLayout>(layout->form).packets.front().back();
+    Bytes packet(65, 0xAA);
+    for (std::size_t k = 1; k < packet.size(); k += 2) packet[k] = static_cast<std::uint8_t>(k);
+    const std::uint32_t sum = ChecksumOf(field.checksum, field.type.bits)(packet);
+    for (unsigned shift = field.type.bits; shift > 0; shift -= 8)
+      packet.push_back(static_cast<std::uint8_t>(sum >> (shift - 8)));
+    Bytes bytes(1000, 0xAA);
+    for (const std::size_t run : {0U, 1U, 64U, 70U}) {
+      bytes.insert(bytes.end(), packet.begin(), packet.end());
+      bytes.insert(bytes.end(), run, 0xAA);
+    }
+    const auto decoder = make_decoder(layout, 0, false);
+    EXPECT_GE(frames_of(*decoder, bytes, 100).size(), 4U) << checksum;
+    EXPECT_EQ(decoder->counts().skipped_bytes + decoder->counts().frames * packet.size(), bytes.size()) << checksum;
+  }
 }
 
 TEST(TextLayout, several_arrays_in_a_line_or_in_turn_are_told_apart) {

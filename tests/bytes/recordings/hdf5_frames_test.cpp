@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "bytes/recordings/hdf5_plugin.hpp"
+#include "dermis/touch/frames/random.hpp"
 #include "support/full_disk.hpp"
 #include "support/mutations.hpp"
 #include "support/random_frames.hpp"
@@ -106,6 +107,28 @@ TEST(Hdf5Frames, keep_what_is_said_of_all_frames) {
   const auto reader = by_hdf5(&Hdf5Plugin::open_frames, folder.file("f.h5"), kAnyShape);
   ASSERT_TRUE(reader);
   EXPECT_EQ((*reader)->notes(), notes);
+}
+
+TEST(Hdf5Frames, with_a_flipped_bit_are_refused_or_the_same) {
+  const support::TemporaryFolder folder;
+  const std::vector<RawFrame> frames = support::random_frames(9, 300, 12, support::RandomCounts::whole);
+  ASSERT_TRUE(write_file(folder.file("f.h5"), {3, 4}, frames));
+  std::string bytes = support::read_bytes(folder.file("f.h5"));
+  Random random(10);
+  for (int k = 0; k < 500; ++k) {
+    const std::uint64_t bit = random.below(8 * bytes.size());
+    const auto flip = [&] { bytes[bit / 8] = static_cast<char>(bytes[bit / 8] ^ 1 << bit % 8); };
+    flip();
+    support::write_bytes(folder.file("flipped.h5"), bytes);
+    flip();
+    const Result<std::vector<RawFrame>> read = read_file(folder.file("flipped.h5"));
+    if (!read) continue;
+    ASSERT_EQ(read->size(), frames.size()) << "bit " << bit;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      ASSERT_EQ(read->at(i).counts, frames[i].counts) << "bit " << bit << ", frame " << i;
+      ASSERT_EQ(read->at(i).time, frames[i].time) << "bit " << bit << ", frame " << i;
+    }
+  }
 }
 
 TEST(Hdf5Frames, count_the_lost_frames) {

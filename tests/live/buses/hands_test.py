@@ -47,8 +47,10 @@ class Hands(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.work = Path(folder.name)
 
-    def start(self, *command):
-        started = subprocess.Popen(list(map(str, command)), env=ENVIRONMENT, stdout=subprocess.PIPE, text=True)
+    def start(self, *command, pass_fds=()):
+        started = subprocess.Popen(
+            list(map(str, command)), env=ENVIRONMENT, stdout=subprocess.PIPE, text=True, pass_fds=pass_fds
+        )
         self.addCleanup(started.stdout.close)
         self.addCleanup(started.wait)
         self.addCleanup(started.kill)
@@ -138,6 +140,20 @@ class Hands(unittest.TestCase):
         readings, _ = recorded(out)
         np.testing.assert_array_equal(readings, touch_sent(5, FIRST["thumb_middle"], 9, np.arange(50)))
 
+    def test_a_late_answer_on_a_serial_line_is_taken_for_none(self):
+        device, line = pty.openpty()
+        for end in (device, line):
+            tty.setraw(end)
+        table = self.work / "pad.toml"
+        table.write_text('[registers]\narray = [{name = "pad", address = 0, rows = 16, cols = 16}]\n')
+        slave = self.start(sys.executable, "-c", LATE_SLAVE, device, pass_fds=(device,))
+        address = f"modbus-rtu://{os.ttyname(line)}?map={table}&array=pad"
+        out, recorder = self.record("pad", address, "--frames", 30)
+        self.assertEqual(recorder.wait(120), 0)
+        slave.kill()
+        readings, _ = recorded(out)
+        np.testing.assert_array_equal(readings - readings[:, :1], np.broadcast_to(np.arange(256), (30, 256)))
+
     def test_both_hands_are_served_and_recorded(self):
         hands = [self.start(MODBUS_HAND, "tcp", side, 1) for side in (1, 2)]
         ports = [hand.stdout.readline().split()[1] for hand in hands]
@@ -178,6 +194,32 @@ ends = list(map(int, sys.argv[1:]))
 while True:
     for end in select.select(ends, [], [])[0]:
         os.write(ends[1 - ends.index(end)], os.read(end, 4096))
+"""
+
+# A device on a serial line: register a holds a + the number of the round. Each tenth answer comes too late.
+LATE_SLAVE = """
+import os, sys, time
+line = int(sys.argv[1])
+def checked(frame):
+    crc = 0xFFFF
+    for byte in frame:
+        crc ^= byte
+        for _ in range(8):
+            crc = crc >> 1 ^ (0xA001 if crc & 1 else 0)
+    return frame + bytes([crc & 0xFF, crc >> 8])
+question, asked, rounds = b'', 0, 0
+while True:
+    question += os.read(line, 8 - len(question))
+    if len(question) < 8:
+        continue
+    address, words = question[2] << 8 | question[3], question[4] << 8 | question[5]
+    rounds += address == 0
+    asked += 1
+    if asked % 10 == 0:
+        time.sleep(0.7)
+    values = b''.join((address + k + rounds).to_bytes(2, 'big') for k in range(words))
+    os.write(line, checked(question[:2] + bytes([2 * words]) + values))
+    question = b''
 """
 
 
