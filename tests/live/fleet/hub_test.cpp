@@ -153,6 +153,28 @@ TEST_F(Fleet, a_second_machine_of_a_name_is_refused_by_the_hub) {
             "take over");
 }
 
+TEST_F(Fleet, a_name_that_the_hub_gave_to_another_is_told_and_ends_no_robot) {
+  publish(100);
+  expect_all_on_the_hub();
+  const std::string other = R"({"token":"other","host":"other.local","pid":7})";
+  const auto hub = connect_broker(servers->operator_address());
+  ASSERT_TRUE(
+      (*hub)->store("$KV.dermis-names.anna", "", {reinterpret_cast<const std::uint8_t*>(other.data()), other.size()}));
+  const auto is_doubled = [&] {
+    publisher->publish(RobotHealth{.arrays = {{.name = "chest"}}});
+    std::this_thread::sleep_for(milliseconds(100));
+    const auto robots = keeper->robots();
+    return robots && robots->front().health && robots->front().health->is_doubled;
+  };
+  bool is_told = false;
+  for (int look = 0; look < 600 && !is_told; ++look) is_told = is_doubled();
+  EXPECT_TRUE(is_told);
+  for (int look = 0; look < 600 && is_told; ++look) is_told = is_doubled();
+  EXPECT_FALSE(is_told);  // its lease has ended
+  publish(100);
+  expect_all_on_the_hub();
+}
+
 TEST_F(Fleet, a_machine_that_takes_the_name_over_ends_the_other) {
   publish(100);
   expect_all_on_the_hub();
