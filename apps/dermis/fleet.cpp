@@ -13,8 +13,11 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "dermis/bytes/files/array_toml.hpp"
 #include "dermis/bytes/files/input.hpp"
 #include "dermis/bytes/models/model_file.hpp"
+#include "dermis/bytes/models/model_fit.hpp"
+#include "dermis/live/fleet/frame_stream.hpp"
 #include "dermis/live/fleet/hub.hpp"
 #include "dermis/live/fleet/model_store.hpp"
 #include "dermis/live/fleet/robot_condition.hpp"
@@ -37,6 +40,7 @@ struct AddOptions {
 Status add(const AddOptions& options) {
   const Result<std::unique_ptr<live::fleet::Hub>> hub = connect_fleet<live::fleet::Hub>(options.hub);
   if (!hub) return hub.error();
+  if (Status prepared = (*hub)->prepare(); !prepared) return prepared;
   for (const std::string& robot : options.robots) {
     if (Status added = (*hub)->add_robot(robot); !added) return added;
     print_notice(fmt::format("{}: the hub keeps its frames", robot));
@@ -103,10 +107,21 @@ std::string names_of(const std::vector<Named>& all) {
   return all.size() > kMostNames ? names + ", ..." : names;
 }
 
-/// Whether the array is known, and may use a model of an array of this size. A hub that knows no robot yet knows no
-/// better.
-Status check_place(const Robots& robots, const std::string& robot, const std::string& array,
-                   const ArrayDescription& of_model) {
+/// Whether the model fits the array as its robot has described it in its stream.
+Status check_fit(const live::fleet::BrokerAddress& hub, const std::string& robot, const std::string& array,
+                 const ArrayDescription& of_model) {
+  const auto stream =
+      live::fleet::FrameStream::open({.text = robot + "/" + array, .broker = hub, .robot = robot, .array = array});
+  if (!stream) return Done{};  // it has published no frame yet: the robot itself refuses
+  const auto described = bytes::files::array_from_toml((*stream)->notes().array_toml, robot + "/" + array);
+  const std::string why = described ? bytes::models::misfit(*described, of_model) : "";
+  if (why.empty()) return Done{};
+  return bad_input(fmt::format("--for: the model does not fit {}/{}: {}", robot, array, why));
+}
+
+/// Whether the array is known, and may use a model of this array. A hub that knows no robot yet knows no better.
+Status check_place(const live::fleet::BrokerAddress& hub, const Robots& robots, const std::string& robot,
+                   const std::string& array, const ArrayDescription& of_model) {
   const live::fleet::RobotState* const known = robot_of(robots, robot);
   if (known == nullptr && robots.empty()) {
     print_notice(fmt::format("{}: the hub knows no robot yet; the model waits for it", robot));
@@ -125,7 +140,7 @@ Status check_place(const Robots& robots, const std::string& robot, const std::st
         fmt::format("--for: robot '{}' has no array '{}'; it has {}", robot, array, names_of(known->health->arrays)));
   }
   const FrameShape shape = present->shape;
-  if (shape.rows == of_model.rows && shape.cols == of_model.cols) return Done{};
+  if (shape.rows == of_model.rows && shape.cols == of_model.cols) return check_fit(hub, robot, array, of_model);
   return bad_input(fmt::format("--for: the model is of {}x{} taxels, {}/{} has {}x{}; push one of its size",
                                of_model.rows, of_model.cols, robot, array, shape.rows, shape.cols));
 }
@@ -146,8 +161,10 @@ Status push(const ModelOptions& options) {
   if (!bytes) return bytes.error();
   const Result<Robots> robots = robots_of(options.hub);
   if (!robots) return robots.error();
+  const Result<live::fleet::BrokerAddress> hub = live::fleet::parse_broker_address(options.hub);
+  if (!hub) return hub.error();
   for (const auto& [robot, array] : *places) {
-    if (Status good = check_place(*robots, robot, array, model->array); !good) return good;
+    if (Status good = check_place(*hub, *robots, robot, array, model->array); !good) return good;
   }
   const std::string name = std::filesystem::path(options.model).filename().string();
   return for_arrays(options, *places,
@@ -190,8 +207,10 @@ void print_models(const live::fleet::ModelManifest& manifest, const Robots& robo
 Status show_models(const std::string& text) {
   const Result<std::unique_ptr<live::fleet::ModelStore>> store = connect_fleet<live::fleet::ModelStore>(text);
   if (!store) return store.error();
-  const Result<std::vector<live::fleet::ModelManifest>> manifests = (*store)->all();
+  std::vector<std::string> unreadable;
+  const Result<std::vector<live::fleet::ModelManifest>> manifests = (*store)->all(unreadable);
   if (!manifests) return manifests.error();
+  for (const std::string& line : unreadable) print_notice(line + "; push a model to that array again");
   const Result<Robots> robots = robots_of(text);
   if (!robots) return robots.error();
   fmt::print("{:<24} {:>7} {:<8} {:>10} {:<20} {:<10} {}\n", "robot/array", "number", "sha256", "kB", "pushed (UTC)",

@@ -62,11 +62,11 @@ Sums sums_of(const std::vector<live::fleet::ArrayHealth>& arrays) {
   return sums;
 }
 
-/// "arrays frames/s lost masked drift disk", or dashes. A robot that is silent has no rate.
+/// "arrays frames/s lost masked drift disk", or dashes. A robot of which nothing comes has no rate.
 std::string figures_of(const live::fleet::RobotState& robot) {
   if (!robot.health) return fmt::format("{:>6} {:>9} {:>8} {:>7} {:>6} {:>9}", "-", "-", "-", "-", "-", "-");
   const Sums sums = sums_of(robot.health->arrays);
-  const std::string rate = robot.is_silent(now()) ? "-" : fmt::format("{:.1f}", sums.rate_hz);
+  const std::string rate = robot.is_stale(now()) ? "-" : fmt::format("{:.1f}", sums.rate_hz);
   const std::string drift = sums.most_gain_change < 0.0 ? "-" : fmt::format("{:.0f} %", 100.0 * sums.most_gain_change);
   const auto free = robot.health->free_bytes;
   const std::string disk = free ? fmt::format("{:.1f} GB", static_cast<double>(*free) / 1e9) : "-";
@@ -92,7 +92,7 @@ void print_robot(const live::fleet::RobotState& robot) {
 Result<std::vector<live::fleet::RobotState>> robots_seen_twice(live::fleet::Hub& hub) {
   Result<std::vector<live::fleet::RobotState>> robots = hub.robots();
   const auto seems_silent = [](const live::fleet::RobotState& robot) {
-    return robot.is_silent(now()) && robot.health_time > Nanos{};
+    return robot.is_stale(now()) && robot.health_time > Nanos{};
   };
   if (!robots || std::none_of(robots->begin(), robots->end(), seems_silent)) return robots;
   std::this_thread::sleep_for(kSecondLook);
@@ -107,6 +107,7 @@ Status list(const std::string& text) {
   const Result<std::vector<live::fleet::RobotState>> robots = robots_seen_twice(**hub);
   if (!robots) return robots.error();
   if (robots->empty()) print_notice("the hub knows no robot yet: dermis fleet add HUB --robot NAME");
+  if (const std::string full = (*hub)->full_disk(*robots); !full.empty()) print_notice(full);
   fmt::print("{:<24} {:<10} {:<19} {:>12} {:>10} {:>12} {:>8} {:>6} {:>9} {:>8} {:>7} {:>6} {:>9}\n", "robot", "state",
              "since (UTC)", "messages", "MB", "last before", "lag", "arrays", "frames/s", "lost", "masked", "drift",
              "disk free");
@@ -164,6 +165,7 @@ Status serve_fleet_page(PageOptions& options, const std::function<Status()>& goe
     Result<std::vector<live::fleet::RobotState>> robots = (*hub)->robots();
     fleet.error = robots ? "" : robots.error().message;
     if (robots) fleet.robots = *std::move(robots);
+    fleet.full = fleet.error.empty() ? (*hub)->full_disk(fleet.robots) : "";
     if (looks++ % kLooksToHistory == 0 && fleet.error.empty()) {
       if (const auto events = (*hub)->history(fleet.robots, now() - kShownHistory)) {
         (*server)->set_document("/history.json", "application/json", live::fleet::history_to_json(*events));

@@ -30,6 +30,7 @@ constexpr std::chrono::milliseconds kLookAtCommandEvery{50};
 constexpr std::chrono::seconds kLongestCommand{60};
 constexpr int kLooksToAlarm = 2;  // a robot that is just beginning is no alarm
 constexpr const char* kHubItself = "";
+constexpr const char* kDiskOfHub = "/";  // no robot has such a name
 
 struct WatchOptions {
   std::string hub;
@@ -104,6 +105,9 @@ int look(live::fleet::Hub& hub, Alarms& alarms) {
   const std::string why = robots ? "the hub answers again" : "the hub does not answer: " + robots.error().message;
   int fresh = alarms.take(kHubItself, !robots, why, RobotCondition::State::silent);
   if (!robots) return fresh;
+  const std::string full = hub.full_disk(*robots);
+  fresh += alarms.take(kDiskOfHub, !full.empty(), full.empty() ? "the hub stores again" : full,
+                       RobotCondition::State::error);
   for (const live::fleet::RobotState& robot : *robots) {
     const RobotCondition condition = live::fleet::condition_of(robot, now());
     fresh += alarms.take(robot.name, condition.needs_attention(), sentence_of(robot.name, condition), condition.state);

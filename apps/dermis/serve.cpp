@@ -37,6 +37,7 @@ struct ServeOptions {
   std::optional<std::uint64_t> domain{};
   std::string publish{};
   std::string robot{};
+  bool take_over = false;
 };
 
 Status check(const ServeOptions& options) {
@@ -57,7 +58,7 @@ Result<live::fleet::PublisherOptions> publisher_options(const ServeOptions& opti
   const Result<live::fleet::BrokerAddress> broker = live::fleet::parse_broker_address(options.publish);
   if (!broker) return bad_input("--publish: " + broker.error().message);
   if (Status good = live::fleet::check_name("--robot", options.robot); !good) return good.error();
-  return live::fleet::PublisherOptions{.broker = *broker, .robot = options.robot};
+  return live::fleet::PublisherOptions{.broker = *broker, .robot = options.robot, .take_over = options.take_over};
 }
 
 /// A suit.toml tells of several arrays, the page of one.
@@ -194,6 +195,9 @@ void add_serve(Command& command) {
   const Option publish =
       command.option("--publish", options->publish, "nats://HOST: keep all frames in a stream, too (docs/fleet.md)");
   command.option("--robot", options->robot, "The name of this robot in the fleet").needs(publish);
+  command
+      .flag("--take-over", options->take_over, "Take the name from a process that has it; that one publishes no more")
+      .needs(publish);
   command.action([options] { return serve_suit(*options); });
 }
 

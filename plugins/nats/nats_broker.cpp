@@ -32,6 +32,8 @@ using PublishAck = std::unique_ptr<jsPubAck, Destroyer<jsPubAck_Destroy>>;
 Error error_of(const std::string& place, natsStatus status) {
   if (status == NATS_NO_SERVER)
     return failed(place + ": no server answers there; see that nats-server is on, and its port open");
+  if (status == NATS_TIMEOUT)
+    return failed(place + ": no answer came; see that nats-server works, and its disk has room");
   return failed(place + ": " + natsStatus_GetText(status));
 }
 
@@ -56,14 +58,18 @@ class NatsBroker final : public Broker {
   [[nodiscard]] Status send(const std::string& subject, const std::string& text) override;
   [[nodiscard]] Result<std::uint64_t> store(const std::string& subject, const std::string& id,
                                             std::span<const std::uint8_t> bytes) override;
-  [[nodiscard]] Result<std::optional<StoredMessage>> last(const std::string& stream,
-                                                          const std::string& subject) override;
+  [[nodiscard]] Result<std::optional<std::uint64_t>> store_after(std::uint64_t last, const std::string& subject,
+                                                                 std::string_view text) override;
+  [[nodiscard]] Result<std::optional<StoredMessage>> last(const std::string& stream, const std::string& subject,
+                                                          const std::string& domain) override;
   [[nodiscard]] Result<std::optional<StoredMessage>> next(const std::string& stream, const std::string& subject,
                                                           std::uint64_t sequence) override;
 
  private:
-  [[nodiscard]] Result<std::optional<StoredMessage>> get(const std::string& stream, jsDirectGetMsgOptions& which);
+  [[nodiscard]] Result<std::optional<StoredMessage>> get(const std::string& stream, jsDirectGetMsgOptions& which,
+                                                         const std::string& domain = "");
   [[nodiscard]] Error why_not(natsStatus status) const;
+  [[nodiscard]] Error why_not_stored(natsStatus status, jsErrCode code);
 
   const std::string url_;
   const Connection connection_;
@@ -95,28 +101,57 @@ Status NatsBroker::send(const std::string& subject, const std::string& text) {
 
 Result<std::uint64_t> NatsBroker::store(const std::string& subject, const std::string& id,
                                         std::span<const std::uint8_t> bytes) {
-  natsMsg* created = nullptr;
-  const natsStatus made = natsMsg_Create(&created, subject.c_str(), nullptr,
-                                         reinterpret_cast<const char*>(bytes.data()), static_cast<int>(bytes.size()));
-  const Message message(created);
-  if (made != NATS_OK) return error_of(url_, made);
   jsPubOptions options;
   jsPubOptions_Init(&options);
   if (!id.empty()) options.MsgId = id.c_str();
   options.MaxWait = kAnswerMs;
   jsPubAck* answer = nullptr;
-  const natsStatus published = js_PublishMsg(&answer, jet_stream_.get(), message.get(), &options, nullptr);
+  jsErrCode code{};
+  const natsStatus published = js_Publish(&answer, jet_stream_.get(), subject.c_str(), bytes.data(),
+                                          static_cast<int>(bytes.size()), &options, &code);
   const PublishAck acknowledged(answer);
   if (published == NATS_MAX_PAYLOAD) return bad_input(url_ + ": " + subject + ": the server takes no message so large");
-  if (published != NATS_OK) return error_of(url_ + ": " + subject, published);
+  if (published != NATS_OK) return why_not_stored(published, code);
   return acknowledged->Sequence;
 }
 
-Result<std::optional<StoredMessage>> NatsBroker::get(const std::string& stream, jsDirectGetMsgOptions& which) {
+Result<std::optional<std::uint64_t>> NatsBroker::store_after(std::uint64_t last, const std::string& subject,
+                                                             std::string_view text) {
+  jsPubOptions options;
+  jsPubOptions_Init(&options);
+  options.ExpectLastSubjectSeq = last;
+  options.ExpectNoMessage = last == 0;
+  options.MaxWait = kAnswerMs;
+  jsPubAck* answer = nullptr;
+  jsErrCode code{};
+  const natsStatus published = js_Publish(&answer, jet_stream_.get(), subject.c_str(), text.data(),
+                                          static_cast<int>(text.size()), &options, &code);
+  const PublishAck acknowledged(answer);
+  if (code == JSStreamWrongLastSequenceErr) return std::optional<std::uint64_t>();
+  if (published != NATS_OK) return why_not_stored(published, code);
+  return std::optional(acknowledged->Sequence);
+}
+
+/// A server whose disk, or whose share of it, is full, says no more than that; how much it holds is asked for.
+Error NatsBroker::why_not_stored(natsStatus status, jsErrCode code) {
+  if (code != JSInsufficientResourcesErr && code != JSStorageResourcesExceededErr) {
+    return code == 0 ? error_of(url_, status) : failed(url_ + ": " + nats_GetLastError(nullptr));
+  }
+  jsAccountInfo* got = nullptr;
+  const bool is_known = js_GetAccountInfo(&got, jet_stream_.get(), nullptr, nullptr) == NATS_OK;
+  const std::unique_ptr<jsAccountInfo, Destroyer<jsAccountInfo_Destroy>> info(got);
+  const std::string size =
+      is_known ? " with " + std::to_string((info->Store + 500'000) / 1'000'000) + " MB of streams" : "";
+  return failed(url_ + ": " + kDiskIsFull + size + "; clear it, or raise max_file_store");
+}
+
+Result<std::optional<StoredMessage>> NatsBroker::get(const std::string& stream, jsDirectGetMsgOptions& which,
+                                                     const std::string& domain) {
   natsMsg* got = nullptr;
   jsOptions options;
   jsOptions_Init(&options);
   options.Wait = kAnswerMs;
+  if (!domain.empty()) options.Domain = domain.c_str();
   const natsStatus asked = js_DirectGetMsg(&got, jet_stream_.get(), stream.c_str(), &options, &which);
   const Message message(got);
   if (asked == NATS_NOT_FOUND) return std::optional<StoredMessage>();
@@ -124,11 +159,12 @@ Result<std::optional<StoredMessage>> NatsBroker::get(const std::string& stream, 
   return std::optional(stored_message(message.get()));
 }
 
-Result<std::optional<StoredMessage>> NatsBroker::last(const std::string& stream, const std::string& subject) {
+Result<std::optional<StoredMessage>> NatsBroker::last(const std::string& stream, const std::string& subject,
+                                                      const std::string& domain) {
   jsDirectGetMsgOptions which;
   jsDirectGetMsgOptions_Init(&which);
   which.LastBySubject = subject.c_str();
-  return get(stream, which);
+  return get(stream, which, domain);
 }
 
 Result<std::optional<StoredMessage>> NatsBroker::next(const std::string& stream, const std::string& subject,

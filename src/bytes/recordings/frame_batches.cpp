@@ -11,7 +11,9 @@
 #include <utility>
 
 #include "bytes/recordings/compression.hpp"
+#include "bytes/recordings/crc32.hpp"
 #include "bytes/recordings/mcap_batch.hpp"
+#include "bytes/recordings/recording_description.hpp"
 #include "bytes/recordings/recording_format.hpp"
 #include "bytes/recordings/written_array.hpp"
 #include "dermis/bytes/ros_messages/live_messages.hpp"
@@ -187,6 +189,27 @@ std::optional<FrameBatch> FrameBatchWriter::take(bool unfinished) {
 
 std::optional<FrameBatch> FrameBatchWriter::take_contacts(bool unfinished) {
   return implementation_->take_contacts(unfinished);
+}
+
+std::uint32_t checksum(std::span<const std::uint8_t> bytes) noexcept {
+  return crc32(0, bytes);
+}
+
+Result<RecordedArray> read_description(std::span<const std::uint8_t> description) {
+  const Result<std::unique_ptr<McapReader>> reader = McapReader::open(
+      std::make_unique<std::istringstream>(std::string(description.begin(), description.end())), "description");
+  if (!reader) return reader.error();
+  McapMessage message;
+  const Result<bool> read = (*reader)->next(message);
+  if (!read) return read.error();
+  std::vector<RecordingDescription> found = descriptions_of(**reader);
+  if (*read || found.size() != 1 || !found.front().shape) return bad_input("description: is none of one array");
+  RecordingDescription& one = found.front();
+  return RecordedArray{.name = std::move(one.name),
+                       .shape = *one.shape,
+                       .array_toml = std::move(one.array_toml),
+                       .model_hash = std::move(one.model_hash),
+                       .simulation = std::move(one.simulation)};
 }
 
 Result<ReadBatch> read_frame_batch(std::span<const std::uint8_t> description, std::span<const std::uint8_t> batch) {

@@ -26,6 +26,9 @@ struct StoredMessage {
   std::vector<std::uint8_t> bytes;
 };
 
+/// In the message of a failure to store.
+inline constexpr const char* kDiskIsFull = "its disk is full";
+
 /// A connection to a server. It connects again by itself; meanwhile all fail. Thread-safe.
 class Broker {
  public:
@@ -44,9 +47,13 @@ class Broker {
   /// two minutes is stored once; an empty id is none.
   [[nodiscard]] virtual Result<std::uint64_t> store(const std::string& subject, const std::string& id,
                                                     std::span<const std::uint8_t> bytes) = 0;
-  /// The last message of a subject; empty where there is none.
-  [[nodiscard]] virtual Result<std::optional<StoredMessage>> last(const std::string& stream,
-                                                                  const std::string& subject) = 0;
+  /// Stores the message where the last one of its subject has this sequence, 0: where there is none. Returns its
+  /// sequence; empty where the last one is another.
+  [[nodiscard]] virtual Result<std::optional<std::uint64_t>> store_after(std::uint64_t last, const std::string& subject,
+                                                                         std::string_view text) = 0;
+  /// The last message of a subject; empty where there is none. `domain`: of a server behind this one; empty: this one.
+  [[nodiscard]] virtual Result<std::optional<StoredMessage>> last(const std::string& stream, const std::string& subject,
+                                                                  const std::string& domain = "") = 0;
   /// The first message of a subject with this sequence or a later one; empty where there is none yet.
   [[nodiscard]] virtual Result<std::optional<StoredMessage>> next(const std::string& stream, const std::string& subject,
                                                                   std::uint64_t sequence) = 0;

@@ -12,9 +12,9 @@
 #include <deque>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
-#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -22,6 +22,8 @@
 #include "dermis/bytes/recordings/frame_batches.hpp"
 #include "live/fleet/broker.hpp"
 #include "live/fleet/health_changes.hpp"
+#include "live/fleet/message_id.hpp"
+#include "live/fleet/name_keeper.hpp"
 #include "live/fleet/streams.hpp"
 
 namespace dermis::live::fleet {
@@ -32,28 +34,32 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t kMostThreads = 4;
 constexpr std::chrono::milliseconds kLookEvery{20};
 constexpr std::chrono::milliseconds kRetryAfter{200};
+constexpr std::chrono::seconds kDescribeAgainFirst{1};  // the next ones are twice as far apart, up to:
 constexpr std::chrono::seconds kDescribeEvery{60};
 constexpr std::chrono::seconds kLastWords{2};
-constexpr std::size_t kMostChanges = 1000;        // that wait
-constexpr std::uint64_t kLookForOthersEvery = 5;  // messages of health
-constexpr Nanos kOthersAfter = std::chrono::seconds(3);
+constexpr std::size_t kMostChanges = 1000;      // that wait
+constexpr std::chrono::seconds kRenewEvery{1};  // the lease of the name
 
 /// An array whose batches go to the server, one at a time.
 struct PublishedArray {
-  PublishedArray(const std::string& robot, const std::string& run, bytes::recordings::RecordedArray array)
-      : frames(subject_of(robot, array.name, "frames")),
-        contacts(subject_of(robot, array.name, "contacts")),
-        description(subject_of(robot, array.name, "description")),
-        first_id(run + array.name + "-"),
+  PublishedArray(const std::string& robot, bytes::recordings::RecordedArray array)
+      : name(array.name),
+        frames(subject_of(robot, name, "frames")),
+        contacts(subject_of(robot, name, "contacts")),
+        description(subject_of(robot, name, "description")),
         writer(std::move(array)) {}
 
+  std::string name;
   std::string frames;
   std::string contacts;
   std::string description;
-  std::string first_id;
   bytes::recordings::FrameBatchWriter writer;
-  std::uint64_t next_id = 0;
-  Clock::time_point described{};  ///< When the server has stored the description; 0: never.
+  std::uint64_t next_frame = 0;
+  std::uint64_t next_contacts = 0;
+  std::uint64_t descriptions = 0;
+  std::uint64_t described_session = 0;  ///< 0: never.
+  Clock::duration describe_after = kDescribeAgainFirst;
+  Clock::time_point describe_next{};
   Clock::time_point begun = Clock::now();
   Clock::time_point contacts_begun = Clock::now();
   std::atomic<std::uint64_t> refused = 0;  ///< Frames that the server will never take.
@@ -68,24 +74,16 @@ struct Telling {
   std::optional<RobotHealth> last{};  ///< That is not sent yet.
   std::deque<RobotHealth> changes{};  ///< The same, of each change.
   HealthChanges seen{};
-  std::uint64_t looks = 0;  ///< At the server for others of this name. This and the next three are of the first thread.
-  std::uint64_t messages = 0;  ///< Of health.
-  std::uint64_t sent_changes = 0;
-  Nanos before{};  ///< A run before this one told its health last.
-  std::atomic<bool> is_doubled = false;
+  std::uint64_t sent_changes = 0;  ///< It and the next are of the first thread.
+  std::optional<Nanos> before{};   ///< A run before this one told its health last; 0: none did; empty: not known yet.
 };
-
-/// Runs of a robot differ by the millisecond in which they begin.
-std::string new_run() {
-  const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
-  return std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(since_1970).count());
-}
 
 }  // namespace
 
 class FramePublisher::Implementation {
  public:
-  explicit Implementation(PublisherOptions options) : options_(std::move(options)) {}
+  explicit Implementation(PublisherOptions options)
+      : options_(std::move(options)), name_(options_.robot, options_.take_over, options_.notice) {}
   ~Implementation();
 
   [[nodiscard]] Status begin(std::vector<bytes::recordings::RecordedArray> arrays);
@@ -102,11 +100,12 @@ class FramePublisher::Implementation {
   enum class Fate : std::uint8_t { stored, refused, late };
 
   void work(std::size_t first, std::size_t stride, const std::stop_token& stop);
-  [[nodiscard]] bool send_waiting(PublishedArray& array, bool unfinished);
-  [[nodiscard]] bool send_contacts(PublishedArray& array, bool unfinished);
-  [[nodiscard]] bool describe(PublishedArray& array);
+  void keep_name(const std::stop_token& stop);
+  [[nodiscard]] bool send_waiting(PublishedArray& array, std::uint64_t session, bool unfinished);
+  [[nodiscard]] bool send_contacts(PublishedArray& array, std::uint64_t session, bool unfinished);
+  [[nodiscard]] bool describe(PublishedArray& array, std::uint64_t session);
   void send_health();
-  void look_for_others();
+  void look_before();
   [[nodiscard]] bool send_changes();
   [[nodiscard]] std::string text_of(RobotHealth health) const;
   [[nodiscard]] Fate store(const std::string& subject, const std::string& id, std::span<const std::uint8_t> bytes);
@@ -122,38 +121,58 @@ class FramePublisher::Implementation {
 
   std::mutex connecting_;
   std::unique_ptr<Broker> broker_;  ///< Null: the server has not answered yet.
-  bool answers_ = true;             ///< As it was told last; guarded by `connecting_`.
+  std::set<std::string> told_;      ///< Failures since it answered last; guarded by `connecting_`.
 
   std::atomic<std::uint64_t> batches_ = 0;
   std::atomic<std::uint64_t> frames_ = 0;
   std::atomic<std::uint64_t> bytes_ = 0;
   Telling telling_;
+  NameKeeper name_;
 
   std::atomic<Clock::time_point> end_ = Clock::time_point::max();
+  std::jthread name_thread_;
   std::vector<std::jthread> threads_;
 };
 
 FramePublisher::Implementation::~Implementation() {
   end_ = Clock::now() + kLastWords;
   for (std::jthread& thread : threads_) thread.request_stop();
+  threads_.clear();
+  name_thread_ = {};
+  if (broker_ != nullptr) name_.give_back(*broker_);
 }
 
 Status FramePublisher::Implementation::begin(std::vector<bytes::recordings::RecordedArray> arrays) {
   Result<std::unique_ptr<Broker>> connected = connect_broker(options_.broker);
   if (!connected && connected.error().kind == ErrorKind::bad_input) return connected.error();
-  if (connected)
+  if (connected) {
     broker_ = *std::move(connected);
-  else
+    if (Status claimed = name_.claim(*broker_); !claimed) return claimed;
+  } else {
     tell(connected.error());
-  const std::string run = new_run();
-  for (bytes::recordings::RecordedArray& array : arrays) {
-    arrays_.push_back(std::make_unique<PublishedArray>(options_.robot, run, std::move(array)));
   }
+  for (bytes::recordings::RecordedArray& array : arrays) {
+    arrays_.push_back(std::make_unique<PublishedArray>(options_.robot, std::move(array)));
+  }
+  name_thread_ = std::jthread([this](const std::stop_token& stop) { keep_name(stop); });
   const std::size_t threads = std::min(arrays_.size(), kMostThreads);
   for (std::size_t first = 0; first < threads; ++first) {
     threads_.emplace_back([this, first, threads](const std::stop_token& stop) { work(first, threads, stop); });
   }
   return Done{};
+}
+
+void FramePublisher::Implementation::keep_name(const std::stop_token& stop) {
+  ::pthread_setname_np(::pthread_self(), "publish-name");
+  std::mutex mutex;
+  std::unique_lock lock(mutex);
+  std::condition_variable_any stopped;
+  while (!stop.stop_requested()) {
+    Broker* const server = broker();
+    const Status renewed = server != nullptr ? name_.renew(*server) : Status(Done{});
+    if (!renewed) tell(renewed);
+    stopped.wait_for(lock, stop, kRenewEvery, [] { return false; });
+  }
 }
 
 /// Sends the batches of every `stride`th array.
@@ -165,8 +184,11 @@ void FramePublisher::Implementation::work(std::size_t first, std::size_t stride,
   bool is_last_round = false;
   while (!is_last_round) {
     is_last_round = stop.stop_requested();
-    for (std::size_t i = first; i < arrays_.size(); i += stride) {
-      if (!send_waiting(*arrays_[i], is_last_round) || !send_contacts(*arrays_[i], is_last_round)) return;
+    const std::uint64_t session = name_.session();
+    const bool may_send = session > 0 || name_.is_replaced();  // what a replaced process has counts as refused
+    for (std::size_t i = first; may_send && i < arrays_.size(); i += stride) {
+      if (!send_waiting(*arrays_[i], session, is_last_round)) return;
+      if (!send_contacts(*arrays_[i], session, is_last_round)) return;
     }
     if (first == 0) send_health();
     stopped.wait_for(lock, stop, kLookEvery, [] { return false; });
@@ -174,13 +196,15 @@ void FramePublisher::Implementation::work(std::size_t first, std::size_t stride,
 }
 
 /// false: there is no time left.
-bool FramePublisher::Implementation::send_waiting(PublishedArray& array, bool unfinished) {
+bool FramePublisher::Implementation::send_waiting(PublishedArray& array, std::uint64_t session, bool unfinished) {
   bool is_due = Clock::now() - array.begun > bytes::recordings::FrameBatchWriter::kLongest;
   while (const std::optional<bytes::recordings::FrameBatch> batch = array.writer.take(unfinished || is_due)) {
     is_due = false;  // what comes meanwhile is for the next round
     array.begun = Clock::now();
-    if (is_over() || !describe(array)) return false;
-    const Fate fate = store(array.frames, array.first_id + std::to_string(array.next_id++), batch->bytes);
+    if (is_over() || !describe(array, session)) return false;
+    const std::uint64_t first = std::exchange(array.next_frame, array.next_frame + batch->frames);
+    const std::string numbers = std::to_string(first) + "." + std::to_string(batch->frames);
+    const Fate fate = store(array.frames, begin_of_id(session, array.name) + numbers, batch->bytes);
     if (fate == Fate::late) return false;
     if (fate == Fate::refused) {
       array.refused += batch->frames;
@@ -194,26 +218,31 @@ bool FramePublisher::Implementation::send_waiting(PublishedArray& array, bool un
 }
 
 /// The same for contacts.
-bool FramePublisher::Implementation::send_contacts(PublishedArray& array, bool unfinished) {
+bool FramePublisher::Implementation::send_contacts(PublishedArray& array, std::uint64_t session, bool unfinished) {
   bool is_due = Clock::now() - array.contacts_begun > bytes::recordings::FrameBatchWriter::kLongest;
   while (const std::optional<bytes::recordings::FrameBatch> batch = array.writer.take_contacts(unfinished || is_due)) {
     is_due = false;
     array.contacts_begun = Clock::now();
-    if (is_over() || !describe(array)) return false;
-    const std::string id = array.first_id + std::to_string(array.next_id++);
+    if (is_over() || !describe(array, session)) return false;
+    const std::string id = begin_of_id(session, array.name) + "c" + std::to_string(array.next_contacts++);
     if (store(array.contacts, id, batch->bytes) == Fate::late) return false;
     bytes_ += batch->bytes.size();
   }
   return true;
 }
 
-/// Streams forget: the description is there again once a minute. false: there is no time left.
-bool FramePublisher::Implementation::describe(PublishedArray& array) {
-  const bool is_fresh = array.described != Clock::time_point{} && Clock::now() - array.described < kDescribeEvery;
-  if (is_fresh) return true;
-  const std::string id = array.first_id + "d" + std::to_string(array.next_id++);
-  if (store(array.description, id, array.writer.description()) == Fate::late) return false;
-  array.described = Clock::now();
+/// Streams forget, and bytes are damaged: the description is there again and again. false: there is no time left.
+bool FramePublisher::Implementation::describe(PublishedArray& array, std::uint64_t session) {
+  const bool is_new = array.described_session != session;
+  if (!is_new && Clock::now() < array.describe_next) return true;
+  const std::span<const std::uint8_t> text = array.writer.description();
+  const std::string id = begin_of_id(session, array.name) + "d" + std::to_string(array.descriptions++) + "." +
+                         std::to_string(bytes::recordings::checksum(text));
+  if (store(array.description, id, text) == Fate::late) return false;
+  array.described_session = session;
+  array.describe_after =
+      is_new ? kDescribeAgainFirst : std::min<Clock::duration>(2 * array.describe_after, kDescribeEvery);
+  array.describe_next = Clock::now() + array.describe_after;
   return true;
 }
 
@@ -224,30 +253,19 @@ void FramePublisher::Implementation::send_health() {
     const std::scoped_lock lock(telling_.mutex);
     health.swap(telling_.last);
   }
-  if (!health) return;
-  if (telling_.looks == 0 || ++telling_.messages % kLookForOthersEvery == 0) look_for_others();
+  if (!health || name_.session() == 0) return;
+  if (!telling_.before) look_before();
   if (!send_changes()) return;
   const std::string text = text_of(*std::move(health));
   static_cast<void>(try_to_store(health_subject_of(options_.robot), "",
                                  {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}));
 }
 
-/// The last message of health that the server has is of this run, of one before, or of another robot of this name.
-void FramePublisher::Implementation::look_for_others() {
+void FramePublisher::Implementation::look_before() {
   Broker* const server = broker();
   if (server == nullptr) return;
   const auto last = server->last(stream_of(options_.robot), health_subject_of(options_.robot));
-  if (!last) return;
-  const bool is_first = telling_.looks++ == 0;
-  if (!*last) return;
-  const Result<RobotHealth> told =
-      health_from_json(std::string_view(reinterpret_cast<const char*>((*last)->bytes.data()), (*last)->bytes.size()));
-  if (is_first) telling_.before = (*last)->time;
-  const bool is_other = told && told->begun != telling_.begun && (*last)->time > telling_.begun + kOthersAfter;
-  if (is_other && !telling_.is_doubled.exchange(true) && options_.notice) {
-    options_.notice("another robot publishes as '" + options_.robot + "'; give one of them another name");
-  }
-  if (!is_other) telling_.is_doubled = false;
+  if (last) telling_.before = *last ? (*last)->time : Nanos{};
 }
 
 /// false: some still wait.
@@ -272,7 +290,7 @@ bool FramePublisher::Implementation::send_changes() {
 
 std::string FramePublisher::Implementation::text_of(RobotHealth health) const {
   health.begun = telling_.begun;
-  health.before = telling_.before;
+  health.before = telling_.before.value_or(Nanos{});
   return health_to_json(health);
 }
 
@@ -281,6 +299,7 @@ FramePublisher::Implementation::Fate FramePublisher::Implementation::store(const
                                                                            const std::string& id,
                                                                            std::span<const std::uint8_t> bytes) {
   while (true) {
+    if (name_.is_replaced()) return Fate::refused;
     if (const std::optional<Fate> fate = try_to_store(subject, id, bytes)) return *fate;
     if (is_over()) return Fate::late;
     std::this_thread::sleep_for(kRetryAfter);
@@ -320,9 +339,8 @@ Broker* FramePublisher::Implementation::broker() {
 
 void FramePublisher::Implementation::tell(const Status& outcome) {
   const std::scoped_lock lock(connecting_);
-  if (static_cast<bool>(outcome) == answers_) return;
-  answers_ = static_cast<bool>(outcome);
-  if (!options_.notice) return;
+  const bool is_news = outcome ? !std::exchange(told_, {}).empty() : told_.insert(outcome.error().message).second;
+  if (!is_news || !options_.notice) return;
   options_.notice(outcome
                       ? without_password(options_.broker.url) + ": stores frames again"
                       : outcome.error().message +
@@ -331,7 +349,7 @@ void FramePublisher::Implementation::tell(const Status& outcome) {
 
 void FramePublisher::Implementation::publish(const RobotHealth& health) {
   RobotHealth told = health;
-  told.is_doubled = telling_.is_doubled;
+  told.is_doubled = name_.is_doubled();
   const std::scoped_lock lock(telling_.mutex);
   if (telling_.seen.take(told) && telling_.changes.size() < kMostChanges) telling_.changes.push_back(told);
   telling_.last = std::move(told);

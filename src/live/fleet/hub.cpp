@@ -12,6 +12,7 @@
 #include "live/fleet/broker.hpp"
 #include "live/fleet/health_json.hpp"
 #include "live/fleet/json_values.hpp"
+#include "live/fleet/name_lease.hpp"
 #include "live/fleet/parse_utc.hpp"
 #include "live/fleet/streams.hpp"
 
@@ -58,11 +59,12 @@ std::string fleet_to_json(const FleetState& fleet, Nanos now) {
             {"age_s", seconds_since(robot.last, now)},
             {"lag", robot.lag},
             {"health_age_s", seconds_since(robot.health_time, now)},
-            {"silent", robot.is_silent(now)}};
+            {"silent", robot.is_silent(now)},
+            {"stale", robot.is_stale(now)}};
     json["live"] = robot.health ? robot.health->live : "";
     json["arrays"] = robot.health ? arrays_to_json(robot.health->arrays) : Json::array();
   }
-  return json_text({{"hub", fleet.hub}, {"error", fleet.error}, {"robots", std::move(list)}});
+  return json_text({{"hub", fleet.hub}, {"error", fleet.error}, {"full", fleet.full}, {"robots", std::move(list)}});
 }
 
 std::string history_to_json(const std::vector<RobotEvent>& events) {
@@ -82,6 +84,10 @@ Result<std::unique_ptr<Hub>> Hub::connect(const BrokerAddress& address) {
   Result<std::unique_ptr<Broker>> broker = connect_broker(address);
   if (!broker) return broker.error();
   return std::unique_ptr<Hub>(new Hub(*std::move(broker)));
+}
+
+Status Hub::prepare() {
+  return make_leases(*broker_);
 }
 
 Status Hub::add_robot(const std::string& name) {
@@ -133,6 +139,15 @@ void Hub::add_health(RobotState& robot) {
     robot.health = *std::move(health);
   else
     robot.health_error = health.error().message;
+}
+
+std::string Hub::full_disk(const std::vector<RobotState>& robots) {
+  const Nanos now = std::chrono::system_clock::now().time_since_epoch();
+  const auto is_stale = [&](const RobotState& robot) { return robot.is_stale(now); };
+  if (std::none_of(robots.begin(), robots.end(), is_stale)) return "";
+  const Status tried = try_leases(*broker_);
+  if (tried || tried.error().message.find(kDiskIsFull) == std::string::npos) return "";
+  return "the hub stores nothing more: " + tried.error().message;
 }
 
 Result<std::vector<RobotEvent>> Hub::history(const std::vector<RobotState>& robots, Nanos since) {

@@ -15,7 +15,6 @@ namespace dermis::live::fleet {
 namespace {
 
 constexpr const char* kModels = "dermis-models";  // a stream, and the first part of its subjects
-constexpr const char* kHubDomain = "hub";
 constexpr std::size_t kPieceBytes = 256U << 10U;  // a server takes messages of 1 MiB
 constexpr std::size_t kPlaceOfSha256 = 3;         // in the parts of a piece's subject
 
@@ -84,11 +83,10 @@ Status ModelStore::store(const std::string& subject, std::string_view bytes) {
 
 /// On the server of a robot, models would hide those of the hub.
 Status ModelStore::prepare_hub() {
-  const Result<std::string> answer = broker_->ask("$JS.API.INFO", "");
-  if (!answer) return answer.error();
-  const std::string domain = text_at(Json::parse(*answer, nullptr, false), "domain");
-  if (!domain.empty() && domain != kHubDomain) {
-    return bad_input("this is the server of robot '" + domain + "'; models are pushed to the hub");
+  const Result<std::string> domain = domain_of(*broker_);
+  if (!domain) return domain.error();
+  if (!domain->empty() && *domain != kHubDomain) {
+    return bad_input("this is the server of robot '" + *domain + "'; models are pushed to the hub");
   }
   return make_log(*broker_, kModels, std::string(kModels) + ".>");
 }
@@ -135,16 +133,16 @@ Result<ModelManifest> ModelStore::push(const std::string& robot, const std::stri
   if (!hash) return hash.error();
   ModelManifest next{.robot = robot, .array = array};
   if (present && *present) next = **present;
-  PushedModel model{.name = name,
-                    .sha256 = *hash,
-                    .bytes = bytes.size(),
-                    .pieces = (bytes.size() + kPieceBytes - 1) / kPieceBytes,
-                    .time = std::chrono::system_clock::now().time_since_epoch()};
-  for (std::uint64_t piece = 0; piece < model.pieces; ++piece) {
+  next.add({.name = name,
+            .sha256 = *hash,
+            .bytes = bytes.size(),
+            .pieces = (bytes.size() + kPieceBytes - 1) / kPieceBytes,
+            .time = std::chrono::system_clock::now().time_since_epoch()});
+  if (const auto read = manifest_from_json(manifest_to_json(next)); !read) return read.error();
+  for (std::uint64_t piece = 0; piece < next.current_model().pieces; ++piece) {
     const std::string_view part = bytes.substr(piece * kPieceBytes, kPieceBytes);
     if (const Status stored = store(piece_subject(next, *hash, piece), part); !stored) return stored.error();
   }
-  next.add(std::move(model));
   if (const Status stored = store(manifest_subject(robot, array), manifest_to_json(next)); !stored) {
     return stored.error();
   }
@@ -184,7 +182,7 @@ Result<ModelManifest> ModelStore::roll_back(const std::string& robot, const std:
   return next;
 }
 
-Result<std::vector<ModelManifest>> ModelStore::all() {
+Result<std::vector<ModelManifest>> ModelStore::all(std::vector<std::string>& unreadable) {
   std::vector<ModelManifest> manifests;
   const Result<bool> is_there = has_stream(*broker_, kModels);
   if (!is_there) return is_there.error();
@@ -194,8 +192,10 @@ Result<std::vector<ModelManifest>> ModelStore::all() {
     if (!*message) break;
     const std::vector<std::uint8_t>& bytes = (*message)->bytes;
     Result<ModelManifest> manifest = manifest_from_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-    if (!manifest) return manifest.error();
-    manifests.push_back(*std::move(manifest));
+    if (manifest)
+      manifests.push_back(*std::move(manifest));
+    else
+      unreadable.push_back("message " + std::to_string((*message)->sequence) + ": " + manifest.error().message);
     next = (*message)->sequence + 1;
   }
   std::sort(manifests.begin(), manifests.end(), [](const ModelManifest& a, const ModelManifest& b) {

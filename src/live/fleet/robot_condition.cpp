@@ -60,6 +60,12 @@ void add_reasons_of(const RobotHealth& health, std::vector<std::string>& reasons
   for (const ArrayHealth& array : health.arrays) add_reasons_of(array, reasons);
 }
 
+/// "no message for 12 s"
+std::string silence_text(const RobotState& robot, Nanos now) {
+  const Nanos last = std::max(robot.last, robot.health_time);
+  return fmt::format("no message for {} s", std::chrono::duration_cast<std::chrono::seconds>(now - last).count());
+}
+
 /// The condition of a robot that does not tell how it is now.
 RobotCondition silence_of(const RobotState& robot, Nanos now) {
   if (robot.health_time > now) {
@@ -74,7 +80,9 @@ RobotCondition silence_of(const RobotState& robot, Nanos now) {
   }
   if (robot.messages == 0) return {State::silent, {}, {"the hub has nothing of it yet"}};
   if (robot.health_time == Nanos{}) return {State::no_health, {}, {"it has not told how it is"}};
-  return {State::silent, robot.health_time, {"nothing comes: look whether it is on, publishes and reaches the hub"}};
+  return {State::silent,
+          robot.health_time,
+          {silence_text(robot, now) + ": look whether it is on, publishes and reaches the hub"}};
 }
 
 std::string level_words(const ArrayHealth& array) {
@@ -127,6 +135,7 @@ RobotCondition condition_of(const RobotState& robot, Nanos now) {
   const bool is_silent = robot.is_silent(now);
   RobotCondition condition = is_silent ? silence_of(robot, now) : RobotCondition{};
   if (!robot.health) return condition;
+  if (!is_silent && robot.is_stale(now)) condition.reasons.push_back(silence_text(robot, now));
   if (!is_silent) judge_arrays(*robot.health, condition);
   if (!is_silent) add_reasons_of(*robot.health, condition.reasons);
   return condition;

@@ -17,8 +17,12 @@ namespace {
 constexpr std::size_t kMostCharacters = 4096;
 constexpr std::size_t kMostOfAName = 64;
 
+bool is_letter_or_digit(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+}
+
 bool is_of_name(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  return is_letter_or_digit(c) || c == '_' || c == '-';
 }
 
 struct ParsedText {
@@ -80,8 +84,10 @@ bool is_stream_address(std::string_view text) {
 }
 
 Status check_name(const std::string& what, const std::string& name) {
-  if (!name.empty() && name.size() <= kMostOfAName && std::all_of(name.begin(), name.end(), is_of_name)) return Done{};
-  return bad_input(what + ": '" + name + "' must be 1 to 64 letters, digits, '_' or '-'");
+  const bool is_good = !name.empty() && name.size() <= kMostOfAName && is_letter_or_digit(name.front()) &&
+                       std::all_of(name.begin(), name.end(), is_of_name);
+  if (is_good) return Done{};
+  return bad_input(what + ": '" + name + "' must be 1 to 64 letters, digits, '_' or '-', a letter or digit first");
 }
 
 Result<BrokerAddress> parse_broker_address(const std::string& text) {

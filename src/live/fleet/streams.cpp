@@ -79,6 +79,18 @@ Result<std::uint64_t> first_since(Broker& broker, const StreamSubject& of, Nanos
   return after;
 }
 
+Result<std::string> domain_of(Broker& broker) {
+  const Result<std::string> answer = broker.ask("$JS.API.INFO", "");
+  if (!answer) return answer.error();
+  return text_at(Json::parse(*answer, nullptr, false), "domain");
+}
+
+Status make_key_store(Broker& broker, const std::string& name, Nanos lasts) {
+  Json settings = {{"max_msgs_per_subject", 1}, {"max_age", lasts.count()}, {"discard", "new"}};
+  settings["subjects"] = Json::array({"$KV." + name + ".>"});
+  return create_stream(broker, "KV_" + name, settings);
+}
+
 Status make_log(Broker& broker, const std::string& name, const std::string& subjects) {
   Json settings = {{"max_msgs_per_subject", 1}};
   settings["subjects"] = Json::array({subjects});

@@ -32,6 +32,15 @@ struct StreamSubject {
 [[nodiscard]] Result<std::uint64_t> first_since(Broker& broker, const StreamSubject& of, Nanos time,
                                                 std::uint64_t newest);
 
+/// The domain of the server; empty: it has none.
+[[nodiscard]] Result<std::string> domain_of(Broker& broker);
+
+/// The domain of a hub.
+inline constexpr const char* kHubDomain = "hub";
+
+/// A store of keys, each of which ends when it was not stored for so long. One that is there stays.
+[[nodiscard]] Status make_key_store(Broker& broker, const std::string& name, Nanos lasts);
+
 /// A stream that keeps the last message of each subject.
 [[nodiscard]] Status make_log(Broker& broker, const std::string& name, const std::string& subjects);
 

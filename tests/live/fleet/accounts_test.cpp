@@ -13,6 +13,7 @@
 #include "dermis/live/fleet/hub.hpp"
 #include "fleet_servers.hpp"
 #include "live/fleet/broker.hpp"
+#include "live/fleet/name_lease.hpp"
 #include "support/places.hpp"
 
 namespace dermis::live::fleet {
@@ -74,7 +75,7 @@ TEST_F(MakeFleet, refuses_what_cannot_be) {
   EXPECT_EQ(support::make_fleet(fleet, ""), 2);
   EXPECT_EQ(said(), "make_fleet: give FOLDER HUB ROBOT...\n");
   EXPECT_EQ(support::make_fleet(fleet, "'a b'"), 2);
-  EXPECT_EQ(said(), "make_fleet: robot 'a b' must be 1 to 64 letters, digits, '_' or '-'\n");
+  EXPECT_EQ(said(), "make_fleet: robot 'a b' must be 1 to 64 letters, digits, '_' or '-', a letter or digit first\n");
   EXPECT_EQ(support::make_fleet(fleet, "hub"), 2);
   EXPECT_EQ(said(), "make_fleet: 'hub' is the name of the hub; a robot needs another\n");
   EXPECT_EQ(support::make_fleet(fleet, "a", "a,DNS:b"), 2);
@@ -155,6 +156,14 @@ TEST_F(Accounts, a_robot_reads_its_own_models_alone) {
   EXPECT_EQ(*own, "\x01\x02\x03");
   EXPECT_FALSE(anna->ask(get + "bob.chest.hash", ""));
   EXPECT_FALSE(anna->ask("$JS.hub.API.DIRECT.GET.dermis-models", R"({"seq":2})"));
+}
+
+TEST_F(Accounts, a_robot_claims_its_own_name_alone) {
+  ASSERT_TRUE(make_leases(*hub));
+  EXPECT_TRUE(anna->store_after(0, "$JS.hub.API.$KV.dermis-names.anna", "anna"));
+  EXPECT_TRUE(*anna->last("KV_dermis-names", "$KV.dermis-names.anna", "hub"));
+  EXPECT_FALSE(anna->store_after(0, "$JS.hub.API.$KV.dermis-names.bob", "anna"));
+  EXPECT_FALSE(anna->last("KV_dermis-names", "$KV.dermis-names.bob", "hub"));
 }
 
 TEST_F(Accounts, a_robot_reads_no_frames_of_another) {

@@ -153,6 +153,38 @@ TEST_F(Publishing, another_run_of_the_robot_goes_on_in_its_stream) {
   expect_same(stored(), frames);
 }
 
+TEST_F(Publishing, a_second_robot_of_the_name_is_refused) {
+  const auto first = publisher();
+  const auto second = FramePublisher::create({kArray}, {.broker = {server->url()}, .robot = "r1"});
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().kind, ErrorKind::bad_input);
+  EXPECT_TRUE(second.error().message.starts_with("another robot publishes as 'r1' (process "))
+      << second.error().message;
+  EXPECT_TRUE(second.error().message.ends_with("; give this one another name, or have it take over"));
+}
+
+TEST_F(Publishing, who_takes_over_publishes_and_the_other_no_more) {
+  const std::vector<RawFrame> frames = random_frames(300, 8);
+  const auto first = publisher();
+  for (std::size_t k = 0; k < 100; ++k) first->publish(0, frames[k]);
+  while (first->counts().frames < 100) std::this_thread::sleep_for(milliseconds(20));
+  const auto second = FramePublisher::create({kArray}, {.broker = {server->url()}, .robot = "r1", .take_over = true});
+  ASSERT_TRUE(second) << second.error().message;
+  const auto is_told = [this] {
+    const std::scoped_lock lock(mutex);
+    return !notices.empty() && notices.back().ends_with("has taken over the name 'r1'; nothing more is published");
+  };
+  for (int look = 0; look < 600 && !is_told(); ++look) std::this_thread::sleep_for(milliseconds(100));
+  EXPECT_TRUE(is_told());
+  for (std::size_t k = 100; k < 200; ++k) first->publish(0, frames[k]);
+  for (std::size_t k = 200; k < 300; ++k) (*second)->publish(0, frames[k]);
+  while ((*second)->counts().frames < 100) std::this_thread::sleep_for(milliseconds(20));
+  while (first->left_out(0) < 100) std::this_thread::sleep_for(milliseconds(20));
+  std::vector<RawFrame> expected(frames.begin(), frames.begin() + 100);
+  expected.insert(expected.end(), frames.begin() + 200, frames.end());
+  expect_same(stored(), expected);
+}
+
 TEST_F(Publishing, the_bandwidth_is_that_of_its_counts) {
   const auto sender = publisher();
   for (const RawFrame& frame : random_frames(200, 5)) sender->publish(0, frame);
@@ -163,9 +195,11 @@ TEST_F(Publishing, the_bandwidth_is_that_of_its_counts) {
 
 TEST(FramePublisher, names_are_parts_of_subjects) {
   const auto robot = FramePublisher::create({kArray}, {.robot = "a.b"});
-  EXPECT_EQ(robot.error().message, "robot: 'a.b' must be 1 to 64 letters, digits, '_' or '-'");
+  EXPECT_EQ(robot.error().message, "robot: 'a.b' must be 1 to 64 letters, digits, '_' or '-', a letter or digit first");
+  EXPECT_FALSE(FramePublisher::create({kArray}, {.robot = "-rf"}));
   const auto array = FramePublisher::create({{.name = "left hand", .shape = {1, 1}}}, {.robot = "r"});
-  EXPECT_EQ(array.error().message, "array: 'left hand' must be 1 to 64 letters, digits, '_' or '-'");
+  EXPECT_EQ(array.error().message,
+            "array: 'left hand' must be 1 to 64 letters, digits, '_' or '-', a letter or digit first");
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "dermis/live/fleet/hub.hpp"
 #include "fleet_servers.hpp"
@@ -57,6 +58,7 @@ class Models : public testing::Test {
 
   std::unique_ptr<support::NatsServer> hub;
   std::unique_ptr<ModelStore> store;
+  std::vector<std::string> unreadable;
 };
 
 TEST_F(Models, come_back_bit_by_bit_though_larger_than_a_message) {
@@ -79,15 +81,30 @@ TEST_F(Models, of_other_arrays_are_others) {
   const auto manifest = store->manifest("bob", "chest");
   ASSERT_TRUE(manifest) << manifest.error().message;
   EXPECT_FALSE(*manifest);
-  const auto all = store->all();
+  const auto all = store->all(unreadable);
   ASSERT_TRUE(all) << all.error().message;
   ASSERT_EQ(all->size(), 2U);
   EXPECT_EQ((*all)[0].array, "back");
   EXPECT_EQ((*all)[1].array, "chest");
 }
 
+TEST_F(Models, a_list_that_cannot_be_read_costs_no_other) {
+  ASSERT_TRUE(store->push("anna", "chest", "a", bytes_of(10, 1)));
+  ASSERT_TRUE(store->push("anna", "back", "b", bytes_of(10, 2)));
+  replace("current", "nonsense");
+  EXPECT_EQ(store->all(unreadable)->size(), 1U);
+  ASSERT_EQ(unreadable.size(), 1U);
+  EXPECT_TRUE(unreadable.front().ends_with("a list of pushed models: is none")) << unreadable.front();
+}
+
+TEST_F(Models, a_name_that_is_no_line_is_refused) {
+  EXPECT_FALSE(store->push("anna", "chest", "two\nlines", bytes_of(10, 1)));
+  EXPECT_TRUE(store->all(unreadable)->empty());
+  EXPECT_TRUE(unreadable.empty());
+}
+
 TEST_F(Models, are_none_before_the_first_push) {
-  EXPECT_TRUE(store->all()->empty());
+  EXPECT_TRUE(store->all(unreadable)->empty());
   EXPECT_FALSE(store->manifest("anna", "chest"));
   EXPECT_EQ(store->roll_back("anna", "chest").error().message, "anna/chest: no model was pushed to it");
 }

@@ -30,7 +30,7 @@ cols = 3
 taxel_area_mm2 = 38.48
 
 [readout]
-circuit = "divider"
+circuit = "{circuit}"
 drive_ohm = 20.0
 load_ohm = 200.0
 adc_bits = {bits}
@@ -50,10 +50,10 @@ def succeed(folder, *arguments):
     return done.stdout
 
 
-def make_model(folder, name, seed=1, rows=2, bits=12):
+def make_model(folder, name, seed=1, rows=2, bits=12, circuit="divider"):
     """A model of an array of rows x 3, calibrated in the simulator."""
     toml, data = folder / f"{name}.toml", folder / name
-    toml.write_text(ARRAY.format(rows=rows, bits=bits))
+    toml.write_text(ARRAY.format(rows=rows, bits=bits, circuit=circuit))
     succeed(folder, "simulate", "--array", toml, "--scene", "calibration", "--seed", seed, "--out", data)
     files = ["--frames", data / "frames.csv", "--loads", data / "loads.csv"]
     succeed(folder, "calibrate", "--array", toml, *files, "--out", folder / f"{name}.safetensors")
@@ -92,10 +92,10 @@ class Models(unittest.TestCase):
         self.addCleanup(process.kill)
         return process
 
-    def serve(self):
-        with open(self.log, "wb") as log:
-            options = ["--from", "sim:contacts?rate=50", "--model", "array.toml", "--port", "0"]
-            fleet = ["--publish", self.hub, "--robot", "anna"]
+    def serve(self, *more, log="log", rate=50):
+        with open(self.work / log, "wb") as log:
+            options = ["--from", f"sim:contacts?rate={rate}", "--model", "array.toml", "--port", "0"]
+            fleet = ["--publish", self.hub, "--robot", "anna", *more]
             return self.start([DERMIS, "serve", *options, *fleet], stdout=log, stderr=log)
 
     def wait_for(self, line):
@@ -191,8 +191,10 @@ class Models(unittest.TestCase):
         self.wait_for("chest: model of the fleet: 1 is refused: it is of 3x3 taxels, the array of 2x3")
         self.wait_for("serving chest")
         self.assertFalse(self.served_array()["calibrated"])
-        self.push(make_model(self.folder, "finer", bits=14))
-        self.wait_for("chest: model of the fleet: 2 is refused: it is of other readings")
+        self.push(make_model(self.folder, "other", circuit="transimpedance"))
+        self.wait_for(
+            "chest: model of the fleet: 2 is refused: it is of the circuit transimpedance, the array of divider"
+        )
         self.assertEqual(list(self.kept.glob("*")), [])
         self.push(self.first)
         self.wait_for("chest: model 3 of the fleet is in use")
@@ -201,14 +203,14 @@ class Models(unittest.TestCase):
         self.push(self.first)
         self.serve()
         self.wait_for("chest: model 1 of the fleet is in use")
-        self.push(make_model(self.folder, "finer", bits=14))
+        self.push(make_model(self.folder, "other", circuit="transimpedance"))
         self.wait_for("chest: model of the fleet: 2 is refused")
         self.wait_for_words(r"anna/chest +1 .+ in use +first\.safetensors\n", "models")
-        use = "model 2 wanted, 1 in use: refused since \\d{4}-\\d\\d-\\d\\d [0-9:]{8} UTC: it is of other readings"
-        self.wait_for_words(rf"anna/chest +\*2 .+ refused +finer\.safetensors\n  {use}", "models")
+        use = "model 2 wanted, 1 in use: refused since \\d{4}-\\d\\d-\\d\\d [0-9:]{8} UTC: it is of the circuit"
+        self.wait_for_words(rf"anna/chest +\*2 .+ refused +other\.safetensors\n  {use}", "models")
         self.wait_for_words(rf"anna +warning +[0-9-]+ [0-9:]+ .+\n  chest: {use}", "list")
         self.assertRegex(self.listed("history"), r"anna +chest: model 1 of the fleet is in use\n")
-        self.assertRegex(self.listed("history"), r"anna +chest: model 2 is refused: it is of other readings")
+        self.assertRegex(self.listed("history"), r"anna +chest: model 2 is refused: it is of the circuit")
         succeed(self.work, "fleet", "rollback", self.hub, "--for", "anna/chest")
         self.wait_for_words(r"anna +well ", "list")
         self.wait_for_words(r"anna/chest +\*1 .+ in use +first\.safetensors\n", "models")
@@ -219,22 +221,47 @@ class Models(unittest.TestCase):
         self.serve()
         self.wait_for_words(r"anna +well ", "list")
         larger = make_model(self.folder, "larger", rows=3)
+        finer = make_model(self.folder, "finer", bits=14)
         for place, model, said in (
             ("anne/chest", self.first, "--for: the hub knows no robot 'anne'; it knows anna"),
             ("anna/back", self.first, "--for: robot 'anna' has no array 'back'; it has chest"),
             ("anna/chest", larger, "--for: the model is of 3x3 taxels, anna/chest has 2x3"),
+            ("anna/chest", finer, "--for: the model does not fit anna/chest: it is of other readings"),
         ):
             self.expect_refused("push", self.hub, model, "--for", place, said=said)
         two = ("--for", "anna/chest", "--for", "anne/chest")
         self.expect_refused("push", self.hub, self.second, *two, said="no robot 'anne'")
         self.assertNotIn("second", self.listed("models"))  # all or none
 
-    def test_two_robots_of_one_name_are_told_there_and_on_the_hub(self):
-        self.serve()
+    def test_a_second_robot_of_a_name_is_refused_or_takes_over(self):
+        first = self.serve()
         self.wait_for_words(r"anna +(well|warning) ", "list")
-        self.serve()
-        self.wait_for("another robot publishes as 'anna'; give one of them another name")
-        self.wait_for_words(r"anna +error .+\n  another robot publishes under this name; rename one of them\n", "list")
+        refused = self.serve(log="second")
+        self.assertEqual(refused.wait(MOST_SECONDS), 2)
+        said = (self.work / "second").read_text()
+        self.assertRegex(said, r"another robot publishes as 'anna' \(process \d+ on \S+\); .+ have it take over\n")
+        self.serve("--take-over", log="third")
+        self.wait_for("has taken over the name 'anna'; nothing more is published")
+        self.assertIsNone(first.poll())
+        time.sleep(1)
+        source = f"{self.hub}?robot=anna&array=chest&from=1&to=last"
+        recorded = run(self.work, "record", "--from", source, "--out", "anna.csv")
+        self.assertEqual(recorded.returncode, 0, recorded.stderr)
+        self.assertEqual(recorded.stderr.count("another run of the robot begins"), 1, recorded.stderr)
+
+    def test_a_full_disk_of_the_hub_and_the_age_of_what_is_shown_are_told(self):
+        self.server.kill()
+        self.server.wait()
+        (self.work / "full.conf").write_text('jetstream { store_dir: "full", max_file_store: 1MB }\n')
+        self.start(["nats-server", "-a", "127.0.0.1", "-p", str(self.port), "-c", "full.conf"])
+        while run(self.work, "fleet", "list", self.hub).returncode != 0:
+            time.sleep(0.1)
+        self.serve(rate=1000)
+        self.wait_for("its disk is full with 1 MB of streams; clear it, or raise max_file_store; frames wait")
+        self.wait_for_words(r"anna +silent .+\n  no message for \d+ s: look whether it is on", "list")
+        listed = run(self.work, "fleet", "list", self.hub)
+        self.assertIn("the hub stores nothing more: ", listed.stderr)
+        self.assertRegex(listed.stdout, r"anna +silent .+ 1 +- ")
 
     def test_a_trial_shows_two_robots_and_leaves_nothing_behind(self):
         empty = self.work / "empty"
@@ -297,6 +324,7 @@ class Models(unittest.TestCase):
         self.expect_refused("watch", self.hub, said="the hub knows no robot that could be watched")
         self.expect_refused("history", self.hub, "--hours", "0", said="--hours: must be above 0")
         self.expect_refused("add", self.hub, "--robot", "a.b", said="robot: 'a.b' must be 1 to 64 letters")
+        self.expect_refused("add", self.hub, "--robot=-rf", said="'_' or '-', a letter or digit first")
         self.push(self.first)
         refused = run(self.work, "fleet", "rollback", self.hub, "--for", "anna/chest")
         self.assertEqual((refused.returncode, refused.stderr.count("\n")), (2, 1))

@@ -35,7 +35,7 @@ cols = 3
 taxel_area_mm2 = 38.48
 
 [readout]
-circuit = "divider"
+circuit = "{circuit}"
 drive_ohm = 20.0
 load_ohm = 200.0
 adc_bits = {bits}
@@ -145,8 +145,8 @@ class Operator(unittest.TestCase):
         cls.dermis("fleet", "add", cls.hub, *named)
 
     @classmethod
-    def make_model(cls, name, bits=12):
-        (cls.work / f"{name}.toml").write_text(ARRAY.format(rows=2, bits=bits))
+    def make_model(cls, name, circuit="divider"):
+        (cls.work / f"{name}.toml").write_text(ARRAY.format(rows=2, bits=12, circuit=circuit))
         data = cls.work / name
         cls.dermis("simulate", "--array", f"{name}.toml", "--scene", "calibration", "--out", data)
         files = ["--frames", data / "frames.csv", "--loads", data / "loads.csv"]
@@ -155,7 +155,7 @@ class Operator(unittest.TestCase):
     @classmethod
     def begin_robots(cls):
         cls.make_model("chest")
-        cls.make_model("finer", bits=14)
+        cls.make_model("other", circuit="transimpedance")
         cls.robots = {}
         for robot in ROBOTS:
             folder = cls.work / f"at-{robot}"
@@ -171,7 +171,7 @@ class Operator(unittest.TestCase):
 
     @classmethod
     def make_trouble(cls):
-        cls.dermis("fleet", "push", cls.hub, "finer.safetensors", "--for", "bob/chest")
+        cls.dermis("fleet", "push", cls.hub, "other.safetensors", "--for", "bob/chest")
         cls.robots["carl"].send_signal(signal.SIGKILL)
         cls.slow_line.is_slow = True
         wanted = r"bob +warning(?s:.)*carl +silent(?s:.)*dora +behind"
@@ -217,8 +217,10 @@ class Operator(unittest.TestCase):
 
     def test_2_which_is_not_well_and_why(self):
         listed = self.answer("dermis fleet list")
-        self.assertRegex(listed, r"bob .+\n  chest: model 1 wanted, its own in use: refused .+ other readings")
-        self.assertRegex(listed, r"carl .+\n  nothing comes: look whether it is on")
+        self.assertRegex(
+            listed, r"bob .+\n  chest: model 1 wanted, its own in use: refused .+ of the circuit transimpedance"
+        )
+        self.assertRegex(listed, r"carl .+\n  no message for \d+ s: look whether it is on")
         self.assertRegex(
             listed, r"dora .+\n  (the hub still lacks \d+ of its messages|its messages reach the hub \d+ s late)\n"
         )
@@ -240,19 +242,19 @@ class Operator(unittest.TestCase):
 
     def test_5_which_model_does_each_array_use_and_which_was_refused_and_why(self):
         models = self.answer("dermis fleet models")
-        self.assertRegex(models, r"bob/chest +\*1 .+ refused +finer\.safetensors\n  model 1 wanted, its own in use: ")
-        self.assertRegex(models, r"refused since .+ UTC: it is of other readings")
+        self.assertRegex(models, r"bob/chest +\*1 .+ refused +other\.safetensors\n  model 1 wanted, its own in use: ")
+        self.assertRegex(models, r"refused since .+ UTC: it is of the circuit")
 
     def test_6_what_happened_last_night(self):
         history = self.answer("dermis fleet history")
         self.assertRegex(history, rf"{TIME} UTC  anna +begins to publish\n")
-        self.assertRegex(history, rf"{TIME} UTC  bob +chest: model 1 is refused: it is of other readings")
+        self.assertRegex(history, rf"{TIME} UTC  bob +chest: model 1 is refused: it is of the circuit")
         self.assertRegex(history, rf"{TIME} UTC  carl +is silent since then\n")
 
     def test_7_how_am_i_alarmed(self):
         once = self.ask(self.asked("dermis fleet watch", "--once"))
         self.assertEqual(once.returncode, 3, once.stderr)
-        self.assertRegex(once.stdout, rf"carl: silent since {TIME} UTC: nothing comes")
+        self.assertRegex(once.stdout, rf"carl: silent since {TIME} UTC: no message for")
         mail = self.work / "bin/mail"
         mail.parent.mkdir(exist_ok=True)
         mail.write_text(f'#!/bin/sh\necho "$@" >>{self.work}/sent\n')
@@ -269,7 +271,7 @@ class Operator(unittest.TestCase):
         self.addCleanup(watch.kill)
         sent = self.work / "sent"
         self.wait_for(lambda: sent.exists() and sent.read_text().count("\n") >= 3)
-        self.assertRegex(sent.read_text(), rf"-s carl: silent since {TIME} UTC: nothing comes.+ me@example\.org\n")
+        self.assertRegex(sent.read_text(), rf"-s carl: silent since {TIME} UTC: no message for.+ me@example\.org\n")
         watch.terminate()
         self.assertEqual(watch.wait(30), 0)
 

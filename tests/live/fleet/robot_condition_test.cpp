@@ -58,6 +58,8 @@ TEST(RobotCondition, silence_and_what_is_still_to_come_are_told_apart) {
   robot.health_time = kNow - seconds(60);
   EXPECT_EQ(state_of(robot), State::silent);
   EXPECT_EQ(condition_of(robot, kNow).since, kNow - seconds(60));
+  EXPECT_EQ(condition_of(robot, kNow).reasons,
+            std::vector<std::string>{"no message for 60 s: look whether it is on, publishes and reaches the hub"});
   robot.lag = 300;
   EXPECT_EQ(state_of(robot), State::behind);
   EXPECT_EQ(condition_of(robot, kNow).reasons, std::vector<std::string>{"the hub still lacks 300 of its messages"});
@@ -67,6 +69,16 @@ TEST(RobotCondition, silence_and_what_is_still_to_come_are_told_apart) {
   robot.health_time = kNow + seconds(60);
   EXPECT_EQ(state_of(robot), State::silent);
   EXPECT_NE(condition_of(robot, kNow).reasons.front().find("clock"), std::string::npos);
+}
+
+TEST(RobotCondition, a_robot_that_has_just_gone_silent_says_so_before_its_state_does) {
+  RobotState robot = robot_with({.name = "chest"});
+  EXPECT_FALSE(robot.is_stale(kNow + seconds(3)));
+  EXPECT_TRUE(robot.is_stale(kNow + seconds(4)));
+  EXPECT_EQ(condition_of(robot, kNow + seconds(4)).reasons, std::vector<std::string>{"no message for 4 s"});
+  EXPECT_EQ(condition_of(robot, kNow + seconds(4)).state, State::well);
+  robot.comes = true;  // its clock is not that of the hub
+  EXPECT_FALSE(robot.is_stale(kNow + seconds(4)));
 }
 
 TEST(RobotCondition, a_full_disk_and_a_name_of_two_robots_are_reasons) {

@@ -45,7 +45,8 @@ TEST(StreamAddress, errors_name_the_part_and_the_mend) {
   EXPECT_EQ(error_of("nats://hub?robt=r"), "'nats://hub?robt=r': 'robt' is no parameter; did you mean 'robot'?");
   EXPECT_EQ(error_of("nats://hub?robot=r&robot=s"), "'nats://hub?robot=r&robot=s': robot: is there twice");
   EXPECT_EQ(error_of("nats://hub?robot=a.b&array=c"),
-            "'nats://hub?robot=a.b&array=c': robot: 'a.b' must be 1 to 64 letters, digits, '_' or '-'");
+            "'nats://hub?robot=a.b&array=c': robot: 'a.b' must be 1 to 64 letters, digits, '_' or '-', a letter or "
+            "digit first");
   EXPECT_EQ(error_of("nats://hub?robot=r&array=a&from=noon"),
             "'nats://hub?robot=r&array=a&from=noon': from: must be a number of the stream from 1 on, a time as "
             "2026-11-28T05:00:00Z, or new");

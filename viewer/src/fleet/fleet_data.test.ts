@@ -3,6 +3,7 @@
 import { describe, expect, it } from "vitest";
 import {
   type ArrayState,
+  aged,
   isOfKind,
   isWanted,
   type Kind,
@@ -46,6 +47,7 @@ const robot = (of: Partial<RobotState> = {}): RobotState => ({
   since_s: null,
   reasons: [],
   silent: false,
+  stale: false,
   live: "http://anna:8080/",
   arrays: [array()],
   ...of,
@@ -60,9 +62,19 @@ describe("the state of a robot", () => {
     expect(stateOfArray(array({ refusal: "it is of another pitch" }))).toBe("warning");
   });
 
-  it("shows no rate of a silent robot", () => {
+  it("shows no rate of a robot of which nothing comes", () => {
     expect(robotOf(robot()).rateHz).toBe(100);
     expect(robotOf(robot({ state: "silent", silent: true })).rateHz).toBeNaN();
+    expect(robotOf(robot({ stale: true })).rateHz).toBeNaN();
+  });
+
+  it("ages while nobody tells more", () => {
+    const told = robot({ age_s: 1, health_age_s: 1 });
+    expect(aged(told, 2)).toEqual({ ...told, age_s: 3, health_age_s: 3 });
+    expect(robotOf(aged(told, 6)).rateHz).toBeNaN();
+    expect(stateOf(aged(told, 6))).toBe("well");
+    expect(stateOf(aged(told, 11))).toBe("silent");
+    expect(aged(told, 11).reasons).toEqual(["no message for 12 s"]);
   });
 });
 

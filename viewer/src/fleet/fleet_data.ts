@@ -5,6 +5,8 @@
 export interface FleetDocument {
   readonly hub: string;
   readonly error: string;
+  /** That the hub's disk is full; "": it is not. */
+  readonly full: string;
   readonly robots: readonly RobotState[];
 }
 
@@ -30,6 +32,8 @@ export interface RobotState {
   readonly lag: number;
   readonly health_age_s: number | null;
   readonly silent: boolean;
+  /** Its last words may not be true any more. */
+  readonly stale: boolean;
   readonly live: string;
   readonly arrays: readonly ArrayState[];
 }
@@ -93,7 +97,7 @@ export interface Robot {
   readonly state: RobotState;
   readonly word: StateName;
   readonly severity: number;
-  /** NaN: not known, as that of a silent robot. */
+  /** NaN: not known, as that of a robot of which nothing comes. */
   readonly rateHz: number;
   readonly lost: number;
   readonly leftOut: number;
@@ -113,7 +117,7 @@ export function robotOf(state: RobotState): Robot {
     state,
     word,
     severity: STATES.indexOf(word),
-    rateHz: state.silent ? NaN : sum(({ rate_hz }) => rate_hz),
+    rateHz: state.silent || state.stale ? NaN : sum(({ rate_hz }) => rate_hz),
     lost: sum(({ lost }) => lost),
     leftOut: sum(({ left_out }) => left_out),
     masked: sum(({ masked_taxels }) => masked_taxels),
@@ -121,6 +125,19 @@ export function robotOf(state: RobotState): Robot {
     toCalibrate: arrays.filter(({ wants_calibration }) => wants_calibration).map(({ name }) => name),
     remarks: state.reasons.join("; "),
   };
+}
+
+const STALE_AFTER_S = 5;
+const SILENT_AFTER_S = 10;
+
+/** A robot as it was told so many seconds ago, while nobody tells more. */
+export function aged(state: RobotState, seconds: number): RobotState {
+  const older = (age: number | null): number | null => (age === null ? null : age + seconds);
+  const age = { age_s: older(state.age_s), health_age_s: older(state.health_age_s), since_s: older(state.since_s) };
+  if (seconds < STALE_AFTER_S) return { ...state, ...age };
+  if (seconds < SILENT_AFTER_S || state.silent) return { ...state, ...age, stale: true };
+  const reasons = [`no message for ${Math.round(age.health_age_s ?? seconds)} s`];
+  return { ...state, ...age, stale: true, silent: true, state: "silent", since_s: age.health_age_s, reasons };
 }
 
 /** The command that gets the frames of an array from the hub. Only letters that names may have are taken. */

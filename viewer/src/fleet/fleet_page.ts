@@ -5,6 +5,7 @@ import { count } from "../format";
 import { KeyedRows } from "../keyed_rows";
 import { Theme } from "../theme";
 import {
+  aged,
   type FleetDocument,
   isOfKind,
   isWanted,
@@ -12,6 +13,7 @@ import {
   type Kind,
   type Order,
   type Robot,
+  type RobotState,
   robotOf,
   type SortKey,
   sorted,
@@ -57,6 +59,7 @@ export class FleetPage {
   readonly #rows: KeyedRows<Robot>;
   readonly #history = new FleetHistory();
   #robots: readonly Robot[] = [];
+  #told: { readonly states: readonly RobotState[]; readonly at: number } = { states: [], at: 0 };
   #isThere = false;
   #kind: Kind = "all";
   #order: Order = { key: "state", descends: false };
@@ -144,6 +147,7 @@ export class FleetPage {
   async #follow(): Promise<void> {
     while (true) {
       await this.#ask();
+      this.#age();
       await new Promise((later) => setTimeout(later, PERIOD_MS));
     }
   }
@@ -168,9 +172,16 @@ export class FleetPage {
     this.#isThere = true;
     setText(this.#hub, hubName(fleet.hub));
     this.#hub.title = fleet.hub;
-    this.#robots = fleet.robots.map(robotOf);
-    if (fleet.error === "") this.#say("good", "Live", "");
-    else this.#say("bad", "No hub", `${fleet.error}. The table is as the hub told it last.`);
+    this.#told = { states: fleet.robots, at: performance.now() };
+    if (fleet.error !== "") this.#say("bad", "No hub", `${fleet.error}. The table is as the hub told it last.`);
+    else if (fleet.full !== "") this.#say("bad", "Disk full", fleet.full);
+    else this.#say("good", "Live", "");
+  }
+
+  /** The last answer is older now. */
+  #age(): void {
+    const seconds = (performance.now() - this.#told.at) / 1000;
+    this.#robots = this.#told.states.map((state) => robotOf(aged(state, seconds)));
     this.#show();
   }
 

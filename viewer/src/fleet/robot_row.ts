@@ -74,6 +74,7 @@ interface ArrayOfRobot {
   readonly index: number;
   readonly array: ArrayState;
   readonly isSilent: boolean;
+  readonly isStale: boolean;
 }
 
 class ArrayRow implements Row<ArrayOfRobot> {
@@ -93,12 +94,12 @@ class ArrayRow implements Row<ArrayOfRobot> {
     );
   }
 
-  show({ array, isSilent }: ArrayOfRobot): void {
+  show({ array, isSilent, isStale }: ArrayOfRobot): void {
     this.#pill.show(isSilent ? "silent" : stateOfArray(array));
     setText(this.#name, array.name);
     const texts = [
       `${count(array.rows)} \u00d7 ${count(array.cols)}`,
-      known(isSilent ? NaN : array.rate_hz, 1, "Hz"),
+      known(isSilent || isStale ? NaN : array.rate_hz, 1, "Hz"),
       lostWords(array.lost, array.left_out),
       "",
       count(array.masked_taxels),
@@ -209,10 +210,10 @@ export class RobotRow implements Row<Robot> {
 
   #showArrays(robot: Robot): void {
     const arrays = this.#isOpen ? robot.state.arrays : [];
-    const { name, silent } = robot.state;
+    const { name, silent, stale } = robot.state;
     this.#arrays.show(
       arrays.flatMap((array, index) => [
-        { index, array, isSilent: silent },
+        { index, array, isSilent: silent, isStale: stale },
         recordCommand(this.#hub(), name, array.name),
       ]),
     );

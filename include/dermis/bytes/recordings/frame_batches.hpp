@@ -54,6 +54,12 @@ class FrameBatchWriter {
   std::unique_ptr<Implementation> implementation_;
 };
 
+/// CRC-32 as in zlib. Batches have one in themselves, descriptions have not.
+[[nodiscard]] std::uint32_t checksum(std::span<const std::uint8_t> bytes) noexcept;
+
+/// The array of a description. Accepts any bytes; fails on those of none.
+[[nodiscard]] Result<RecordedArray> read_description(std::span<const std::uint8_t> description);
+
 /// Frames from the network, and their array.
 struct ReadBatch {
   RecordedArray array;

@@ -21,6 +21,7 @@ namespace dermis::live::fleet {
 struct PublisherOptions {
   BrokerAddress broker{};
   std::string robot;                          ///< check_name()
+  bool take_over = false;                     ///< The name, also from a process that publishes.
   std::function<void(std::string)> notice{};  ///< Told in one line where the server goes and comes back. Thread-safe.
 };
 
@@ -37,8 +38,8 @@ struct PublisherCounts {
 /// Where it does not answer, 16 MB of each array wait.
 class FramePublisher {
  public:
-  /// Fails where the plugin is not there, and on names that are no part of a subject. A server that does not answer is
-  /// told to `notice` and asked again.
+  /// Fails where the plugin is not there, on names that are no part of a subject, and where another process publishes
+  /// as this robot. A server that does not answer is told to `notice` and asked again.
   [[nodiscard]] static Result<std::unique_ptr<FramePublisher>> create(
       std::vector<bytes::recordings::RecordedArray> arrays, PublisherOptions options);
   FramePublisher(const FramePublisher&) = delete;

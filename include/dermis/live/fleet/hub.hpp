@@ -22,6 +22,8 @@ class Broker;
 
 /// A robot whose health is older does not talk to the hub.
 inline constexpr Nanos kSilentAfter = std::chrono::seconds(10);
+/// Rates in a health that is older are not shown: it comes once a second.
+inline constexpr Nanos kStaleAfter = std::chrono::seconds(3);
 
 /// The frames of a robot on the hub, and how it is.
 struct RobotState {
@@ -41,6 +43,10 @@ struct RobotState {
   [[nodiscard]] bool is_silent(Nanos now) const noexcept {
     return health_time + kSilentAfter < now || now + kSilentAfter < health_time;
   }
+  /// What it told last may not be so any more.
+  [[nodiscard]] bool is_stale(Nanos now) const noexcept {
+    return is_silent(now) || (health_time + kStaleAfter < now && !comes);
+  }
 };
 
 /// A change in the way a robot was.
@@ -55,6 +61,7 @@ struct FleetState {
   std::string hub;      ///< Its address, as it may be shown.
   std::string error{};  ///< Why the hub does not answer; empty: it does.
   std::vector<RobotState> robots{};
+  std::string full{};  ///< As Hub::full_disk().
 };
 
 /// For a page: the names of RobotState and ArrayHealth, and ages at `now` in seconds.
@@ -72,9 +79,14 @@ class Hub {
   Hub& operator=(const Hub&) = delete;
   ~Hub();
 
+  /// Makes the place where robots behind their own servers claim their names. One that is there stays.
+  [[nodiscard]] Status prepare();
   /// From now on the hub copies all that the robot's server has and gets. A robot that is there stays.
   [[nodiscard]] Status add_robot(const std::string& name);
   [[nodiscard]] Result<std::vector<RobotState>> robots();
+  /// Says in a sentence that the hub's disk is full, and how much it holds; empty: it stores, or does not answer. Asks
+  /// the hub only where one of these robots is stale.
+  [[nodiscard]] std::string full_disk(const std::vector<RobotState>& robots);
   /// Changes of these robots since a time, the newest last.
   [[nodiscard]] Result<std::vector<RobotEvent>> history(const std::vector<RobotState>& robots, Nanos since);
 

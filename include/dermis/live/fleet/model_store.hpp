@@ -37,8 +37,8 @@ class ModelStore {
                                            std::string_view bytes);
   /// The array is to use the model before its current one; on a hub.
   [[nodiscard]] Result<ModelManifest> roll_back(const std::string& robot, const std::string& array);
-  /// For all arrays; on a hub.
-  [[nodiscard]] Result<std::vector<ModelManifest>> all();
+  /// For all arrays; on a hub. `unreadable` gets a line for each list that cannot be read, which costs no other.
+  [[nodiscard]] Result<std::vector<ModelManifest>> all(std::vector<std::string>& unreadable);
 
   /// For an array, from the hub behind the server, or else the server itself; empty where there was no push. Failures
   /// are bad_input where what the hub has is wrong, else the hub cannot be reached.

@@ -55,7 +55,8 @@ struct StreamAddress {
   return text.substr(0, begin + 3) + text.substr(at + 1);
 }
 
-/// Names of robots and arrays are parts of subjects: letters, digits, '_' and '-', at most 64. Fails on others.
+/// Names of robots and arrays are parts of subjects: letters, digits, '_' and '-', at most 64, and no '_' or '-' first.
+/// Fails on others.
 [[nodiscard]] Status check_name(const std::string& what, const std::string& name);
 
 /// "dermis_ROBOT", the stream of a robot.

@@ -12,6 +12,7 @@
 #include "dermis/bytes/files/atomic_file.hpp"
 #include "dermis/bytes/files/input.hpp"
 #include "dermis/bytes/models/model_file.hpp"
+#include "dermis/bytes/models/model_fit.hpp"
 #include "dermis/live/fleet/model_store.hpp"
 #include "dermis/touch/pipeline/pipeline.hpp"
 
@@ -33,30 +34,14 @@ Status write_file(const filesystem::path& path, std::string_view bytes) {
   return file->commit();
 }
 
-/// The part of a description in which a model does not fit its array; empty: it fits. A calibration may have found the
-/// circuit of an array that was described without one.
+/// In what a model does not fit its array; empty: it fits. A calibration may have found the circuit of an array that
+/// was described without one.
 std::string difference(const ArrayDescription& array, const ArrayDescription& of_model) {
-  if (of_model.rows != array.rows || of_model.cols != array.cols) {
-    return fmt::format("it is of {}x{} taxels, the array of {}x{}", of_model.rows, of_model.cols, array.rows,
-                       array.cols);
-  }
-  if (of_model.row_pitch_m != array.row_pitch_m || of_model.col_pitch_m != array.col_pitch_m) {
-    return "it is of another pitch";
-  }
-  if (array.readout.circuit != Circuit::automatic && of_model.readout.circuit != array.readout.circuit) {
-    return fmt::format("it is of the circuit {}, the array of {}", to_string(of_model.readout.circuit),
-                       to_string(array.readout.circuit));
-  }
-  const bool has_same_readings = of_model.readout.quantity == array.readout.quantity &&
-                                 of_model.readout.adc_bits == array.readout.adc_bits &&
-                                 of_model.readout.pressure_raises_reading == array.readout.pressure_raises_reading;
-  if (!has_same_readings) return "it is of other readings: quantity, bits or direction differ";
-  if (of_model.order != array.order) return "its lines are in another order";
-  const bool has_same_temperatures = of_model.temperature_sensors == array.temperature_sensors &&
-                                     of_model.temperature_gradient_celsius == array.temperature_gradient_celsius;
-  if (!has_same_temperatures) return "its sensors of temperature are elsewhere";
-  if (of_model.absent != array.absent) return "other taxels are absent in it";
-  return "";
+  const Circuit circuit = array.readout.circuit;
+  std::string why = bytes::models::misfit(array, of_model);
+  if (!why.empty() || circuit == Circuit::automatic || circuit == of_model.readout.circuit) return why;
+  return fmt::format("it is of the circuit {}, the array of {}", to_string(of_model.readout.circuit),
+                     to_string(circuit));
 }
 
 }  // namespace
