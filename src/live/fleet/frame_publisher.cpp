@@ -324,7 +324,7 @@ void FramePublisher::Implementation::tell(const Status& outcome) {
   answers_ = static_cast<bool>(outcome);
   if (!options_.notice) return;
   options_.notice(outcome
-                      ? without_password(options_.broker.url) + ": stores frames again"
+                      ? options_.broker.url + ": stores frames again"
                       : outcome.error().message +
                             (outcome.error().kind == ErrorKind::failed ? "; frames wait, and it is asked again" : ""));
 }
