@@ -91,7 +91,9 @@ class Secrets(SmallArray):
         said = self.work / f"said-{len(list(self.work.iterdir()))}"
         with open(said, "w") as log:
             words = [support.BINARY, *map(str, command)]
-            process = subprocess.Popen(words, cwd=self.work, stdout=log, stderr=log, env=os.environ | (environment or {}))
+            process = subprocess.Popen(
+                words, cwd=self.work, stdout=log, stderr=log, env=os.environ | (environment or {})
+            )
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)
         process.said = said
@@ -186,9 +188,7 @@ class Passwords(Secrets):
         """A robot that publishes, until some frames are on the hub."""
         robot = ("--publish", hub, "--robot", "anna")
         record = ("--record", self.work / "robot.mcap", "--port", 0)
-        process = self.start(
-            "serve", "--from", LIVE, "--model", self.model, *record, *robot, environment=environment
-        )
+        process = self.start("serve", "--from", LIVE, "--model", self.model, *record, *robot, environment=environment)
         self.await_line(process, r"serving small at")
         end = time.monotonic() + PATIENCE
         while "anna" not in dermis("fleet", "list", hub, env=os.environ | (environment or {})).stdout:
@@ -260,7 +260,12 @@ class Passwords(Secrets):
     def test_what_cannot_be_opened_shows_nothing(self):
         port = self.begin_hub()
         wrong = f"nats://anna:{PASSWORD}-not@127.0.0.1:{port}"
-        for hub in (wrong, f"{wrong}?robt=anna", f"nats://anna:{PASSWORD}@127.0.0.1:1", f"tls://{PASSWORD}@127.0.0.1:1"):
+        for hub in (
+            wrong,
+            f"{wrong}?robt=anna",
+            f"nats://anna:{PASSWORD}@127.0.0.1:1",
+            f"tls://{PASSWORD}@127.0.0.1:1",
+        ):
             array = f"{hub}{'&' if '?' in hub else '?'}robot=anna&array=small"
             for command in (
                 ("fleet", "list", hub),
