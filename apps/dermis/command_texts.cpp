@@ -19,7 +19,7 @@ constexpr std::array kTexts{
                 "dermis serve\n"
                 "dermis serve --from 'serial:///dev/ttyACM0?protocol=flexitac' --model skin.safetensors\n"
                 "dermis serve --suit suit.toml --record rec.mcap\n"
-                "dermis serve --suit suit.toml --host 0.0.0.0 --token \"$(openssl rand -hex 16)\""},
+                "dermis serve --suit suit.toml --host 0.0.0.0 --token-file token.txt"},
     CommandText{"dermis describe",
                 "It looks at bytes that dermis does not know, of a file or 3 s of a device. It proposes at most three "
                 "layouts (docs/layouts.md), the best first. \"+\" speaks for one, \"-\" is left over, \"?\" may be "

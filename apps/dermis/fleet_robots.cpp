@@ -19,7 +19,7 @@
 #include "dermis/live/fleet/robot_condition.hpp"
 #include "dermis/out/websocket/server.hpp"
 #include "fleet_connection.hpp"
-#include "server_address.hpp"
+#include "server_options.hpp"
 #include "status_line.hpp"
 #include "stop_flag.hpp"
 #include "viewer/viewer_assets.hpp"
@@ -152,13 +152,14 @@ std::vector<out::websocket::Asset> page_assets() {
 
 Status serve_fleet_page(PageOptions& options, const std::function<Status()>& goes_on) {
   const std::atomic<bool>& stop = stop_flag();
+  if (Status found = find_token(options.token_file, options.server); !found) return found;
   const Result<std::unique_ptr<live::fleet::Hub>> hub = connect_fleet<live::fleet::Hub>(options.hub);
   if (!hub) return hub.error();
   options.server.notice = print_notice;
   const Result<std::unique_ptr<out::websocket::Server>> server =
       out::websocket::Server::create(options.server, page_assets());
   if (!server) return server.error();
-  const std::string shown = live::fleet::without_password(options.hub);
+  const std::string shown = live::fleet::without_user_info(options.hub);
   live::fleet::FleetState fleet{.hub = shown.substr(0, shown.find('?'))};
   int looks = 0;
   const auto look = [&] {
@@ -206,9 +207,7 @@ void add_fleet_page(Command& fleet) {
   options->server.port = kPagePort;
   Command command = fleet.subcommand("page", "The same as a page for browsers, with the way to each robot's own");
   command.option("hub", options->hub, "nats://HOST of the hub").required();
-  command.option("--host", options->server.host, "Address to serve at; all but loopback need a token").shows_default();
-  command.option("--port", options->server.port, "Port; 0: any that is free").shows_default();
-  command.option("--token", options->server.token, "Every client must present it");
+  add_server_options(command, options->server, options->token_file);
   command.action([options] { return serve_fleet_page(*options); });
 }
 

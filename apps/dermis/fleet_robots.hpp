@@ -19,6 +19,7 @@ namespace dermis::app {
 struct PageOptions {
   std::string hub;
   out::websocket::ServerOptions server{};
+  std::string token_file{};
 };
 
 /// The page of a fleet, until stop_flag(). `goes_on` is asked once a second; its error ends the page.

@@ -8,12 +8,16 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <span>
+#include <string>
 #include <system_error>
+#include <vector>
 
 #include "commands.hpp"
 #include "dermis/bytes/files/output_place.hpp"
 #include "file_places.hpp"
 #include "lost_input.hpp"
+#include "secrets.hpp"
 #include "status_line.hpp"
 
 namespace dermis::app {
@@ -85,8 +89,12 @@ int exit_status(const Error& error) {
   return error.kind == ErrorKind::bad_input ? kExitBadInput : kExitFailed;
 }
 
-int run(int argc, char** argv) {
-  const Result<Action> action = parse_command_line(argc, argv, kCommands);
+int run(std::span<char* const> given) {
+  Result<std::vector<std::string>> arguments = take_arguments(given);
+  if (!arguments) return exit_status(arguments.error());
+  std::vector<char*> words;
+  for (std::string& argument : *arguments) words.push_back(argument.data());
+  const Result<Action> action = parse_command_line(static_cast<int>(words.size()), words.data(), kCommands);
   if (!action) return exit_status(action.error());
   if (!*action) return 0;
   const Result<int> status = perform(*action);
@@ -108,7 +116,7 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
   try {
-    return dermis::app::run(argc, argv);
+    return dermis::app::run({argv, static_cast<std::size_t>(argc)});
   } catch (const std::system_error& error) {  // of fmt::print()
     if (error.code() == std::errc::broken_pipe) return dermis::app::kExitReaderGone;
     dermis::app::print_notice(fmt::format("dermis: {}", error.what()));

@@ -22,7 +22,7 @@
 #include "dermis/live/sources/source_name.hpp"
 #include "dermis/out/serve/array_setup.hpp"
 #include "dermis/out/serve/session.hpp"
-#include "server_address.hpp"
+#include "server_options.hpp"
 #include "status_line.hpp"
 #include "stop_flag.hpp"
 #include "viewer/viewer_assets.hpp"
@@ -33,6 +33,7 @@ namespace {
 struct ServeOptions {
   out::serve::SuitPlace place;
   out::serve::SessionOptions session;
+  std::string token_file{};
   bool dds = false;
   std::optional<std::uint64_t> domain{};
   std::string publish{};
@@ -134,6 +135,7 @@ void place_recordings(const out::serve::SuitPlace& place, out::serve::SessionOpt
 
 Status serve_suit(ServeOptions& options) {
   if (Status opened = open_folder(options.place); !opened) return opened;
+  if (Status found = find_token(options.token_file, options.session.server); !found) return found;
   if (Status possible = check(options); !possible) return possible;
   if (options.dds) {
     Result<live::dds::PublisherOptions> dds = live::dds::options_of_environment(options.domain);
@@ -186,10 +188,7 @@ void add_serve(Command& command) {
   command.option("--threats", options->place.threats, "threats.toml: limits for the forces");
   command.option("--record", options->session.record, "Record from the beginning, .mcap");
   command.heading("Network");
-  command.option("--host", options->session.server.host, "Address to serve at; all but loopback need a token")
-      .shows_default();
-  command.option("--port", options->session.server.port, "Port; 0: any that is free").shows_default();
-  command.option("--token", options->session.server.token, "Every client must present it");
+  add_server_options(command, options->session.server, options->token_file);
   const Option dds = command.flag("--dds", options->dds, "Topics for ROS 2, too (docs/ros.md)");
   command.option("--domain", options->domain, "Their domain; else that of ROS_DOMAIN_ID, or 0").needs(dds);
   const Option publish =

@@ -176,9 +176,9 @@ Result<std::optional<StoredMessage>> NatsBroker::next(const std::string& stream,
   return get(stream, which);
 }
 
-/// "hub" of "tls://user:password@hub:4222".
+/// "hub" of "tls://hub:4222".
 std::string host_of(const std::string& url) {
-  const std::string rest = without_password(url).substr(url.find("://") + 3);
+  const std::string rest = url.substr(url.find("://") + 3);
   const std::size_t end = rest.starts_with('[') ? rest.find(']') : rest.find_first_of(":/");
   return rest.starts_with('[') ? rest.substr(1, end - 1) : rest.substr(0, end);
 }
@@ -187,7 +187,13 @@ bool is_encrypted(const BrokerAddress& address) {
   return address.url.starts_with("tls:") || !address.ca.empty() || !address.key.empty();
 }
 
-natsStatus set_options(natsOptions* options, const BrokerAddress& address) {
+natsStatus set_password(natsOptions* options, const std::string& user, const std::string& password) {
+  if (password.empty()) return NATS_OK;
+  return user.empty() ? natsOptions_SetToken(options, password.c_str())
+                      : natsOptions_SetUserInfo(options, user.c_str(), password.c_str());
+}
+
+natsStatus set_options(natsOptions* options, const BrokerAddress& address, const std::string& password) {
   const auto both = [](natsStatus first, natsStatus second) { return first != NATS_OK ? first : second; };
   natsStatus status = natsOptions_SetURL(options, address.url.c_str());
   status = both(status, natsOptions_SetTimeout(options, kConnectMs));
@@ -195,17 +201,18 @@ natsStatus set_options(natsOptions* options, const BrokerAddress& address) {
   status = both(status, natsOptions_SetReconnectWait(options, kReconnectMs));
   status = both(status, natsOptions_SetFailRequestsOnDisconnect(options, true));
   status = both(status, natsOptions_SetName(options, "dermis"));
+  status = both(status, set_password(options, address.user, password));
   if (!is_encrypted(address)) return status;
   status = both(status, natsOptions_SetSecure(options, true));
   return both(status, natsOptions_SetExpectedHostname(options, host_of(address.url).c_str()));
 }
 
-Result<Options> make_options(const BrokerAddress& address) {
+Result<Options> make_options(const BrokerAddress& address, const std::string& password) {
   natsOptions* made = nullptr;
   natsStatus status = natsOptions_Create(&made);
   Options options(made);
-  if (status == NATS_OK) status = set_options(options.get(), address);
-  if (status != NATS_OK) return error_of(without_password(address.url), status);
+  if (status == NATS_OK) status = set_options(options.get(), address, password);
+  if (status != NATS_OK) return error_of(address.url, status);
   if (!address.ca.empty() && natsOptions_LoadCATrustedCertificates(options.get(), address.ca.c_str()) != NATS_OK) {
     return bad_input(address.ca + ": cannot be read; it must hold the certificates that sign that of the server");
   }
@@ -218,10 +225,11 @@ Result<Options> make_options(const BrokerAddress& address) {
 
 /// Why there is no connection, and the mend.
 Error refusal(const BrokerAddress& address, natsStatus status) {
-  const std::string place = without_password(address.url);
+  const std::string& place = address.url;
   switch (status) {
     case NATS_CONNECTION_AUTH_FAILED:
-      return bad_input(place + ": the server does not know this user; give key=FILE of one that it knows");
+      return bad_input(place +
+                       ": the server does not know this user; give the password or key=FILE of one that it knows");
     case NATS_SSL_ERROR:
       return bad_input(place + ": the server has no certificate of this name that is signed by " +
                        (address.ca.empty() ? "those of the machine; give ca=FILE" : address.ca));
@@ -234,8 +242,8 @@ Error refusal(const BrokerAddress& address, natsStatus status) {
   }
 }
 
-Result<std::unique_ptr<Broker>> connect(const BrokerAddress& address) {
-  Result<Options> options = make_options(address);
+Result<std::unique_ptr<Broker>> connect(const BrokerAddress& address, const std::string& password) {
+  Result<Options> options = make_options(address, password);
   if (!options) return options.error();
   natsConnection* made_connection = nullptr;
   natsStatus status = natsConnection_Connect(&made_connection, options->get());
@@ -244,18 +252,18 @@ Result<std::unique_ptr<Broker>> connect(const BrokerAddress& address) {
   jsCtx* made_context = nullptr;
   status = natsConnection_JetStream(&made_context, connection.get(), nullptr);
   JetStream jet_stream(made_context);
-  if (status != NATS_OK) return error_of(without_password(address.url), status);
+  if (status != NATS_OK) return error_of(address.url, status);
   return std::unique_ptr<Broker>(
-      std::make_unique<NatsBroker>(without_password(address.url), std::move(connection), std::move(jet_stream)));
+      std::make_unique<NatsBroker>(address.url, std::move(connection), std::move(jet_stream)));
 }
 
 }  // namespace
 }  // namespace dermis::live::fleet
 
 extern "C" __attribute__((visibility("default"))) void dermis_connect_broker(
-    const dermis::live::fleet::BrokerAddress& address,
+    const dermis::live::fleet::BrokerAddress& address, const std::string& password,
     dermis::Result<std::unique_ptr<dermis::live::fleet::Broker>>& connected) {
-  connected = dermis::live::fleet::connect(address);
+  connected = dermis::live::fleet::connect(address, password);
 }
 
 extern "C" __attribute__((visibility("default"))) void dermis_sha256(std::string_view bytes, std::string& digits) {

@@ -162,7 +162,7 @@ def show_well():
         _dermis.Pipeline: lambda pipeline: (
             f"<dermis.Pipeline of '{pipeline.model.array.name}' {_size(pipeline.model.array)}>"
         ),
-        _dermis.Server: lambda server: f"<dermis.Server at {server.url}>",
+        _dermis.Server: lambda server: f"<dermis.Server at {server.url.partition('?')[0]}>",
     }
     for kind, line in lines.items():
         kind.__repr__ = line

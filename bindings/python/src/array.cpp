@@ -28,6 +28,7 @@ std::shared_ptr<touch::pipeline::Model> model_of(const py::object& object) {
   if (is_path(object)) return read_model(path_of(object));
   if (!py::isinstance<touch::pipeline::Model>(object))
     throw py::type_error("model: is a Model or the path of its file");
+  static_cast<void>(object.cast<touch::pipeline::Model&>());  // says so where it is not made yet
   return object.cast<std::shared_ptr<touch::pipeline::Model>>();
 }
 

@@ -59,6 +59,25 @@ py::array_t<T> view(const py::object& owner, std::vector<T>& values, std::vector
   return py::array_t<T>(std::move(shape), values.data(), owner);
 }
 
+/// py::pickle() of a class. `restore` takes what anybody may have written: where it throws, or misses a part, the
+/// pickle is refused by dermis.BadInput.
+template <typename Save, typename Restore>
+auto checked_pickle(Save save, Restore restore) {
+  return py::pickle(save, [restore](const py::tuple& state) {
+    try {
+      return restore(state);
+    } catch (const py::builtin_exception&) {
+    } catch (const py::error_already_set&) {
+    }
+    raise(bad_input("the pickled object is damaged, or of another version of dermis"));
+  });
+}
+
+/// For `restore`.
+inline void require_whole(bool is_whole) {
+  if (!is_whole) throw py::value_error();
+}
+
 /// "(8, 16)"
 std::string shape_text(const py::array& array);
 

@@ -115,7 +115,7 @@ void bind_contacts(py::module_& module) {
            })
       .def(
           "__eq__", [](const Contact& a, const Contact& b) { return a == b; }, py::is_operator())
-      .def(py::pickle(&state_of, &contact_from));
+      .def(checked_pickle(&state_of, &contact_from));
 
   py::class_<Tracker>(module, "ContactTracker")
       .def(py::init([](const py::object& of, double onset_sigma, double onset_force_n, double release_share,

@@ -121,11 +121,12 @@ class Dataset {
  private:
   void make(out::datasets::EpisodeSink& sink) {
     std::vector<std::string> warnings;
-    options_.loss = [&warnings](const std::string& line) { warnings.push_back(line); };
-    options_.notice = options_.loss;
+    out::datasets::EpisodeOptions options = options_;  // another thread may do the same
+    options.loss = [&warnings](const std::string& line) { warnings.push_back(line); };
+    options.notice = options.loss;
     const auto made = [&] {
       const py::gil_scoped_release others_run;
-      return out::datasets::make_episodes(recordings_, options_, sink);
+      return out::datasets::make_episodes(recordings_, options, sink);
     }();
     if (!made) raise(made.error());
     for (const std::string& line : warnings) {
@@ -137,7 +138,7 @@ class Dataset {
     if (!episodes_) {
       auto made = std::make_unique<EpisodesInMemory>();
       make(*made);
-      episodes_ = std::move(made);
+      if (!episodes_) episodes_ = std::move(made);
     }
     return *episodes_;
   }

@@ -14,6 +14,7 @@
 namespace dermis::python {
 namespace {
 
+constexpr double kMostNanos = 9.2e18;  // of std::int64_t
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<py::ssize_t> extents(const FrameShape& shape) {
@@ -27,6 +28,22 @@ std::vector<py::ssize_t> extents(std::size_t frames, const FrameShape& shape) {
 template <typename T>
 std::vector<T> copied(const py::array_t<T>& array) {
   return std::vector<T>(array.data(), array.data() + array.size());
+}
+
+bool is_size(const FrameShape& shape) {
+  constexpr std::size_t kMostTaxels = kMaxLines * kMaxLines;
+  return shape.rows <= kMostTaxels && shape.cols <= kMostTaxels && shape.taxel_count() <= kMostTaxels;
+}
+
+FrameShape shape_in(const py::tuple& state) {
+  const FrameShape shape{state[0].cast<std::size_t>(), state[1].cast<std::size_t>()};
+  require_whole(is_size(shape));
+  return shape;
+}
+
+bool has_all(std::size_t values, std::size_t frames, const FrameShape& shape) {
+  if (frames == 0 || shape.taxel_count() == 0) return values == 0;
+  return values % frames == 0 && values / frames == shape.taxel_count();
 }
 
 std::optional<double> there(double value) {
@@ -55,6 +72,9 @@ std::vector<std::int64_t> times(const py::object& time_ns, const std::optional<d
     return given;
   }
   if (!(*rate_hz > 0.0 && *rate_hz <= 1e6)) throw py::value_error("rate_hz: must be above 0, at most 1e6");
+  if (1e9 * static_cast<double>(frames) / *rate_hz > kMostNanos) {
+    throw py::value_error("rate_hz: is so low that these frames would take more than 292 years");
+  }
   std::vector<std::int64_t> times(frames);
   for (std::size_t k = 0; k < frames; ++k) times[k] = std::llround(1e9 * static_cast<double>(k) / *rate_hz);
   return times;
@@ -165,7 +185,7 @@ void bind_single_frames(py::module_& module) {
                              })
       .def_property_readonly("sequence", [](const ShapedRaw& raw) { return raw.frame.acquisition.sequence; })
       .def_property_readonly("lost_before", [](const ShapedRaw& raw) { return raw.frame.acquisition.lost_before; })
-      .def(py::pickle(
+      .def(checked_pickle(
           [](const ShapedRaw& raw) {
             return py::make_tuple(raw.shape.rows, raw.shape.cols, raw.frame.time.count(), raw.frame.temperature_celsius,
                                   raw.frame.supply_v, raw.frame.counts, raw.frame.acquisition.sequence,
@@ -173,7 +193,7 @@ void bind_single_frames(py::module_& module) {
           },
           [](const py::tuple& state) {
             ShapedRaw raw;
-            raw.shape = {state[0].cast<std::size_t>(), state[1].cast<std::size_t>()};
+            raw.shape = shape_in(state);
             raw.frame.time = Nanos(state[2].cast<std::int64_t>());
             raw.frame.temperature_celsius = state[3].cast<std::optional<double>>();
             raw.frame.supply_v = state[4].cast<std::optional<double>>();
@@ -181,6 +201,7 @@ void bind_single_frames(py::module_& module) {
             raw.frame.acquisition.sequence = state[6].cast<std::optional<std::uint64_t>>();
             raw.frame.acquisition.lost_before = state[7].cast<std::uint32_t>();
             raw.frame.sensor_celsius = state[8].cast<std::vector<float>>();
+            require_whole(has_all(raw.frame.counts.size(), 1, raw.shape));
             return raw;
           }));
 
@@ -206,7 +227,7 @@ void bind_single_frames(py::module_& module) {
       .def_property_readonly("total", [](const ShapedForce& force) { return force.frame.total().newtons; })
       .def_property_readonly("total_sigma", [](const ShapedForce& force) { return force.frame.total().sigma_newtons; })
       .def("total_of", &total_of, py::arg("mask"))
-      .def(py::pickle(
+      .def(checked_pickle(
           [](const ShapedForce& force) {
             return py::make_tuple(force.shape.rows, force.shape.cols, force.frame.time.count(),
                                   static_cast<unsigned>(force.frame.status), force.frame.newtons,
@@ -215,7 +236,7 @@ void bind_single_frames(py::module_& module) {
           },
           [](const py::tuple& state) {
             ShapedForce force;
-            force.shape = {state[0].cast<std::size_t>(), state[1].cast<std::size_t>()};
+            force.shape = shape_in(state);
             force.frame.time = Nanos(state[2].cast<std::int64_t>());
             force.frame.status = static_cast<FrameStatus>(state[3].cast<unsigned>());
             force.frame.newtons = state[4].cast<std::vector<float>>();
@@ -223,6 +244,11 @@ void bind_single_frames(py::module_& module) {
             force.frame.signal_to_noise = state[6].cast<std::vector<float>>();
             force.frame.taxels = taxels_of(state[7].cast<std::string>());
             force.frame.sums = sums_of(force.frame, state[8].cast<std::vector<float>>());
+            for (const std::size_t values :
+                 {force.frame.newtons.size(), force.frame.sigma_newtons.size(), force.frame.signal_to_noise.size(),
+                  force.frame.taxels.size(), force.frame.sums.newtons.size()}) {
+              require_whole(has_all(values, 1, force.shape));
+            }
             return force;
           }));
 }
@@ -355,7 +381,7 @@ void bind_many_frames(py::module_& module) {
           })
       .def_property_readonly("supply_v", per_frame(&Recording::supply_v))
       .def_property_readonly("counts", per_taxel(&Recording::counts))
-      .def(py::pickle(
+      .def(checked_pickle(
           [](const Recording& recording) {
             return py::make_tuple(recording.shape.rows, recording.shape.cols, recording.time_ns,
                                   recording.temperature_celsius, recording.supply_v, recording.counts,
@@ -363,15 +389,20 @@ void bind_many_frames(py::module_& module) {
                                   recording.notes.simulation, recording.sensors, recording.sensor_celsius);
           },
           [](const py::tuple& state) {
-            return Recording{{state[0].cast<std::size_t>(), state[1].cast<std::size_t>()},
-                             state[2].cast<std::vector<std::int64_t>>(),
-                             state[3].cast<std::vector<double>>(),
-                             state[4].cast<std::vector<double>>(),
-                             state[5].cast<std::vector<float>>(),
-                             {state[6].cast<std::string>(), state[7].cast<std::string>(), state[8].cast<std::string>(),
-                              state[9].cast<std::string>()},
-                             state[10].cast<std::size_t>(),
-                             state[11].cast<std::vector<float>>()};
+            Recording recording{shape_in(state),
+                                state[2].cast<std::vector<std::int64_t>>(),
+                                state[3].cast<std::vector<double>>(),
+                                state[4].cast<std::vector<double>>(),
+                                state[5].cast<std::vector<float>>(),
+                                {state[6].cast<std::string>(), state[7].cast<std::string>(),
+                                 state[8].cast<std::string>(), state[9].cast<std::string>()},
+                                state[10].cast<std::size_t>(),
+                                state[11].cast<std::vector<float>>()};
+            const std::size_t frames = recording.size();
+            require_whole(recording.temperature_celsius.size() == frames && recording.supply_v.size() == frames);
+            require_whole(has_all(recording.counts.size(), frames, recording.shape));
+            require_whole(has_all(recording.sensor_celsius.size(), frames, {1, recording.sensors}));
+            return recording;
           }));
 
   py::class_<Forces>(module, "Forces")
@@ -395,13 +426,13 @@ void bind_many_frames(py::module_& module) {
       .def_property_readonly("taxels", per_taxel(&Forces::taxels))
       .def_property_readonly("total", per_frame(&Forces::total))
       .def_property_readonly("total_sigma", per_frame(&Forces::total_sigma))
-      .def(py::pickle(
+      .def(checked_pickle(
           [](const Forces& forces) {
             return py::make_tuple(forces.shape.rows, forces.shape.cols, forces.time_ns, forces.status, forces.newtons,
                                   forces.sigma_newtons, forces.taxels, forces.total, forces.total_sigma);
           },
           [](const py::tuple& state) {
-            Forces forces({state[0].cast<std::size_t>(), state[1].cast<std::size_t>()}, 0);
+            Forces forces(shape_in(state), 0);
             forces.time_ns = state[2].cast<std::vector<std::int64_t>>();
             forces.status = state[3].cast<std::vector<std::uint16_t>>();
             forces.newtons = state[4].cast<std::vector<float>>();
@@ -409,6 +440,14 @@ void bind_many_frames(py::module_& module) {
             forces.taxels = state[6].cast<std::vector<std::uint8_t>>();
             forces.total = state[7].cast<std::vector<double>>();
             forces.total_sigma = state[8].cast<std::vector<double>>();
+            const std::size_t frames = forces.time_ns.size();
+            for (const std::size_t values : {forces.status.size(), forces.total.size(), forces.total_sigma.size()}) {
+              require_whole(values == frames);
+            }
+            for (const std::size_t values :
+                 {forces.newtons.size(), forces.sigma_newtons.size(), forces.taxels.size()}) {
+              require_whole(has_all(values, frames, forces.shape));
+            }
             return forces;
           }));
 }
@@ -452,6 +491,7 @@ Recording recording_of(const py::object& counts, const ArrayDescription* array, 
   const auto frames = static_cast<std::size_t>(values.shape(0));
   Recording recording;
   recording.shape = {static_cast<std::size_t>(values.shape(1)), static_cast<std::size_t>(values.shape(2))};
+  if (!is_size(recording.shape)) throw py::value_error("counts: frames have at most 1048576 taxels");
   recording.counts = copied(values);
   recording.time_ns = times(beside.time_ns, beside.rate_hz, frames);
   recording.temperature_celsius = series(beside.temperature_celsius, "temperature_celsius", frames);

@@ -30,6 +30,21 @@ py::object with_nan_for_masked(const py::object& object, const char* name, bool 
   return object.attr("astype")("float64").attr("filled")(std::numeric_limits<double>::quiet_NaN());
 }
 
+/// pybind11 asks for memory where an object has none, and takes what is there for its value.
+void* refuse_unmade(std::size_t /*bytes*/) {
+  throw py::type_error("this object is not made yet: its __init__() was not called");
+}
+
+/// Objects of __new__() alone are refused wherever one is used.
+void refuse_unmade_objects(const py::module_& module) {
+  for (const auto& [name, object] : module.attr("__dict__").cast<py::dict>()) {
+    if (!PyType_Check(object.ptr())) continue;
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): as Python means it
+    py::detail::type_info* const type = py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(object.ptr()));
+    if (type != nullptr) type->operator_new = &refuse_unmade;
+  }
+}
+
 bool fits(const py::array& array, const std::vector<py::ssize_t>& shape) {
   if (array.ndim() != static_cast<py::ssize_t>(shape.size())) return false;
   for (std::size_t k = 0; k < shape.size(); ++k) {
@@ -119,6 +134,7 @@ PYBIND11_MODULE(_dermis, module) {
   bind_threats(module);
   bind_recognition(module);
   bind_datasets(module);
+  refuse_unmade_objects(module);
 }
 
 }  // namespace dermis::python

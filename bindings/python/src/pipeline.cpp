@@ -86,7 +86,10 @@ class SharedPipeline {
     pipeline_.undo_tare();
   }
 
-  [[nodiscard]] bool taring() const { return pipeline_.last_tare().state == touch::pipeline::Tare::State::taking; }
+  [[nodiscard]] bool taring() {
+    const std::unique_lock lock = exclusively();
+    return pipeline_.last_tare().state == touch::pipeline::Tare::State::taking;
+  }
 
   void follow_drift(bool follow) {
     const std::unique_lock lock = exclusively();

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "dermis/live/dds/publisher.hpp"
 #include "dermis/out/serve/served_suit.hpp"
 #include "dermis/out/serve/session.hpp"
+#include "own_process.hpp"
 #include "viewer/viewer_assets.hpp"
 
 namespace dermis::python {
@@ -33,6 +35,7 @@ class Server {
 
   /// Ends the session; raises where its recording could not be written.
   void stop() {
+    if (!process_.is_this()) return;
     end();
     raise_where_failed(std::exchange(status_, Done{}));
   }
@@ -60,11 +63,14 @@ class Server {
   void end() {
     const py::gil_scoped_release release;
     stop_ = true;
+    const std::lock_guard lock(end_mutex_);
     if (thread_.joinable()) thread_.join();
     session_.reset();
   }
 
+  const OwnProcess process_;
   out::serve::SessionOptions options_;
+  std::mutex end_mutex_;  // two threads of Python may end it
   std::atomic<bool> stop_ = false;
   std::unique_ptr<out::serve::Session> session_;
   std::uint16_t port_ = 0;
@@ -80,7 +86,7 @@ std::string text_of(const py::object& path) {
 
 void bind_serve(py::module_& module) {
   const out::websocket::ServerOptions defaults;
-  py::class_<Server>(module, "Server")
+  py::class_<Server, HeldByItsProcess<Server>>(module, "Server")
       .def_property_readonly("port", &Server::port)
       .def_property_readonly("url", &Server::url)
       .def("stop", &Server::stop)
@@ -104,7 +110,7 @@ void bind_serve(py::module_& module) {
         if (domain && !dds) raise_where_failed(bad_field("domain", "is that of dds=True"));
         if (dds) options.dds = value_or_raise(live::dds::options_of_environment(domain));
         raise_where_failed(options.server.validate());
-        return std::make_unique<Server>(place, std::move(options));
+        return HeldByItsProcess<Server>(new Server(place, std::move(options)));
       },
       py::arg("uri") = py::none(), py::arg("model") = py::none(), py::kw_only(), py::arg("suit") = py::none(),
       py::arg("classes") = py::none(), py::arg("threats") = py::none(), py::arg("record") = py::none(),

@@ -12,6 +12,7 @@
 #include "dermis/bytes/files/suit_toml.hpp"
 #include "dermis/live/sources/open_source.hpp"
 #include "frames.hpp"
+#include "own_process.hpp"
 
 namespace dermis::python {
 namespace {
@@ -22,7 +23,7 @@ constexpr std::size_t kQueuedFrames = 4096;
 constexpr Nanos kLook = std::chrono::milliseconds(50);  // so often Ctrl-C is looked for
 
 /// Frames of a source for Python. A device is read by a thread of its own, so that a program that is busy for a moment
-/// loses nothing.
+/// loses nothing. Threads of Python may use it at once, and close it meanwhile.
 class Source {
  public:
   Source(const std::string& from, std::optional<ArrayDescription> array) : uri_(from), array_(std::move(array)) {
@@ -77,10 +78,11 @@ class Source {
   }
 
   void close() {
-    if (!source_) return;
+    if (!process_.is_this()) return;
     const py::gil_scoped_release release;
     stop_ = true;
     if (queue_) queue_->leave();
+    const std::lock_guard lock(source_mutex_);
     if (reader_.joinable()) reader_.join();
     source_.reset();
   }
@@ -88,8 +90,12 @@ class Source {
   [[nodiscard]] const std::string& uri() const { return uri_; }
   [[nodiscard]] std::optional<FrameShape> shape() const { return shape_; }
   [[nodiscard]] bool is_live() const { return is_live_; }
-  [[nodiscard]] std::uint64_t dropped() const { return queue_ ? queue_->statistics().dropped : 0; }
+  [[nodiscard]] std::uint64_t dropped() const {
+    process_.require("the source");
+    return queue_ ? queue_->statistics().dropped : 0;
+  }
   [[nodiscard]] std::vector<std::string> notices() {
+    process_.require("the source");
     const std::lock_guard lock(mutex_);
     return std::exchange(notices_, {});
   }
@@ -114,7 +120,8 @@ class Source {
   }
 
   void check_open() const {
-    if (!source_) throw py::value_error("the source is closed");
+    process_.require("the source");
+    if (stop_) throw py::value_error("the source is closed");
   }
 
   [[nodiscard]] FrameShape shape_of(const RawFrame& frame) const {
@@ -157,19 +164,26 @@ class Source {
   }
 
   bool read(RawFrame& frame) {
-    Result<bool> more = [&] {
+    std::optional<FrameShape> shape;
+    Result<bool> more = [&]() -> Result<bool> {
       const py::gil_scoped_release release;
-      return source_->next(frame);
+      const std::lock_guard lock(source_mutex_);
+      if (!source_) return false;
+      Result<bool> is_read = source_->next(frame);
+      shape = source_->shape();
+      return is_read;
     }();
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    if (!shape_) shape_ = source_->shape();
+    if (!shape_) shape_ = shape;
     return value_or_raise(std::move(more));
   }
 
+  const OwnProcess process_;
   std::string uri_;
   std::optional<ArrayDescription> array_;
-  std::atomic<bool> stop_ = false;
-  std::unique_ptr<FrameSource> source_;  // null: closed
+  std::atomic<bool> stop_ = false;  // it is closed
+  std::mutex source_mutex_;         // of source_ where nobody else reads it, and of its end
+  std::unique_ptr<FrameSource> source_;
   bool is_live_ = false;
   std::optional<FrameShape> shape_;
   std::optional<FrameQueue> queue_;
@@ -183,7 +197,7 @@ class Source {
 }  // namespace
 
 void bind_sources(py::module_& module) {
-  py::class_<Source>(module, "Source")
+  py::class_<Source, HeldByItsProcess<Source>>(module, "Source")
       .def("__iter__", [](const py::object& self) { return self; })
       .def("__next__", &Source::next)
       .def("latest", &Source::latest, py::arg("timeout_s") = py::none())
@@ -206,7 +220,7 @@ void bind_sources(py::module_& module) {
       [](const py::object& uri, const py::object& array) {
         std::optional<ArrayDescription> description;
         if (!array.is_none()) description = array_of(array);
-        return std::make_unique<Source>(path_of(uri), std::move(description));
+        return HeldByItsProcess<Source>(new Source(path_of(uri), std::move(description)));
       },
       py::arg("uri"), py::arg("array") = py::none());
   module.def(

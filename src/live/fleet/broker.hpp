@@ -59,15 +59,17 @@ class Broker {
                                                                   std::uint64_t sequence) = 0;
 };
 
-/// The function of the plugin, and its name.
-using ConnectBroker = void (*)(const BrokerAddress& address, Result<std::unique_ptr<Broker>>& connected);
+/// The function of the plugin, and its name. `password`: of the user of the address, a token without one, or empty.
+using ConnectBroker = void (*)(const BrokerAddress& address, const std::string& password,
+                               Result<std::unique_ptr<Broker>>& connected);
 inline constexpr const char* kConnectBroker = "dermis_connect_broker";
 
 /// The same of SHA-256: as 64 small hexadecimal digits.
 using FindSha256 = void (*)(std::string_view bytes, std::string& digits);
 inline constexpr const char* kFindSha256 = "dermis_sha256";
 
-/// Loads the plugin and connects. Fails where the plugin or its library is not there, and where no server answers.
+/// Finds the password, loads the plugin and connects. Fails where the plugin or its library is not there, and where no
+/// server answers.
 [[nodiscard]] Result<std::unique_ptr<Broker>> connect_broker(const BrokerAddress& address);
 
 }  // namespace dermis::live::fleet

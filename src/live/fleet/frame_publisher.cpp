@@ -342,7 +342,7 @@ void FramePublisher::Implementation::tell(const Status& outcome) {
   const bool is_news = outcome ? !std::exchange(told_, {}).empty() : told_.insert(outcome.error().message).second;
   if (!is_news || !options_.notice) return;
   options_.notice(outcome
-                      ? without_password(options_.broker.url) + ": stores frames again"
+                      ? options_.broker.url + ": stores frames again"
                       : outcome.error().message +
                             (outcome.error().kind == ErrorKind::failed ? "; frames wait, and it is asked again" : ""));
 }

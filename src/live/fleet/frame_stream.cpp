@@ -240,8 +240,7 @@ void FrameStream::Implementation::tell(const Error& outage) {
 }
 
 void FrameStream::Implementation::tell_of_return() {
-  if (!std::exchange(answers_, true) && options_.notice)
-    options_.notice(without_password(address_.broker.url) + ": answers again");
+  if (!std::exchange(answers_, true) && options_.notice) options_.notice(address_.broker.url + ": answers again");
 }
 
 FrameStream::FrameStream(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}

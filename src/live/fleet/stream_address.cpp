@@ -26,22 +26,29 @@ bool is_of_name(char c) {
 }
 
 struct ParsedText {
-  std::string url;
+  std::string url;  // without the user
+  std::string user;
   std::map<std::string, std::string> values;
 };
 
 Error wrong(const std::string& text, const std::string& what) {
-  return bad_input("'" + without_password(text) + "': " + what);
+  return bad_input("'" + without_user_info(text) + "': " + what);
 }
 
 Result<ParsedText> parse(const std::string& text, const std::set<std::string>& known) {
   if (text.size() > kMostCharacters) return bad_input("an address of NATS is longer than 4096 characters");
-  const std::size_t mark = text.find('?');
-  ParsedText parsed{text.substr(0, mark), {}};
+  const std::string user(user_info(text));
+  if (user.find_first_of(":/") != std::string::npos) {
+    return wrong(text, "a password shows wherever an address does: leave it out, and give it by " +
+                           password_places().environment + " or password-file=FILE");
+  }
+  const std::string shown = without_user_info(text);
+  const std::size_t mark = shown.find('?');
+  ParsedText parsed{shown.substr(0, mark), user, {}};
   if (parsed.url.find("://") == std::string::npos || parsed.url.ends_with("://")) {
     return wrong(text, "names no server; write nats://HOST or tls://HOST");
   }
-  std::string rest = mark == std::string::npos ? "" : text.substr(mark + 1);
+  std::string rest = mark == std::string::npos ? "" : shown.substr(mark + 1);
   while (!rest.empty()) {
     const std::size_t end = std::min(rest.find('&'), rest.size());
     const std::string part = rest.substr(0, end);
@@ -64,7 +71,11 @@ std::string value_of(const ParsedText& parsed, const char* name) {
 }
 
 BrokerAddress broker_of(const ParsedText& parsed) {
-  return {parsed.url, value_of(parsed, "ca"), value_of(parsed, "key")};
+  return {.url = parsed.url,
+          .ca = value_of(parsed, "ca"),
+          .key = value_of(parsed, "key"),
+          .user = parsed.user,
+          .password_file = value_of(parsed, "password-file")};
 }
 
 Result<StreamPlace> place_of(const std::string& text, const std::string& name, const std::string& value,
@@ -83,6 +94,20 @@ bool is_stream_address(std::string_view text) {
   return text.starts_with("nats:") || text.starts_with("tls:");
 }
 
+std::string_view user_info(std::string_view text) {
+  const std::size_t begin = text.find("://");
+  std::string_view rest = text.substr(begin == std::string_view::npos ? text.find(':') + 1 : begin + 3);
+  rest = rest.substr(0, rest.find('?'));
+  const std::size_t at = rest.rfind('@');
+  return at == std::string_view::npos ? std::string_view() : rest.substr(0, at);
+}
+
+std::string without_user_info(const std::string& text) {
+  const std::string_view user = user_info(text);
+  if (user.empty()) return text;
+  return std::string(text).erase(static_cast<std::size_t>(user.data() - text.data()), user.size() + 1);
+}
+
 Status check_name(const std::string& what, const std::string& name) {
   const bool is_good = !name.empty() && name.size() <= kMostOfAName && is_letter_or_digit(name.front()) &&
                        std::all_of(name.begin(), name.end(), is_of_name);
@@ -92,15 +117,15 @@ Status check_name(const std::string& what, const std::string& name) {
 
 Result<BrokerAddress> parse_broker_address(const std::string& text) {
   if (!is_stream_address(text)) return wrong(text, "is no address of NATS; write nats://HOST or tls://HOST");
-  const Result<ParsedText> parsed = parse(text, {"ca", "key"});
+  const Result<ParsedText> parsed = parse(text, {"ca", "key", "password-file"});
   if (!parsed) return parsed.error();
   return broker_of(*parsed);
 }
 
 Result<StreamAddress> parse_stream_address(const std::string& text) {
-  const Result<ParsedText> parsed = parse(text, {"robot", "array", "from", "to", "ca", "key"});
+  const Result<ParsedText> parsed = parse(text, {"robot", "array", "from", "to", "ca", "key", "password-file"});
   if (!parsed) return parsed.error();
-  StreamAddress address{.text = without_password(text), .broker = broker_of(*parsed)};
+  StreamAddress address{.text = without_user_info(text), .broker = broker_of(*parsed)};
   address.robot = value_of(*parsed, "robot");
   address.array = value_of(*parsed, "array");
   for (const auto& [what, name] : {std::pair("robot", address.robot), std::pair("array", address.array)}) {

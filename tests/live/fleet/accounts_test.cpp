@@ -222,7 +222,8 @@ TEST_F(Accounts, the_key_of_a_robot_does_not_open_the_hub) {
   const auto direct = connect_broker(servers->hub_address("robots/anna/anna.pem"));
   ASSERT_FALSE(direct);
   EXPECT_EQ(direct.error().message,
-            servers->hub().url() + ": the server does not know this user; give key=FILE of one that it knows");
+            servers->hub().url() +
+                ": the server does not know this user; give the password or key=FILE of one that it knows");
 }
 
 TEST_F(Accounts, nobody_enters_without_a_key) {

@@ -62,12 +62,23 @@ TEST(StreamAddress, any_text_is_an_address_or_an_error_of_one_line) {
   EXPECT_FALSE(error_of(std::string(5000, 'x')).empty());
 }
 
-TEST(StreamAddress, passwords_are_not_shown) {
-  const auto parsed = parse_stream_address("nats://user:secret@hub:4222?robot=r&array=a");
+TEST(StreamAddress, names_the_user_and_where_the_password_is) {
+  const auto parsed = parse_stream_address("nats://anna@hub:4222?robot=r&array=a&password-file=/etc/dermis/hub");
   ASSERT_TRUE(parsed);
-  EXPECT_EQ(parsed->text, "nats://hub:4222?robot=r&array=a");
-  EXPECT_EQ(parsed->broker.url, "nats://user:secret@hub:4222");
-  EXPECT_EQ(error_of("nats://user:secret@hub?array=a").find("secret"), std::string::npos);
+  EXPECT_EQ(parsed->text, "nats://hub:4222?robot=r&array=a&password-file=/etc/dermis/hub");
+  EXPECT_EQ(parsed->broker.url, "nats://hub:4222");
+  EXPECT_EQ(parsed->broker.user, "anna");
+  EXPECT_EQ(parsed->broker.password_file, "/etc/dermis/hub");
+}
+
+TEST(StreamAddress, a_password_is_refused_and_not_shown) {
+  for (const char* text : {"nats://user:secret@hub?robot=r&array=a", "nats://:secret@hub?robot=r&array=a",
+                           "nats://a:secret@hub,nats://b:secret@other?robot=r&array=a",
+                           "nats://a:secret/secret@hub?robot=r&array=a", "nats://user:secret@hub?array=a&secrt=1"}) {
+    const std::string error = error_of(text);
+    EXPECT_NE(error.find("DERMIS_HUB_PASSWORD or password-file=FILE"), std::string::npos) << error;
+    EXPECT_EQ(error.find("secret"), std::string::npos) << error;
+  }
 }
 
 TEST(StreamAddress, times_are_of_the_calendar) {

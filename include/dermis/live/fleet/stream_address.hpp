@@ -7,6 +7,7 @@
 #include <string_view>
 #include <variant>
 
+#include "dermis/bytes/system/secret.hpp"
 #include "dermis/touch/frames/frames.hpp"
 #include "dermis/touch/frames/result.hpp"
 
@@ -15,11 +16,19 @@ namespace dermis::live::fleet {
 
 /// A server, and who asks it.
 struct BrokerAddress {
-  std::string url{};  ///< "nats://hub:4222", "tls://hub:4222", also with "user:password@".
+  std::string url{};  ///< "nats://hub:4222", "tls://hub:4222".
   std::string ca{};  ///< Path of the certificates that sign that of the server; empty: those of the machine, with tls:.
   std::string
       key{};  ///< Path of the certificate and the key of the user, in PEM; the server must encrypt. Empty: none.
+  std::string user{};           ///< Who has the password; empty: it is a token of NATS.
+  std::string password_file{};  ///< Path; empty: it is in another of password_places(), or there is none.
 };
+
+/// Where the password, or the token, of a hub may be: in this file, in DERMIS_HUB_PASSWORD, in "hub-password" of
+/// systemd.
+[[nodiscard]] inline SecretPlaces password_places(const std::string& file = "") {
+  return {file, "DERMIS_HUB_PASSWORD", "hub-password"};
+}
 
 /// A place in a stream: after all that is there, at a number of the stream, or at a time by UTC.
 struct Newest {};
@@ -27,7 +36,7 @@ using StreamPlace = std::variant<Newest, std::uint64_t, Nanos>;
 
 /// The frames of one array, as nats://HUB?robot=R&array=A&from=TIME|SEQUENCE|new&to=TIME|SEQUENCE|last.
 struct StreamAddress {
-  std::string text;  ///< As it was given, without user and password.
+  std::string text;  ///< As it was given, without the user.
   BrokerAddress broker{};
   std::string robot{};
   std::string array{};
@@ -42,18 +51,14 @@ struct StreamAddress {
 /// Fails, with the mend, on an unknown or a missing part.
 [[nodiscard]] Result<StreamAddress> parse_stream_address(const std::string& text);
 
-/// nats://HOST[:PORT][?ca=FILE&key=FILE]
+/// nats://[USER@]HOST[:PORT][?ca=FILE&key=FILE&password-file=FILE]. Refuses a password: an address is shown.
 [[nodiscard]] Result<BrokerAddress> parse_broker_address(const std::string& text);
 
-/// An address as it may be shown: without user and password.
-[[nodiscard]] inline std::string without_password(const std::string& text) {
-  const std::size_t begin = text.find("://");
-  if (begin == std::string::npos) return text;
-  const std::size_t end = text.find_first_of("/?", begin + 3);
-  const std::size_t at = text.substr(0, end).rfind('@');
-  if (at == std::string::npos) return text;
-  return text.substr(0, begin + 3) + text.substr(at + 1);
-}
+/// "anna:secret" of "nats://anna:secret@hub?robot=anna": who asks; empty where nobody is named. It may begin within
+/// `text`, as that of "--publish=nats://anna@hub" does.
+[[nodiscard]] std::string_view user_info(std::string_view text);
+/// An address as it may be shown: without its user_info().
+[[nodiscard]] std::string without_user_info(const std::string& text);
 
 /// Names of robots and arrays are parts of subjects: letters, digits, '_' and '-', at most 64, and no '_' or '-' first.
 /// Fails on others.
