@@ -65,7 +65,8 @@ MissingTaxels::MissingTaxels(const ArrayDescription& array, const ReferenceCondu
       frames_ago_(array.taxel_count(), kLong),
       estimated_(array.taxel_count()),
       doubt_(array.taxel_count()),
-      taken_(array.taxel_count()) {
+      taken_(array.taxel_count()),
+      rises_(array.taxel_count()) {
   typical_siemens_.resize(array.taxel_count(), 1.0);
   sorted_.reserve(array.taxel_count());
   for (const std::size_t taxel : array.absent) absent_[taxel] = 1;
@@ -168,6 +169,7 @@ void MissingTaxels::estimate(std::span<double> values) const noexcept {
 
 void MissingTaxels::improve(std::span<double> siemens) noexcept {
   std::copy(siemens.begin(), siemens.end(), taken_.begin());
+  if (sharing_axis_ && !unloaded_siemens_.empty()) find_rises(siemens);
   estimate(siemens);
   std::optional<Middle> whole;
   for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
@@ -177,25 +179,35 @@ void MissingTaxels::improve(std::span<double> siemens) noexcept {
     doubt_[taxel] = before ? kDoubtOfHeld : kDoubtOfEstimate;
     if (!sharing_axis_ || unloaded_siemens_.empty()) continue;
     const std::size_t line = line_of(array_, *sharing_axis_, taxel);
-    if (!whole) whole = change_of_unloaded(taken_, std::nullopt, 0);
-    const std::optional<Middle> of_line = change_of_unloaded(taken_, sharing_axis_, line);
+    if (!whole) whole = change_of_unloaded(std::nullopt, 0);
+    const std::optional<Middle> of_line = change_of_unloaded(sharing_axis_, line);
     if (!whole || !of_line || load_siemens_[line] == 0.0) continue;
     const Middle lacking{of_line->value - whole->value, std::hypot(of_line->sigma, whole->sigma)};
     improve(taxel, taken_[taxel], lacking, load_siemens_[line], siemens);
   }
 }
 
+DERMIS_PROCESSOR_CLONES void MissingTaxels::find_rises(std::span<const double> siemens) noexcept {
+  const double* const solved = siemens.data();
+  const double* const unloaded = unloaded_siemens_.data();
+  double* const rises = rises_.data();
+  for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
+    rises[taxel] = unloaded[taxel] > 0.0 ? solved[taxel] / unloaded[taxel] : 0.0;
+  }
+  for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
+    if (is_missing(taxel) || absent_[taxel] != 0) rises[taxel] = 0.0;
+  }
+}
+
 /// The middle of ln(G / unloaded) on a line, or of all: where few are pressed, that of unloaded taxels. Logarithms keep
 /// the order, so the middle of the quotients is theirs.
-std::optional<MissingTaxels::Middle> MissingTaxels::change_of_unloaded(std::span<const double> siemens,
-                                                                       std::optional<Axis> axis,
+std::optional<MissingTaxels::Middle> MissingTaxels::change_of_unloaded(std::optional<Axis> axis,
                                                                        std::size_t line) noexcept {
   sorted_.clear();
-  const std::size_t count = axis ? line_length(array_, *axis) : siemens.size();
+  const std::size_t count = axis ? line_length(array_, *axis) : rises_.size();
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t taxel = axis ? taxel_on_line(array_, *axis, line, k) : k;
-    const bool tells = !is_missing(taxel) && absent_[taxel] == 0 && unloaded_siemens_[taxel] > 0.0;
-    if (tells && siemens[taxel] > 0.0) sorted_.push_back(siemens[taxel] / unloaded_siemens_[taxel]);
+    if (rises_[taxel] > 0.0) sorted_.push_back(rises_[taxel]);
   }
   if (sorted_.size() < kFewest) return std::nullopt;
   const double middle = median_of(sorted_);

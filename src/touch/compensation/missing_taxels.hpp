@@ -63,8 +63,8 @@ class MissingTaxels {
 
   [[nodiscard]] std::optional<double> logarithm(std::span<const double> values, std::size_t taxel,
                                                 double floor) const noexcept;
-  [[nodiscard]] std::optional<Middle> change_of_unloaded(std::span<const double> siemens, std::optional<Axis> axis,
-                                                         std::size_t line) noexcept;
+  [[nodiscard]] std::optional<Middle> change_of_unloaded(std::optional<Axis> axis, std::size_t line) noexcept;
+  void find_rises(std::span<const double> siemens) noexcept;
   void improve(std::size_t taxel, double taken, const Middle& lacking, double load_siemens,
                std::span<double> siemens) noexcept;
 
@@ -82,6 +82,7 @@ class MissingTaxels {
   Nanos last_time_{};
   std::vector<double> doubt_;   // [taxels]
   std::vector<double> taken_;   // [taxels]
+  std::vector<double> rises_;   // over the unloaded conductances; 0 where it tells nothing [taxels]
   std::vector<double> sorted_;  // [taxels]
 };
 
