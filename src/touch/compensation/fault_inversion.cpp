@@ -14,8 +14,9 @@
 namespace dermis::touch::compensation {
 namespace {
 
-constexpr double kMostRounds = 40.0;     // of a frame
+constexpr double kMostRounds = 12.0;     // of a frame
 constexpr std::size_t kMixingDepth = 8;  // likewise
+constexpr double kLeastChange = 1e-3;    // by an estimate, of the voltages of others
 constexpr int kEstimateRounds = 3;       // the estimate from a taxel's neighbours hardly depends on it
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();  // a reading that is not used
 constexpr double kShortSiemens = 20.0;                                 // of a shorted crossing that is kept
@@ -306,7 +307,7 @@ InversionResult FaultInversion::keep_estimates(CrosstalkInversion& healthy, std:
     if (missing_.is_missing(taxel)) equivalent_[taxel] = kNothing;
   }
   for (int round = has_start ? 2 : 1; round < kEstimateRounds; ++round) {
-    lines_are_solved_ ? missing_.estimate(siemens) : missing_.improve(siemens);
+    if (missing_.improve(siemens, !lines_are_solved_) <= kLeastChange && has_start) break;
     keep_crossings(siemens);
     result = healthy.invert(equivalent_, siemens);
   }

@@ -6,6 +6,8 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include "dermis/touch/frames/processor_clones.hpp"
 #include "touch/compensation/readout_parts.hpp"
@@ -23,6 +25,7 @@ constexpr double kMostRise = 1.0;          // of the logarithm above both neighb
 constexpr double kUnloadedScatter = 0.02;  // at least, of the middle of a line
 constexpr double kShiftByPressed = 1.0;    // of that middle where a third is pressed, in median deviations
 constexpr std::size_t kFewest = 4;         // taxels that are evidence
+constexpr std::size_t kMostCompared = 64;  // likewise: of more, some spread over them tell as much
 constexpr int kSteps = 8;
 constexpr double kLeastChange = 1e-4;  // of a logarithm
 
@@ -46,10 +49,21 @@ std::optional<double> between(const std::array<std::optional<double>, 4>& near) 
   return std::min(value, std::max(*before, *after) + kMostRise);
 }
 
-double median_of(std::span<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+/// Counts, for each value, the smaller ones: of few values, that is quicker than to sort them.
+DERMIS_PROCESSOR_CLONES double median_of(std::span<const double> values) {
+  std::array<double, kMostCompared> smaller{};
+  const std::size_t size = values.size();
+  const double* const all = values.data();
+  double* const ranks = smaller.data();
+  for (std::size_t other = 0; other < size; ++other) {
+    const double value = all[other];
+#pragma omp simd
+    for (std::size_t k = 0; k < size; ++k) ranks[k] += value < all[k] ? 1.0 : 0.0;
+  }
+  const auto middle = static_cast<double>(size / 2);
+  double median = 0.0;
+  for (std::size_t k = 0; k < size; ++k) median = ranks[k] <= middle && all[k] > median ? all[k] : median;
+  return median;
 }
 
 }  // namespace
@@ -68,7 +82,13 @@ MissingTaxels::MissingTaxels(const ArrayDescription& array, const ReferenceCondu
       taken_(array.taxel_count()),
       rises_(array.taxel_count()) {
   typical_siemens_.resize(array.taxel_count(), 1.0);
-  sorted_.reserve(array.taxel_count());
+  sorted_.reserve(kMostCompared);
+  for (std::size_t taxel = 0; taxel < array.taxel_count() && array.readout.circuit != Circuit::none; ++taxel) {
+    const std::size_t driven = line_of(array, driven_axis(array), taxel);
+    const std::size_t sensed = line_of(array, crossing(driven_axis(array)), taxel);
+    series_ohm_.push_back(array.readout.drive_ohm[driven] + sensed_line(array.readout, sensed).rho);
+  }
+  series_ohm_.resize(array.taxel_count(), std::numeric_limits<double>::max());
   for (const std::size_t taxel : array.absent) absent_[taxel] = 1;
   for (std::size_t line = 0; sharing_axis_ && line < line_count(array, *sharing_axis_); ++line) {
     const bool is_driven = *sharing_axis_ == driven_axis(array);
@@ -167,8 +187,18 @@ void MissingTaxels::estimate(std::span<double> values) const noexcept {
   }
 }
 
-void MissingTaxels::improve(std::span<double> siemens) noexcept {
+double MissingTaxels::improve(std::span<double> siemens, bool lines_tell) noexcept {
   std::copy(siemens.begin(), siemens.end(), taken_.begin());
+  lines_tell ? weigh(siemens) : estimate(siemens);
+  double change = 0.0;
+  for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
+    if (is_missing(taxel)) change = std::max(change, series_ohm_[taxel] * std::abs(siemens[taxel] - taken_[taxel]));
+  }
+  return change;
+}
+
+/// By the neighbours, and by the others of the line.
+void MissingTaxels::weigh(std::span<double> siemens) noexcept {
   if (sharing_axis_ && !unloaded_siemens_.empty()) find_rises(siemens);
   estimate(siemens);
   std::optional<Middle> whole;
@@ -205,7 +235,9 @@ std::optional<MissingTaxels::Middle> MissingTaxels::change_of_unloaded(std::opti
                                                                        std::size_t line) noexcept {
   sorted_.clear();
   const std::size_t count = axis ? line_length(array_, *axis) : rises_.size();
-  for (std::size_t k = 0; k < count; ++k) {
+  std::size_t step = (count + kMostCompared - 1) / kMostCompared;
+  while (!axis && std::gcd(step, array_.cols) != 1) ++step;
+  for (std::size_t k = 0; k < count; k += step) {
     const std::size_t taxel = axis ? taxel_on_line(array_, *axis, line, k) : k;
     if (rises_[taxel] > 0.0) sorted_.push_back(rises_[taxel]);
   }
