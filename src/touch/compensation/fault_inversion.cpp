@@ -306,11 +306,13 @@ InversionResult FaultInversion::keep_estimates(CrosstalkInversion& healthy, std:
   for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) {
     if (missing_.is_missing(taxel)) equivalent_[taxel] = kNothing;
   }
-  for (int round = has_start ? 2 : 1; round < kEstimateRounds; ++round) {
+  const int first = has_start && missing_.are_fresh() ? kEstimateRounds : has_start ? 2 : 1;
+  for (int round = first; round < kEstimateRounds; ++round) {
     if (missing_.improve(siemens, !lines_are_solved_) <= kLeastChange && has_start) break;
     keep_crossings(siemens);
     result = healthy.invert(equivalent_, siemens);
   }
+  missing_.keep_estimates(siemens);
   return result;
 }
 

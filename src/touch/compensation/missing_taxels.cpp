@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::uint8_t kLong = 4;  // frames without a reading, from which on the last conductance is stale
 constexpr Nanos kLongestGap = std::chrono::milliseconds(50);  // likewise, since the last frame
+constexpr Nanos kFresh = std::chrono::milliseconds(5);        // an estimate
 constexpr double kDoubtOfEstimate = 0.7;                      // relative
 constexpr double kDoubtOfHeld = 0.15;
 constexpr double kFloorShare = 1e-3;       // of the largest conductance: where logarithms end
@@ -119,6 +120,7 @@ DERMIS_PROCESSOR_CLONES bool MissingTaxels::mark(std::span<const TaxelStatus> ta
 void MissingTaxels::forget() noexcept {
   std::fill(frames_ago_.begin(), frames_ago_.end(), std::uint8_t{kLong});
   std::fill(estimated_.begin(), estimated_.end(), 0.0);
+  estimated_at_.reset();
 }
 
 void MissingTaxels::forget(std::size_t taxel) noexcept {
@@ -133,7 +135,6 @@ void MissingTaxels::remember(std::span<const double> siemens) noexcept {
     return;
   }
   for (std::size_t taxel = 0; taxel < missing_.size(); ++taxel) {
-    estimated_[taxel] = is_missing(taxel) ? siemens[taxel] : 0.0;
     if (is_missing(taxel)) continue;
     last_siemens_[taxel] = siemens[taxel];
     frames_ago_[taxel] = 0;
@@ -151,6 +152,17 @@ void MissingTaxels::start_frame(Nanos time) noexcept {
 std::optional<double> MissingTaxels::held(std::size_t taxel) const noexcept {
   if (frames_ago_[taxel] == kLong) return std::nullopt;
   return last_siemens_[taxel];
+}
+
+bool MissingTaxels::are_fresh() const noexcept {
+  return estimated_at_ && last_time_ >= *estimated_at_ && last_time_ - *estimated_at_ < kFresh;
+}
+
+void MissingTaxels::keep_estimates(std::span<const double> siemens) noexcept {
+  for (std::size_t taxel = 0; taxel < missing_.size(); ++taxel) {
+    estimated_[taxel] = is_missing(taxel) ? siemens[taxel] : 0.0;
+    if (is_missing(taxel) && held(taxel)) doubt_[taxel] = std::max(doubt_[taxel], kDoubtOfHeld);
+  }
 }
 
 std::optional<double> MissingTaxels::start(std::size_t taxel) const noexcept {
@@ -189,6 +201,7 @@ void MissingTaxels::estimate(std::span<double> values) const noexcept {
 
 double MissingTaxels::improve(std::span<double> siemens, bool lines_tell) noexcept {
   std::copy(siemens.begin(), siemens.end(), taken_.begin());
+  estimated_at_ = last_time_;
   lines_tell ? weigh(siemens) : estimate(siemens);
   double change = 0.0;
   for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {

@@ -48,6 +48,12 @@ class MissingTaxels {
   /// The same, or what it was estimated to be in the last frame.
   [[nodiscard]] std::optional<double> start(std::size_t taxel) const noexcept;
 
+  /// They were estimated a few milliseconds ago, which is good enough for a frame.
+  [[nodiscard]] bool are_fresh() const noexcept;
+
+  /// What missing taxels were taken for in this frame.
+  void keep_estimates(std::span<const double> siemens) noexcept;
+
   /// Relative standard deviation of a missing taxel.
   [[nodiscard]] double doubt(std::size_t taxel) const noexcept { return doubt_[taxel]; }
 
@@ -84,6 +90,7 @@ class MissingTaxels {
   std::vector<std::uint8_t> frames_ago_;  // of it, at most a few [taxels]
   std::vector<double> estimated_;         // in the last frame; 0: it was not [taxels]
   Nanos last_time_{};
+  std::optional<Nanos> estimated_at_;
   std::vector<double> doubt_;   // [taxels]
   std::vector<double> taken_;   // [taxels]
   std::vector<double> rises_;   // over the unloaded conductances; 0 where it tells nothing [taxels]
