@@ -307,12 +307,12 @@ InversionResult FaultInversion::keep_estimates(CrosstalkInversion& healthy, std:
     if (missing_.is_missing(taxel)) equivalent_[taxel] = kNothing;
   }
   const int first = has_start && missing_.are_fresh() ? kEstimateRounds : has_start ? 2 : 1;
-  for (int round = first; round < kEstimateRounds; ++round) {
+  for (int round = first; round < kEstimateRounds && !result.cut_short; ++round) {
     if (missing_.improve(siemens, !lines_are_solved_) <= kLeastChange && has_start) break;
     keep_crossings(siemens);
     result = healthy.invert(equivalent_, siemens);
   }
-  missing_.keep_estimates(siemens);
+  missing_.keep_estimates(siemens, result.solved);
   return result;
 }
 

@@ -158,10 +158,10 @@ bool MissingTaxels::are_fresh() const noexcept {
   return estimated_at_ && last_time_ >= *estimated_at_ && last_time_ - *estimated_at_ < kFresh;
 }
 
-void MissingTaxels::keep_estimates(std::span<const double> siemens) noexcept {
+void MissingTaxels::keep_estimates(std::span<const double> siemens, bool are_solved) noexcept {
   for (std::size_t taxel = 0; taxel < missing_.size(); ++taxel) {
-    estimated_[taxel] = is_missing(taxel) ? siemens[taxel] : 0.0;
-    if (is_missing(taxel) && held(taxel)) doubt_[taxel] = std::max(doubt_[taxel], kDoubtOfHeld);
+    estimated_[taxel] = is_missing(taxel) && are_solved ? siemens[taxel] : 0.0;
+    if (is_missing(taxel) && doubt_[taxel] == 0.0) doubt_[taxel] = held(taxel) ? kDoubtOfHeld : kDoubtOfEstimate;
   }
 }
 

@@ -51,8 +51,8 @@ class MissingTaxels {
   /// They were estimated a few milliseconds ago, which is good enough for a frame.
   [[nodiscard]] bool are_fresh() const noexcept;
 
-  /// What missing taxels were taken for in this frame.
-  void keep_estimates(std::span<const double> siemens) noexcept;
+  /// What missing taxels were taken for in this frame; the next begins there if the frame is solved.
+  void keep_estimates(std::span<const double> siemens, bool are_solved) noexcept;
 
   /// Relative standard deviation of a missing taxel.
   [[nodiscard]] double doubt(std::size_t taxel) const noexcept { return doubt_[taxel]; }
