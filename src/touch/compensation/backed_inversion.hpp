@@ -29,9 +29,13 @@ class BackedInversion final : public CrosstalkInversion {
     std::copy(kept_.begin(), kept_.end(), siemens.begin());
     return thorough_->invert(ratio, siemens);
   }
-  void start_frame(double share) noexcept override {
-    quick_->start_frame(share);
-    thorough_->start_frame(share);
+  bool start_frame() noexcept override {
+    const bool is_quick = quick_->start_frame();
+    return thorough_->start_frame() && is_quick;
+  }
+  void start_attempt(double share) noexcept override {
+    quick_->start_attempt(share);
+    thorough_->start_attempt(share);
   }
   void hold_film(const FilmConductances& film) noexcept override {
     quick_->hold_film(film);

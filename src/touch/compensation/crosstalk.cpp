@@ -26,7 +26,9 @@ namespace {
 
 constexpr double kToleranceCounts = 0.01;
 constexpr int kMostAttempts = 3;
-constexpr double kRetryShare = 0.15;            // of the steps of a frame
+constexpr double kFirstShare = 0.6;             // of the work of a frame: of its first attempt
+constexpr int kTrial = 64;                      // of so many frames one begins with all readings again
+constexpr double kMostDoubt = 0.01;             // residual of a frame that is cut short and has forces, as a ratio
 constexpr double kGoodEnoughSigmas = 0.3;       // of a reading: where the steps of a frame are used up
 constexpr double kFaultToleranceCounts = 0.05;  // around an inversion that is right to kToleranceCounts
 
@@ -166,6 +168,7 @@ Compensator::~Compensator() = default;
 void Compensator::set_faults(std::span<const LineFault> faults) {
   faults_->set_faults(faults, *inversion_);
   possible_->set_shorted(faults_->shorted_crossings());
+  solving_attempt_ = 0;
 }
 
 void Compensator::hold_film(const FilmConductances& film) noexcept {
@@ -178,6 +181,7 @@ void Compensator::forget() noexcept {
   possible_->forget();
   spikes_->forget();
   faults_->forget();
+  solving_attempt_ = 0;
 }
 
 namespace {
@@ -206,12 +210,15 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
   }
   faults_->start_frame(conditioned.time);
   const InversionResult result = invert_possible(conditioned, conductance);
-  if (spikes_->any_doubt()) conductance.status |= FrameStatus::doubtful;
+  const bool is_rough = result.solved && result.cut_short;
+  if (is_rough || spikes_->any_doubt()) conductance.status |= FrameStatus::doubtful;
   conductance.residual_sigma = result.residual_ratio / conditioned.sigma_ratio;
   if (result.solved) {
-    inversion_->propagate_noise(conditioned.sigma_ratio, conductance.sigma_siemens);
+    const double left = is_rough ? result.residual_ratio : 0.0;
+    const double sigma_ratio = std::hypot(conditioned.sigma_ratio, left);
+    inversion_->propagate_noise(sigma_ratio, conductance.sigma_siemens);
     follow_slopes(conditioned.noise_gain, conductance.sigma_siemens);
-    note_errors(conditioned, conductance);
+    note_errors(conditioned, sigma_ratio, conductance);
     shared_errors_->share_noise(conductance.errors, conductance.sigma_siemens);
     if (faults_->any_doubt() || spikes_->any_doubt()) {
       faults_->add_doubt(conductance.errors.doubt_siemens, conductance.siemens, conductance.sigma_siemens);
@@ -231,7 +238,8 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
 }
 
 /// Without the readings that no conductances explain, and spikes. As long as there is no solution, without the largest
-/// of lines that have little left of the supply, then without these lines.
+/// of lines that have little left of the supply, then without these lines. Where work is scarce, the attempt that has
+/// solved the last frame is the first.
 InversionResult Compensator::invert_possible(const ConditionedFrame& conditioned,
                                              ConductanceFrame& conductance) noexcept {
   if (faults_->keeps_bounds()) {
@@ -241,18 +249,32 @@ InversionResult Compensator::invert_possible(const ConditionedFrame& conditioned
     spikes_->forget();
   }
   InversionResult result;
-  for (int attempt = 0; attempt < kMostAttempts && !result.solved; ++attempt) {
-    if (attempt == 1 && !possible_->take_largest(conditioned.ratio, conductance.taxels)) break;
-    if (attempt == 2 && !possible_->take_full_lines(conditioned.ratio, conductance.taxels)) break;
+  const bool is_plenty = inversion_->start_frame();
+  const bool begins_anew = is_plenty || ++frames_begun_ % kTrial == 0;
+  int number = 0;
+  for (; number < kMostAttempts && !result.solved; ++number) {
+    if (number == 1 && !possible_->take_largest(conditioned.ratio, conductance.taxels)) break;
+    if (number == 2 && !possible_->take_full_lines(conditioned.ratio, conductance.taxels)) break;
     if (are_most_taken(conditioned.taxels, conductance.taxels)) break;
-    inversion_->start_frame(attempt == 0 ? 1.0 : kRetryShare);
-    result = invert(conditioned, conductance);
-    if (attempt == 0 && spikes_->take(conditioned, result.solved, conductance)) {
-      inversion_->start_frame();
-      result = invert(conditioned, conductance);
-    }
+    if (number < solving_attempt_ && !begins_anew) continue;
+    if (number > solving_attempt_ && !is_plenty) break;
+    result = attempt(conditioned, conductance, number == 0);
   }
+  solving_attempt_ = result.solved ? number - 1 : 0;
   if (std::all_of(conductance.taxels.begin(), conductance.taxels.end(), is_invalid)) result.solved = false;
+  return result;
+}
+
+/// A frame that is cut short near its solution keeps all of its readings.
+InversionResult Compensator::attempt(const ConditionedFrame& conditioned, ConductanceFrame& conductance,
+                                     bool is_first) noexcept {
+  inversion_->start_attempt(is_first ? kFirstShare : 1.0);
+  InversionResult result = invert(conditioned, conductance);
+  if (is_first && spikes_->take(conditioned, result.solved, conductance)) {
+    inversion_->start_attempt(kFirstShare);
+    result = invert(conditioned, conductance);
+  }
+  result.solved = result.solved || (result.cut_short && result.residual_ratio <= kMostDoubt);
   return result;
 }
 
@@ -260,7 +282,9 @@ InversionResult Compensator::invert(const ConditionedFrame& conditioned, Conduct
   InversionResult result = faults_->concerns(conductance.taxels)
                                ? faults_->invert(*inversion_, conditioned.ratio, conductance.siemens)
                                : inversion_->invert(conditioned.ratio, conductance.siemens);
-  result.solved = result.solved || result.residual_ratio <= kGoodEnoughSigmas * conditioned.sigma_ratio;
+  if (!result.solved && result.residual_ratio <= kGoodEnoughSigmas * conditioned.sigma_ratio) {
+    result = {true, result.residual_ratio};
+  }
   return result;
 }
 
@@ -273,7 +297,8 @@ void Compensator::prepare_errors(std::size_t taxels, ConductanceErrors& errors) 
 }
 
 /// Before anything but noise is in the standard deviations.
-void Compensator::note_errors(const ConditionedFrame& conditioned, ConductanceFrame& conductance) const noexcept {
+void Compensator::note_errors(const ConditionedFrame& conditioned, double sigma_ratio,
+                              ConductanceFrame& conductance) const noexcept {
   ConductanceErrors& errors = conductance.errors;
   errors.siemens.assign(conductance.siemens.begin(), conductance.siemens.end());
   if (!shared_errors_->tells_noise()) {
@@ -281,7 +306,7 @@ void Compensator::note_errors(const ConditionedFrame& conditioned, ConductanceFr
   }
   faults_->find_doubt(conductance.siemens, errors.doubt_siemens);
   spikes_->add_doubt(errors.doubt_siemens);
-  errors.sigma_ratio = conditioned.sigma_ratio * mean_noise_gain(conditioned.noise_gain);
+  errors.sigma_ratio = sigma_ratio * mean_noise_gain(conditioned.noise_gain);
   errors.supply_doubt = conditioned.supply_doubt;
 }
 

@@ -14,13 +14,13 @@
 namespace dermis::touch::compensation {
 namespace {
 
-constexpr int kMaxRounds = 20;
-constexpr int kMaxMixedRounds = 40;      // under a film
+constexpr double kMostRounds = 12.0;     // of a frame
 constexpr std::size_t kMixingDepth = 8;  // likewise
+constexpr double kLeastChange = 1e-3;    // by an estimate, of the voltages of others
 constexpr int kEstimateRounds = 3;       // the estimate from a taxel's neighbours hardly depends on it
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();  // a reading that is not used
-constexpr double kShortSiemens = 20.0;  // of a shorted crossing that is kept
-constexpr double kOpenSiemens = 1e-9;   // of a taxel that is counted elsewhere
+constexpr double kShortSiemens = 20.0;                                 // of a shorted crossing that is kept
+constexpr double kOpenSiemens = 1e-9;                                  // of a taxel that is counted elsewhere
 constexpr double kMostStretch = 5.0;
 constexpr std::size_t kMostLines = 256;  // rows and columns together: beyond, the dense equations are too slow
 
@@ -53,6 +53,7 @@ FaultInversion::FaultInversion(const ArrayDescription& array, double tolerance_r
       measured_(array.taxel_count()),
       equivalent_(array.taxel_count()),
       lines_(array.rows, array.cols),
+      budget_(kMostRounds),
       correction_(array.taxel_count()) {
   if (film_.any()) mixing_.emplace(array.taxel_count(), kMixingDepth);
   if (is_modelled(array)) circuits_ = Circuits{LumpedCircuit(array), LumpedCircuit(array)};
@@ -218,7 +219,8 @@ void FaultInversion::add_doubt(std::span<const float> doubt_siemens, std::span<c
       const double ohm = axis == driven ? array_.readout.drive_ohm[line] : sensed_line(array_.readout, line).rho;
       for (std::size_t k = 0; k < line_length(array_, axis); ++k) {
         const std::size_t other = taxel_on_line(array_, axis, line, k);
-        sigma_siemens[other] = std::hypot(sigma_siemens[other], ohm * std::sqrt(squares) * siemens[other]);
+        const double share = ohm * siemens[other];
+        sigma_siemens[other] = std::sqrt(sigma_siemens[other] * sigma_siemens[other] + squares * share * share);
       }
     }
   }
@@ -249,24 +251,28 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
   std::copy(measured_.begin(), measured_.end(), equivalent_.begin());
   if (!lines_are_faulty_ || lines_are_solved_) return keep_estimates(healthy, siemens);
   start_circuits();
+  budget_.start_frame();
   keep_crossings(siemens);
   InversionResult result = healthy.invert(equivalent_, siemens);
   if (!circuits_) return result;
-  for (int round = 0; round < (mixing_ ? kMaxMixedRounds : kMaxRounds); ++round) {
+  for (bool is_first = true; budget_.take(1.0); is_first = false) {
     missing_.estimate(siemens);
     for (const std::size_t taxel : crossings_.in_first) siemens[taxel] = kOpenSiemens;
     solve_circuits(siemens);
     result.residual_ratio = misfit(siemens);
-    if (correct(round == 0) <= tolerance_) {
+    if (correct(is_first) <= tolerance_) {
       keep_shift();
+      budget_.learn();
       return result;
     }
     keep_crossings(siemens);
-    result.solved = healthy.invert(equivalent_, siemens).solved;
+    const InversionResult inverted = healthy.invert(equivalent_, siemens);
+    result.solved = inverted.solved;
+    if (inverted.cut_short) break;
   }
   correction_.has_shift = false;
-  result.solved = false;
-  return result;
+  if (result.solved && result.residual_ratio <= kMostLeft) keep_shift();
+  return {false, result.residual_ratio, true};
 }
 
 /// The correction of the last frame.
@@ -300,11 +306,13 @@ InversionResult FaultInversion::keep_estimates(CrosstalkInversion& healthy, std:
   for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) {
     if (missing_.is_missing(taxel)) equivalent_[taxel] = kNothing;
   }
-  for (int round = has_start ? 2 : 1; round < kEstimateRounds; ++round) {
-    lines_are_solved_ ? missing_.estimate(siemens) : missing_.improve(siemens);
+  const int first = has_start && missing_.are_fresh() ? kEstimateRounds : has_start ? 2 : 1;
+  for (int round = first; round < kEstimateRounds && !result.cut_short; ++round) {
+    if (missing_.improve(siemens, !lines_are_solved_) <= kLeastChange && has_start) break;
     keep_crossings(siemens);
     result = healthy.invert(equivalent_, siemens);
   }
+  missing_.keep_estimates(siemens, result.solved);
   return result;
 }
 

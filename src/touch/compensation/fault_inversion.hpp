@@ -15,6 +15,7 @@
 #include "touch/compensation/joined_lines.hpp"
 #include "touch/compensation/lumped_circuit.hpp"
 #include "touch/compensation/missing_taxels.hpp"
+#include "touch/compensation/step_budget.hpp"
 
 namespace dermis::touch::compensation {
 
@@ -26,11 +27,11 @@ namespace dermis::touch::compensation {
 /// Taxels whose conductance no reading determines (on a silent line, stuck, without a reading in this frame) are
 /// estimated (MissingTaxels). Without faults of lines, the healthy inversion keeps those estimates. An open row still
 /// couples the columns through them: eliminating it adds -g g^T / sum(g) to their equations. Lines that
-/// touch are one node with all that either touches. Broken lines are left to the inversion where it solves them. Shorted crossings are in both circuits: the inversion solves them,
-/// or keeps their taxels at a large conductance. For resistive lines, switches, real amplifiers, `none` and arrays of
-/// more than 256 lines there is no faulty circuit. There the readings of faulty lines are replaced by those of their
-/// neighbours, and the rest is solved as if healthy. Many members: one for each kind of fault, and work space, as
-/// invert() may not allocate.
+/// touch are one node with all that either touches. Broken lines are left to the inversion where it solves them.
+/// Shorted crossings are in both circuits: the inversion solves them, or keeps their taxels at a large conductance. For
+/// resistive lines, switches, real amplifiers, `none` and arrays of more than 256 lines there is no faulty circuit.
+/// There the readings of faulty lines are replaced by those of their neighbours, and the rest is solved as if healthy.
+/// Many members: one for each kind of fault, and work space, as invert() may not allocate.
 class FaultInversion {
  public:
   FaultInversion(const ArrayDescription& array, double tolerance_ratio, const ReferenceConductances& references);
@@ -72,6 +73,7 @@ class FaultInversion {
   void forget() noexcept {
     missing_.forget();
     correction_.has_shift = false;
+    budget_.forget();
   }
 
   /// As CrosstalkInversion::invert; `healthy` inverts the circuit without faults.
@@ -154,6 +156,7 @@ class FaultInversion {
   std::vector<double> measured_;                           // T without what supplied rows add [taxels]
   std::vector<double> equivalent_;                         // T' [taxels]
   JoinedLines lines_;
+  StepBudget budget_;  // in rounds
   Correction correction_;
   std::optional<AndersonMixing> mixing_;  // of T', under a film
 };

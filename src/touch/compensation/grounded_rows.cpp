@@ -16,8 +16,8 @@
 namespace dermis::touch::compensation {
 namespace {
 
-constexpr double kLeastSteps = 200.0;  // of a frame where steps are bounded
-constexpr double kMixedWork = 8.0;     // of a mixed step beside a plain one
+constexpr double kMostSteps = 600.0;  // of a frame where steps are bounded
+constexpr double kMixedWork = 10.0;   // of a mixed step beside a plain one
 constexpr int kPlainSteps = 24;
 constexpr double kShrinks = 0.95;  // of the certificate in a step; what shrinks less is left to the mixing
 constexpr int kFilmSteps = 4;      // under a film, whose first change may lead uphill
@@ -28,9 +28,7 @@ constexpr int kRoundedStepsWithoutGain = 5;
 constexpr double kRough = 1e-4;     // certificate, above which single precision shows the way as well
 constexpr double kRounded = 1e-12;  // certificate; what is left of it is rounding
 constexpr std::size_t kMixingDepth = 8;
-constexpr double kLeastSiemens = 1e-12;  // held at 0 below
 constexpr double kMostLogStep = 2.0;
-constexpr double kMostLogResidual = 2.302585092994046;  // ln 10
 
 DERMIS_PROCESSOR_CLONES bool any_is_missing(std::span<const double> ratio) {
   const double* const readings = ratio.data();
@@ -54,7 +52,7 @@ GroundedRows::Mixing::Mixing(std::size_t size)
 
 GroundedRows::GroundedRows(const ArrayDescription& array, double tolerance_ratio, const InversionOptions& options)
     : tolerance_(tolerance_ratio),
-      budget_(options.is_bounded ? kLeastSteps : 0.0),
+      budget_(options.is_bounded ? kMostSteps : 0.0),
       state_(array.rows, array.cols, array.readout.idle_columns),
       reading_siemens_(state_.stride),
       offset_siemens_(state_.stride),
@@ -112,9 +110,10 @@ InversionResult GroundedRows::invert(std::span<const double> ratio, std::span<do
   if (!(certificate <= tolerance_)) certificate = iterate_with_mixing(certificate, 0);
   if (!(certificate <= std::max(tolerance_, kRounded))) certificate = iterate_with_mixing(certificate, kDampedSteps);
   const bool solved = certificate <= std::max(tolerance_, kRounded);
-  if (solved) budget_.learn();
-  if (!solved) start_anew();
-  has_last_ = solved;
+  if (solved && state_.kept.empty()) budget_.learn();
+  is_unfinished_ = !solved && budget_.is_used_up() && certificate <= kMostLeft;
+  if (!solved && !is_unfinished_) start_anew();
+  has_last_ = solved || is_unfinished_;
   for (std::size_t row = 0; row < state_.rows; ++row) {
     std::copy_n(&state_.siemens[row * state_.stride], state_.cols, &siemens[row * state_.cols]);
   }
@@ -126,7 +125,7 @@ InversionResult GroundedRows::invert(std::span<const double> ratio, std::span<do
     std::replace_if(
         siemens.begin(), siemens.end(), [](double value) { return !std::isfinite(value); }, 0.0);
   }
-  return {solved, certificate};
+  return {solved, certificate, !solved && budget_.is_used_up()};
 }
 
 bool GroundedRows::set_shorted(std::span<const std::size_t> taxels) noexcept {
@@ -256,6 +255,7 @@ void GroundedRows::forget() noexcept {
 
 void GroundedRows::start_anew() noexcept {
   has_last_ = false;
+  is_unfinished_ = false;
   first_precision_ = Precision::full;
   if (state_.film) state_.film->follower.forget();
   std::fill(sources_.siemens.begin(), sources_.siemens.end(), 0.0);
@@ -365,16 +365,17 @@ void GroundedRows::keep() noexcept {
   best_explained_ = state_.explained;
 }
 
-/// From the start, the first steps halved (docs/reasons/derivations-circuits.md, below (4)), the others mixed.
+/// From the start, or where the last frame was cut short. The first steps are halved (below (4) of
+/// docs/reasons/derivations-circuits.md), the others mixed.
 double GroundedRows::iterate_with_mixing(double best, int damped_steps) noexcept {
-  for (std::size_t k = 0; k < mixing_.log_siemens.size(); ++k) {
-    mixing_.log_siemens[k] = std::log(std::max(state_.estimate[k], kLeastSiemens));
-  }
+  start_mixing(is_unfinished_ ? state_.siemens : state_.estimate, mixing_.log_siemens);
+  is_unfinished_ = false;
   mixing_.anderson.forget();
   if (state_.film) state_.film->precision = Precision::full;
   int without_gain = 0;
   for (int step = 0; step < damped_steps + kMixedSteps && best > tolerance_ && budget_.take(kMixedWork); ++step) {
-    take_step();
+    take_mixed_step(state_, mixing_.log_siemens);
+    refresh(state_);
     const double certificate = certify(Precision::full);
     if (certificate < best) {
       best = certificate;
@@ -393,41 +394,16 @@ double GroundedRows::iterate_with_mixing(double best, int damped_steps) noexcept
   return best;
 }
 
-/// G and y' of ln G.
-void GroundedRows::take_step() noexcept {
-  const double least = std::log(kLeastSiemens);
-  for (std::size_t row = 0; row < state_.rows; ++row) {
-    for (std::size_t col = 0; col < state_.stride; ++col) {
-      const std::size_t k = row * state_.stride + col;
-      const bool held = mixing_.log_siemens[k] <= least;
-      const double caused = state_.returned[k] / state_.line_gain[row];
-      state_.siemens[k] = held ? 0.0 : std::exp(mixing_.log_siemens[k]);
-      state_.explained[k] = held ? std::max(state_.measured[k], caused) : state_.measured[k];
-    }
-  }
-  refresh(state_);
-}
-
 /// The next ln G.
 void GroundedRows::choose_step() noexcept {
-  bool near = true;
-  for (std::size_t row = 0; row < state_.rows; ++row) {
-    for (std::size_t col = 0; col < state_.stride; ++col) {
-      const std::size_t k = row * state_.stride + col;
-      const double undriven = state_.line_gain[row] * state_.measured[k] - state_.returned[k];
-      const double next = std::max(state_.column_scale[col] * undriven, kLeastSiemens);
-      const double change = std::log(next / std::max(state_.siemens[k], kLeastSiemens));
-      mixing_.log_step[k] = std::clamp(change, -kMostLogResidual, kMostLogResidual);
-      near = near && std::abs(change) < kMostLogResidual;
-    }
-  }
-  if (!near) mixing_.anderson.forget();
+  if (!find_log_step(state_, mixing_.log_step)) mixing_.anderson.forget();
   mixing_.last_log_siemens = mixing_.log_siemens;
   mixing_.anderson.advance(mixing_.log_siemens, mixing_.log_step);
+  const double least = std::log(kLeastSiemens);
   for (std::size_t k = 0; k < mixing_.log_siemens.size(); ++k) {
     const double last = mixing_.last_log_siemens[k];
-    mixing_.log_siemens[k] = std::clamp(mixing_.log_siemens[k], last - kMostLogStep, last + kMostLogStep);
-    mixing_.log_siemens[k] = std::max(mixing_.log_siemens[k], std::log(kLeastSiemens));
+    const double next = std::clamp(mixing_.log_siemens[k], last - kMostLogStep, last + kMostLogStep);
+    mixing_.log_siemens[k] = std::max(next, least);
   }
 }
 

@@ -62,7 +62,11 @@ class GroundedRows final : public CrosstalkInversion {
   [[nodiscard]] bool set_shorted(std::span<const std::size_t> taxels) noexcept override;
   [[nodiscard]] bool set_broken(std::span<const LineFault> faults) noexcept override;
   void hold_film(const FilmConductances& film) noexcept override;
-  void start_frame(double share) noexcept override { budget_.start_frame(share); }
+  bool start_frame() noexcept override {
+    budget_.start_frame();
+    return !budget_.is_scarce();
+  }
+  void start_attempt(double share) noexcept override { budget_.start_attempt(share); }
   void forget() noexcept override;
   void propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept override;
   [[nodiscard]] double siemens_per_ratio() const noexcept override;
@@ -125,20 +129,20 @@ class GroundedRows final : public CrosstalkInversion {
   double iterate() noexcept;
   double iterate_with_mixing(double best, int damped_steps) noexcept;
   void choose_step() noexcept;
-  void take_step() noexcept;
   void keep() noexcept;
 
   double tolerance_;
   StepBudget budget_;  // in steps without mixing
   GroundedRowsState state_;
   JoinedLines joined_;
-  bool can_break_ = false;  // lines
-  bool is_broken_ = false;  // some line
+  bool can_break_ = false;               // lines
+  bool is_broken_ = false;               // some line
   std::vector<double> reading_siemens_;  // y of a ratio of 1 [stride]
   std::vector<double> offset_siemens_;   // y of a ratio of 0 [stride]
   Sources sources_;
   Precision first_precision_ = Precision::full;  // of a frame that differs from the last as that did from its own
-  bool has_last_ = false;                        // `state_` holds the solution of the last frame
+  bool has_last_ = false;                        // `state_` holds the solution of the last frame,
+  bool is_unfinished_ = false;                   // or what it came to
   std::vector<double> last_estimate_;            // and this is the estimate that belongs to it
   std::vector<double> best_siemens_;
   std::vector<double> best_explained_;

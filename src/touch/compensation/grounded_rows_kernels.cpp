@@ -21,6 +21,7 @@
 #define HWY_TARGET_INCLUDE "touch/compensation/grounded_rows_kernels.cpp"
 #include "hwy/foreach_target.h"
 // foreach_target.h comes first: it includes this file again for every instruction set.
+#include "hwy/contrib/math/math-inl.h"
 #include "hwy/highway.h"
 
 #ifndef DERMIS_COMPENSATION_GROUNDED_ROWS_VIEW
@@ -86,7 +87,8 @@ using D = hn::CappedTag<double, 8>;
 using Vec = hn::Vec<D>;
 using View = GroundedRowsView;
 
-constexpr double kLeastShare = 1e-6;      // The share of the supply that a column leaves stays positive under noise.
+constexpr double kLeastShare = 1e-6;  // The share of the supply that a column leaves stays positive under noise.
+constexpr double kMostLogResidual = 2.302585092994046;  // ln 10
 constexpr double kLeastLineRatio = 0.05;  // The least share of the supply that a row leaves, for the estimate.
 
 /// (c): `sum` of Z; for one loaded column the mean of Rd y weighted by Z+ is `drop` over `weight`. Kept taxels draw
@@ -239,6 +241,50 @@ void advance_kernel(const View state) {
   }
 }
 
+void logarithm_kernel(const double* HWY_RESTRICT siemens, std::size_t count, double* HWY_RESTRICT log_siemens) {
+  const D d;
+  for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
+    const Vec present = hn::Max(hn::LoadU(d, siemens + k), hn::Set(d, kLeastSiemens));
+    hn::StoreU(hn::Log(d, present), d, log_siemens + k);
+  }
+}
+
+void mixed_step_kernel(const View state, const double* HWY_RESTRICT log_siemens) {
+  const D d;
+  const Vec least = hn::Set(d, std::log(kLeastSiemens));
+  for (std::size_t row = 0; row < state.rows; ++row) {
+    const Vec part = hn::Set(d, state.line_part[row]);
+    for (std::size_t k = row * state.stride; k < (row + 1) * state.stride; k += hn::Lanes(d)) {
+      const Vec logarithm = hn::LoadU(d, log_siemens + k);
+      const auto held = hn::Le(logarithm, least);
+      const Vec y = hn::LoadU(d, &state.measured[k]);
+      const Vec caused = hn::Mul(hn::LoadU(d, &state.returned[k]), part);
+      hn::StoreU(hn::IfThenZeroElse(held, hn::Exp(d, logarithm)), d, &state.siemens[k]);
+      hn::StoreU(hn::IfThenElse(held, hn::Max(y, caused), y), d, &state.explained[k]);
+    }
+  }
+}
+
+/// Whether all changes are below the most.
+bool log_step_kernel(const View state, double* HWY_RESTRICT log_step) {
+  const D d;
+  const Vec least = hn::Set(d, kLeastSiemens);
+  const Vec most = hn::Set(d, kMostLogResidual);
+  Vec largest = hn::Zero(d);
+  for (std::size_t row = 0; row < state.rows; ++row) {
+    const Vec gain = hn::Set(d, state.line_gain[row]);
+    for (std::size_t col = 0; col < state.stride; col += hn::Lanes(d)) {
+      const std::size_t k = row * state.stride + col;
+      const Vec undriven = hn::MulSub(gain, hn::LoadU(d, &state.measured[k]), hn::LoadU(d, &state.returned[k]));
+      const Vec next = hn::Max(hn::Mul(hn::LoadU(d, &state.column_scale[col]), undriven), least);
+      const Vec change = hn::Log(d, hn::Div(next, hn::Max(hn::LoadU(d, &state.siemens[k]), least)));
+      largest = hn::Max(largest, hn::Abs(change));
+      hn::StoreU(hn::Min(hn::Max(change, hn::Neg(most)), most), d, log_step + k);
+    }
+  }
+  return hn::GetLane(hn::MaxOfLanes(d, largest)) < kMostLogResidual;
+}
+
 /// Base of column j: what noise of y_ij alone makes of G_ij, but for the line gain a_i.
 HWY_INLINE Vec column_noise(D d, const View state, const double* HWY_RESTRICT sigma, std::size_t col) {
   return hn::Div(hn::LoadU(d, sigma + col), hn::LoadU(d, &state.column_part[col]));
@@ -340,6 +386,9 @@ HWY_EXPORT(refresh_kernel);
 HWY_EXPORT(assess_kernel);
 HWY_EXPORT(advance_kernel);
 HWY_EXPORT(noise_kernel);
+HWY_EXPORT(logarithm_kernel);
+HWY_EXPORT(mixed_step_kernel);
+HWY_EXPORT(log_step_kernel);
 
 GroundedRowsState::SinglePrecision::SinglePrecision(std::size_t size, std::size_t coupling_size)
     : dropped(size), shunted(size), siemens(size), coupling(coupling_size), returned(size) {}
@@ -429,6 +478,18 @@ void advance(GroundedRowsState& state, const std::vector<double>& from) noexcept
   HWY_DYNAMIC_DISPATCH(advance_kernel)(GroundedRowsView(state));
   if (state.film != nullptr) hasten_with_film(state, from);
   refresh(state);
+}
+
+void start_mixing(const std::vector<double>& siemens, std::vector<double>& log_siemens) noexcept {
+  HWY_DYNAMIC_DISPATCH(logarithm_kernel)(siemens.data(), siemens.size(), log_siemens.data());
+}
+
+void take_mixed_step(GroundedRowsState& state, const std::vector<double>& log_siemens) noexcept {
+  HWY_DYNAMIC_DISPATCH(mixed_step_kernel)(GroundedRowsView(state), log_siemens.data());
+}
+
+bool find_log_step(GroundedRowsState& state, std::vector<double>& log_step) noexcept {
+  return HWY_DYNAMIC_DISPATCH(log_step_kernel)(GroundedRowsView(state), log_step.data());
 }
 
 void spread_noise(GroundedRowsState& state, const std::vector<double>& sigma, std::span<double> out) noexcept {

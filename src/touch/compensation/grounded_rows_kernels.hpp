@@ -14,6 +14,8 @@ namespace dermis::touch::compensation {
 
 struct GroundedRowsFilm;
 
+inline constexpr double kLeastSiemens = 1e-12;  ///< In logarithms, held at 0 below.
+
 /// Of a driver or a load that is not connected.
 inline constexpr double kOpenOhm = 1e9;
 
@@ -101,6 +103,15 @@ void advance(GroundedRowsState& state, const std::vector<double>& from) noexcept
 
 /// Standard deviation of G [rows, cols] from that of y, `sigma` [stride]; see GroundedRows::propagate_noise.
 void spread_noise(GroundedRowsState& state, const std::vector<double>& sigma, std::span<double> out) noexcept;
+
+/// ln G where a mixed iteration starts at `siemens`.
+void start_mixing(const std::vector<double>& siemens, std::vector<double>& log_siemens) noexcept;
+
+/// G and y' of ln G, to be refreshed.
+void take_mixed_step(GroundedRowsState& state, const std::vector<double>& log_siemens) noexcept;
+
+/// The change of ln G by (d), of each at most ln 10; false: some want more. assess() comes before.
+[[nodiscard]] bool find_log_step(GroundedRowsState& state, std::vector<double>& log_step) noexcept;
 
 /// After a change of G or y' from outside, which keeps what is kept.
 void refresh(GroundedRowsState& state) noexcept;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "dermis/touch/frames/processor_clones.hpp"
 #include "touch/compensation/film_columns.hpp"
 #include "touch/compensation/film_terms.hpp"
 #include "touch/compensation/grounded_rows.hpp"
@@ -16,6 +17,7 @@ namespace {
 
 constexpr double kSourceShare = 1e-3;  // of the tolerance, to which the sources' column voltages are found
 constexpr int kSourcePasses = 200;
+constexpr double kSourceWork = 0.2;  // of a pass beside a step without mixing
 
 }  // namespace
 
@@ -34,7 +36,8 @@ bool GroundedRows::follow_sources() noexcept {
     for (std::size_t col = 0; col < state_.cols; ++col) {
       change = std::max(change, std::abs(sources_.column_ratio[col] - sources_.last_ratio[col]));
     }
-  } while (change > kSourceShare * tolerance_ && change < last_change && ++pass < kSourcePasses);
+  } while (change > kSourceShare * tolerance_ && change < last_change && ++pass < kSourcePasses &&
+           budget_.take(kSourceWork));
   find_row_currents();
   for (std::size_t col = 0; col < state_.cols; ++col) {
     const double current =
@@ -48,17 +51,19 @@ bool GroundedRows::follow_sources() noexcept {
     }
     sources_.siemens[col] = current;
   }
-  return pass < kSourcePasses;
+  return pass < kSourcePasses && !budget_.is_used_up();
 }
 
 /// G^T diag(Rd / a) G v and G^T 1.
-void GroundedRows::find_row_currents() noexcept {
+DERMIS_PROCESSOR_CLONES void GroundedRows::find_row_currents() noexcept {
   std::fill(sources_.column_return.begin(), sources_.column_return.end(), 0.0);
   std::fill(sources_.column_sum.begin(), sources_.column_sum.end(), 0.0);
   for (std::size_t row = 0; row < state_.rows; ++row) {
     const double* const siemens = &state_.siemens[row * state_.stride];
     double current = 0.0;
-    for (std::size_t col = 0; col < state_.cols; ++col) current += siemens[col] * sources_.column_ratio[col];
+    const double* const column_ratio = sources_.column_ratio.data();
+#pragma omp simd reduction(+ : current)
+    for (std::size_t col = 0; col < state_.cols; ++col) current += siemens[col] * column_ratio[col];
     sources_.line_ratio[row] = current;
   }
   if (state_.film) find_lines_with_film(state_, sources_.line_ratio);
@@ -66,9 +71,13 @@ void GroundedRows::find_row_currents() noexcept {
     const double* const siemens = &state_.siemens[row * state_.stride];
     double& line_ratio = sources_.line_ratio[row];
     if (!state_.film) line_ratio = line_ratio * state_.drive_ohm[row] / state_.line_gain[row];
+    double* const column_return = sources_.column_return.data();
+    double* const column_sum = sources_.column_sum.data();
+    const double ratio = line_ratio;
+#pragma omp simd
     for (std::size_t col = 0; col < state_.cols; ++col) {
-      sources_.column_return[col] += siemens[col] * line_ratio;
-      sources_.column_sum[col] += siemens[col];
+      column_return[col] += siemens[col] * ratio;
+      column_sum[col] += siemens[col];
     }
   }
 }

@@ -6,6 +6,8 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include "dermis/touch/frames/processor_clones.hpp"
 #include "touch/compensation/readout_parts.hpp"
@@ -16,6 +18,7 @@ namespace {
 
 constexpr std::uint8_t kLong = 4;  // frames without a reading, from which on the last conductance is stale
 constexpr Nanos kLongestGap = std::chrono::milliseconds(50);  // likewise, since the last frame
+constexpr Nanos kFresh = std::chrono::milliseconds(5);        // an estimate
 constexpr double kDoubtOfEstimate = 0.7;                      // relative
 constexpr double kDoubtOfHeld = 0.15;
 constexpr double kFloorShare = 1e-3;       // of the largest conductance: where logarithms end
@@ -23,6 +26,7 @@ constexpr double kMostRise = 1.0;          // of the logarithm above both neighb
 constexpr double kUnloadedScatter = 0.02;  // at least, of the middle of a line
 constexpr double kShiftByPressed = 1.0;    // of that middle where a third is pressed, in median deviations
 constexpr std::size_t kFewest = 4;         // taxels that are evidence
+constexpr std::size_t kMostCompared = 64;  // likewise: of more, some spread over them tell as much
 constexpr int kSteps = 8;
 constexpr double kLeastChange = 1e-4;  // of a logarithm
 
@@ -46,10 +50,21 @@ std::optional<double> between(const std::array<std::optional<double>, 4>& near) 
   return std::min(value, std::max(*before, *after) + kMostRise);
 }
 
-double median_of(std::span<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+/// Counts, for each value, the smaller ones: of few values, that is quicker than to sort them.
+DERMIS_PROCESSOR_CLONES double median_of(std::span<const double> values) {
+  std::array<double, kMostCompared> smaller{};
+  const std::size_t size = values.size();
+  const double* const all = values.data();
+  double* const ranks = smaller.data();
+  for (std::size_t other = 0; other < size; ++other) {
+    const double value = all[other];
+#pragma omp simd
+    for (std::size_t k = 0; k < size; ++k) ranks[k] += value < all[k] ? 1.0 : 0.0;
+  }
+  const auto middle = static_cast<double>(size / 2);
+  double median = 0.0;
+  for (std::size_t k = 0; k < size; ++k) median = ranks[k] <= middle && all[k] > median ? all[k] : median;
+  return median;
 }
 
 }  // namespace
@@ -65,9 +80,16 @@ MissingTaxels::MissingTaxels(const ArrayDescription& array, const ReferenceCondu
       frames_ago_(array.taxel_count(), kLong),
       estimated_(array.taxel_count()),
       doubt_(array.taxel_count()),
-      taken_(array.taxel_count()) {
+      taken_(array.taxel_count()),
+      rises_(array.taxel_count()) {
   typical_siemens_.resize(array.taxel_count(), 1.0);
-  sorted_.reserve(array.taxel_count());
+  sorted_.reserve(kMostCompared);
+  for (std::size_t taxel = 0; taxel < array.taxel_count() && array.readout.circuit != Circuit::none; ++taxel) {
+    const std::size_t driven = line_of(array, driven_axis(array), taxel);
+    const std::size_t sensed = line_of(array, crossing(driven_axis(array)), taxel);
+    series_ohm_.push_back(array.readout.drive_ohm[driven] + sensed_line(array.readout, sensed).rho);
+  }
+  series_ohm_.resize(array.taxel_count(), std::numeric_limits<double>::max());
   for (const std::size_t taxel : array.absent) absent_[taxel] = 1;
   for (std::size_t line = 0; sharing_axis_ && line < line_count(array, *sharing_axis_); ++line) {
     const bool is_driven = *sharing_axis_ == driven_axis(array);
@@ -98,6 +120,7 @@ DERMIS_PROCESSOR_CLONES bool MissingTaxels::mark(std::span<const TaxelStatus> ta
 void MissingTaxels::forget() noexcept {
   std::fill(frames_ago_.begin(), frames_ago_.end(), std::uint8_t{kLong});
   std::fill(estimated_.begin(), estimated_.end(), 0.0);
+  estimated_at_.reset();
 }
 
 void MissingTaxels::forget(std::size_t taxel) noexcept {
@@ -112,7 +135,6 @@ void MissingTaxels::remember(std::span<const double> siemens) noexcept {
     return;
   }
   for (std::size_t taxel = 0; taxel < missing_.size(); ++taxel) {
-    estimated_[taxel] = is_missing(taxel) ? siemens[taxel] : 0.0;
     if (is_missing(taxel)) continue;
     last_siemens_[taxel] = siemens[taxel];
     frames_ago_[taxel] = 0;
@@ -130,6 +152,17 @@ void MissingTaxels::start_frame(Nanos time) noexcept {
 std::optional<double> MissingTaxels::held(std::size_t taxel) const noexcept {
   if (frames_ago_[taxel] == kLong) return std::nullopt;
   return last_siemens_[taxel];
+}
+
+bool MissingTaxels::are_fresh() const noexcept {
+  return estimated_at_ && last_time_ >= *estimated_at_ && last_time_ - *estimated_at_ < kFresh;
+}
+
+void MissingTaxels::keep_estimates(std::span<const double> siemens, bool are_solved) noexcept {
+  for (std::size_t taxel = 0; taxel < missing_.size(); ++taxel) {
+    estimated_[taxel] = is_missing(taxel) && are_solved ? siemens[taxel] : 0.0;
+    if (is_missing(taxel) && doubt_[taxel] == 0.0) doubt_[taxel] = held(taxel) ? kDoubtOfHeld : kDoubtOfEstimate;
+  }
 }
 
 std::optional<double> MissingTaxels::start(std::size_t taxel) const noexcept {
@@ -166,8 +199,20 @@ void MissingTaxels::estimate(std::span<double> values) const noexcept {
   }
 }
 
-void MissingTaxels::improve(std::span<double> siemens) noexcept {
+double MissingTaxels::improve(std::span<double> siemens, bool lines_tell) noexcept {
   std::copy(siemens.begin(), siemens.end(), taken_.begin());
+  estimated_at_ = last_time_;
+  lines_tell ? weigh(siemens) : estimate(siemens);
+  double change = 0.0;
+  for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
+    if (is_missing(taxel)) change = std::max(change, series_ohm_[taxel] * std::abs(siemens[taxel] - taken_[taxel]));
+  }
+  return change;
+}
+
+/// By the neighbours, and by the others of the line.
+void MissingTaxels::weigh(std::span<double> siemens) noexcept {
+  if (sharing_axis_ && !unloaded_siemens_.empty()) find_rises(siemens);
   estimate(siemens);
   std::optional<Middle> whole;
   for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
@@ -177,25 +222,37 @@ void MissingTaxels::improve(std::span<double> siemens) noexcept {
     doubt_[taxel] = before ? kDoubtOfHeld : kDoubtOfEstimate;
     if (!sharing_axis_ || unloaded_siemens_.empty()) continue;
     const std::size_t line = line_of(array_, *sharing_axis_, taxel);
-    if (!whole) whole = change_of_unloaded(taken_, std::nullopt, 0);
-    const std::optional<Middle> of_line = change_of_unloaded(taken_, sharing_axis_, line);
+    if (!whole) whole = change_of_unloaded(std::nullopt, 0);
+    const std::optional<Middle> of_line = change_of_unloaded(sharing_axis_, line);
     if (!whole || !of_line || load_siemens_[line] == 0.0) continue;
     const Middle lacking{of_line->value - whole->value, std::hypot(of_line->sigma, whole->sigma)};
     improve(taxel, taken_[taxel], lacking, load_siemens_[line], siemens);
   }
 }
 
+DERMIS_PROCESSOR_CLONES void MissingTaxels::find_rises(std::span<const double> siemens) noexcept {
+  const double* const solved = siemens.data();
+  const double* const unloaded = unloaded_siemens_.data();
+  double* const rises = rises_.data();
+  for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
+    rises[taxel] = unloaded[taxel] > 0.0 ? solved[taxel] / unloaded[taxel] : 0.0;
+  }
+  for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
+    if (is_missing(taxel) || absent_[taxel] != 0) rises[taxel] = 0.0;
+  }
+}
+
 /// The middle of ln(G / unloaded) on a line, or of all: where few are pressed, that of unloaded taxels. Logarithms keep
 /// the order, so the middle of the quotients is theirs.
-std::optional<MissingTaxels::Middle> MissingTaxels::change_of_unloaded(std::span<const double> siemens,
-                                                                       std::optional<Axis> axis,
+std::optional<MissingTaxels::Middle> MissingTaxels::change_of_unloaded(std::optional<Axis> axis,
                                                                        std::size_t line) noexcept {
   sorted_.clear();
-  const std::size_t count = axis ? line_length(array_, *axis) : siemens.size();
-  for (std::size_t k = 0; k < count; ++k) {
+  const std::size_t count = axis ? line_length(array_, *axis) : rises_.size();
+  std::size_t step = (count + kMostCompared - 1) / kMostCompared;
+  while (!axis && std::gcd(step, array_.cols) != 1) ++step;
+  for (std::size_t k = 0; k < count; k += step) {
     const std::size_t taxel = axis ? taxel_on_line(array_, *axis, line, k) : k;
-    const bool tells = !is_missing(taxel) && absent_[taxel] == 0 && unloaded_siemens_[taxel] > 0.0;
-    if (tells && siemens[taxel] > 0.0) sorted_.push_back(siemens[taxel] / unloaded_siemens_[taxel]);
+    if (rises_[taxel] > 0.0) sorted_.push_back(rises_[taxel]);
   }
   if (sorted_.size() < kFewest) return std::nullopt;
   const double middle = median_of(sorted_);

@@ -37,14 +37,22 @@ class MissingTaxels {
   /// Readings or conductances from those of their neighbours.
   void estimate(std::span<double> values) const noexcept;
 
-  /// `siemens` are solved, with what was taken for the missing taxels; these become better. Allocates nothing.
-  void improve(std::span<double> siemens) noexcept;
+  /// `siemens` are solved, with what was taken for the missing taxels; these become better, by the neighbours alone or
+  /// by the others of the line, too. Returns the largest share of a voltage by which that matters to others. Allocates
+  /// nothing.
+  double improve(std::span<double> siemens, bool lines_tell = true) noexcept;
 
   /// Where it is known, what a taxel was a moment ago.
   [[nodiscard]] std::optional<double> held(std::size_t taxel) const noexcept;
 
   /// The same, or what it was estimated to be in the last frame.
   [[nodiscard]] std::optional<double> start(std::size_t taxel) const noexcept;
+
+  /// They were estimated a few milliseconds ago, which is good enough for a frame.
+  [[nodiscard]] bool are_fresh() const noexcept;
+
+  /// What missing taxels were taken for in this frame; the next begins there if the frame is solved.
+  void keep_estimates(std::span<const double> siemens, bool are_solved) noexcept;
 
   /// Relative standard deviation of a missing taxel.
   [[nodiscard]] double doubt(std::size_t taxel) const noexcept { return doubt_[taxel]; }
@@ -63,8 +71,9 @@ class MissingTaxels {
 
   [[nodiscard]] std::optional<double> logarithm(std::span<const double> values, std::size_t taxel,
                                                 double floor) const noexcept;
-  [[nodiscard]] std::optional<Middle> change_of_unloaded(std::span<const double> siemens, std::optional<Axis> axis,
-                                                         std::size_t line) noexcept;
+  [[nodiscard]] std::optional<Middle> change_of_unloaded(std::optional<Axis> axis, std::size_t line) noexcept;
+  void weigh(std::span<double> siemens) noexcept;
+  void find_rises(std::span<const double> siemens) noexcept;
   void improve(std::size_t taxel, double taken, const Middle& lacking, double load_siemens,
                std::span<double> siemens) noexcept;
 
@@ -72,6 +81,7 @@ class MissingTaxels {
   std::optional<Axis> sharing_axis_;      // lines whose taxels take from each other
   std::vector<double> load_siemens_;      // g [lines]
   std::vector<double> typical_siemens_;   // [taxels]
+  std::vector<double> series_ohm_;        // of the ends of both lines [taxels]
   std::vector<double> unloaded_siemens_;  // [taxels]; empty: unknown
   std::vector<std::uint8_t> absent_;      // [taxels]
   std::vector<std::uint8_t> missing_;     // [taxels]
@@ -80,8 +90,10 @@ class MissingTaxels {
   std::vector<std::uint8_t> frames_ago_;  // of it, at most a few [taxels]
   std::vector<double> estimated_;         // in the last frame; 0: it was not [taxels]
   Nanos last_time_{};
+  std::optional<Nanos> estimated_at_;
   std::vector<double> doubt_;   // [taxels]
   std::vector<double> taken_;   // [taxels]
+  std::vector<double> rises_;   // over the unloaded conductances; 0 where it tells nothing [taxels]
   std::vector<double> sorted_;  // [taxels]
 };
 

@@ -11,7 +11,7 @@ namespace dermis::touch::compensation {
 namespace {
 
 constexpr int kMaxSteps = 80;
-constexpr double kLeastWork = 40.0;              // of a frame where steps are bounded: solutions of the circuit
+constexpr double kMostWork = 320.0;              // of a frame where steps are bounded: solutions of the circuit
 constexpr double kFilmWork = 4.0;                // times as much under a film
 constexpr double kLongestStep = 2.0;             // of x: a factor of e^2 where x is a logarithm
 constexpr double kShortestFraction = 1.0 / 8.0;  // of a step
@@ -40,7 +40,7 @@ NewtonInversion::NewtonInversion(const ArrayDescription& array, CircuitModel mod
       driver_errors_(array, options.counts_driver_errors),
       noise_(make_newton_noise(circuit_, equations_, driver_errors_, options)),
       tolerance_(tolerance_ratio),
-      budget_(options.is_bounded ? (circuit_.has_film() ? kFilmWork : 1.0) * kLeastWork : 0.0),
+      budget_(options.is_bounded ? (circuit_.has_film() ? kFilmWork : 1.0) * kMostWork : 0.0),
       most_steps_(options.most_steps.value_or(std::numeric_limits<int>::max())),
       last_x_(array.taxel_count()),
       change_(array.taxel_count()),
@@ -65,12 +65,13 @@ InversionResult NewtonInversion::invert(std::span<const double> ratio, std::span
   steps_left_ = most_steps_;
   const bool solved = solve(ratio, siemens);
   std::copy(circuit_.siemens().begin(), circuit_.siemens().end(), siemens.begin());
-  if (solved) {
+  const bool is_cut_short = !solved && budget_.is_used_up();
+  if (solved || (is_cut_short && circuit_.residual_ratio() <= kMostLeft)) {
     for (std::size_t k = 0; k < ratio.size(); ++k) last_shift_[k] = circuit_.x()[k] - circuit_.measured()[k];
     has_last_frame_ = true;
-    budget_.learn();
   }
-  return {solved, circuit_.residual_ratio()};
+  if (solved) budget_.learn();
+  return {solved, circuit_.residual_ratio(), is_cut_short};
 }
 
 bool NewtonInversion::solve(std::span<const double> ratio, std::span<const double> siemens) noexcept {

@@ -43,7 +43,11 @@ class NewtonInversion final : public CrosstalkInversion {
                   const InversionOptions& options);
 
   [[nodiscard]] InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept override;
-  void start_frame(double share) noexcept override { budget_.start_frame(share); }
+  bool start_frame() noexcept override {
+    budget_.start_frame();
+    return !budget_.is_scarce();
+  }
+  void start_attempt(double share) noexcept override { budget_.start_attempt(share); }
   void hold_film(const FilmConductances& film) noexcept override;
   void forget() noexcept override;
   void propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept override;

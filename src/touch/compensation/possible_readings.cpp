@@ -60,7 +60,7 @@ PossibleReadings::PossibleReadings(const ArrayDescription& array)
   totals_.resize(array.driven_lines());
   sums_.resize(array.sensed_lines());
   line_.resize(array.sensed_lines());
-  beyond_.resize(array.sensed_lines());
+  margins_.resize(array.sensed_lines());
   const double weakest_driver = *std::max_element(drive_ohm_.begin(), drive_ohm_.end());
   for (std::size_t line = 0; line < array.sensed_lines(); ++line) {
     const SensedLine sensed = sensed_line(array.readout, line);
@@ -98,12 +98,15 @@ void PossibleReadings::check(std::span<const double> ratio, double sigma_ratio,
 
 bool PossibleReadings::any_may_exceed(std::span<const double> ratio) noexcept {
   std::fill(sums_.begin(), sums_.end(), 0.0);
-  std::fill(beyond_.begin(), beyond_.end(), 0.0);
   double least_left = 1.0;
+  bool any = false;
   for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
-    least_left = std::min(least_left, find_beyond(driven, readings_of(driven, ratio)));
+    const double* const readings = readings_of(driven, ratio);
+    add_up(readings);
+    const Slack slack = find_slack(driven, readings);
+    least_left = std::min(least_left, slack.left);
+    any = any || slack.least < 0.0;
   }
-  bool any = *std::max_element(beyond_.begin(), beyond_.end()) > 0.0;
   for (std::size_t sensed = 0; sensed < heads_.size() && sums_are_bounded_; ++sensed) {
     const Head& head = heads_[sensed];
     any = any || sums_[sensed] > head.most_sum ||
@@ -112,30 +115,44 @@ bool PossibleReadings::any_may_exceed(std::span<const double> ratio) noexcept {
   return any;
 }
 
-/// How far readings of the line are beyond their limits, as they and their sum show. Returns what the driver leaves.
-DERMIS_PROCESSOR_CLONES double PossibleReadings::find_beyond(std::size_t driven, const double* readings) noexcept {
+DERMIS_PROCESSOR_CLONES void PossibleReadings::add_up(const double* readings) noexcept {
+  double* const sums = sums_.data();
+  for (std::size_t sensed = 0; sensed < sums_.size(); ++sensed) sums[sensed] += readings[sensed];
+}
+
+/// Of taxels that are no shorts.
+DERMIS_PROCESSOR_CLONES PossibleReadings::Slack PossibleReadings::find_slack(std::size_t driven,
+                                                                             const double* readings) const noexcept {
   const std::size_t sensed_lines = heads_.size();
   const double* const current = limits_.current.data();
   const double* const offset = limits_.offset.data();
   const double* const ohm = limits_.ohm.data();
   const double* const emf = limits_.emf.data();
-  double* const sums = sums_.data();
-  double* const beyond = beyond_.data();
   double total = 0.0;
 #pragma omp simd reduction(+ : total)
   for (std::size_t sensed = 0; sensed < sensed_lines; ++sensed) {
-    sums[sensed] += readings[sensed];
     total += current[sensed] * readings[sensed] + offset[sensed];
   }
   const double own_ohm = one_loaded_ ? drive_ohm_[driven] : 0.0;
-  const double left = one_loaded_ ? 1.0 : 1.0 - drive_ohm_[driven] * total;
+  double most = 0.0;
+#pragma omp simd reduction(max : most)
   for (std::size_t sensed = 0; sensed < sensed_lines; ++sensed) {
     const double own = current[sensed] * readings[sensed] + offset[sensed];
     const double taken = (ohm[sensed] + own_ohm) * own + emf[sensed];
-    const double more = (taken > 0.0 ? taken : 0.0) - left;
-    beyond[sensed] = more > beyond[sensed] ? more : beyond[sensed];
+    most = taken > most ? taken : most;
   }
-  return left;
+  const double left = one_loaded_ ? 1.0 : 1.0 - drive_ohm_[driven] * total;
+  return {left, left - most};
+}
+
+/// No reading of the line is near its limits.
+bool PossibleReadings::is_clean(std::size_t driven, std::span<const double> ratio,
+                                std::span<const ReadingVerdict> verdicts) noexcept {
+  for (std::size_t sensed = 0; sensed < heads_.size(); ++sensed) {
+    const std::size_t taxel = taxel_of(driven, sensed);
+    if (verdicts[taxel] != ReadingVerdict::possible || was_taken(taxel)) return false;
+  }
+  return find_slack(driven, readings_of(driven, ratio)).least >= 0.0;
 }
 
 /// One after the other.
@@ -179,8 +196,14 @@ void PossibleReadings::judge(std::span<const double> ratio, double sigma_ratio, 
   });
   std::copy(known_.begin(), known_.end(), joined_.begin());
   if (lines_may_be_joined_) judge_joined(ratio, sigma_ratio, verdicts);
+  std::size_t bad_lines = 0;
   for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
-    judge_driven(driven, ratio, sigma_ratio, verdicts);
+    if (is_clean(driven, ratio, verdicts)) continue;
+    bad_lines += judge_driven(driven, ratio, sigma_ratio, verdicts) > most_bad(heads_.size()) ? 1 : 0;
+  }
+  if (2 * bad_lines > drive_ohm_.size()) {
+    std::fill(verdicts.begin(), verdicts.end(), ReadingVerdict::unknown);
+    return;
   }
   for (std::size_t sensed = 0; sensed < heads_.size() && sums_are_bounded_; ++sensed) {
     judge_sensed(sensed, ratio, sigma_ratio, verdicts);
@@ -251,30 +274,38 @@ bool PossibleReadings::are_one_node(std::size_t driven, std::size_t sensed, std:
   return std::abs(left - stands) <= allowed * drop - kShortShare * stands - noise;
 }
 
-void PossibleReadings::judge_driven(std::size_t driven, std::span<const double> ratio, double sigma_ratio,
-                                    std::span<ReadingVerdict> verdicts) const noexcept {
+/// Returns how many readings of the line are bad; it ends when they are many.
+std::size_t PossibleReadings::judge_driven(std::size_t driven, std::span<const double> ratio, double sigma_ratio,
+                                           std::span<ReadingVerdict> verdicts) noexcept {
   double total = 0.0;
   for (std::size_t sensed = 0; sensed < heads_.size(); ++sensed) {
     const std::size_t taxel = taxel_of(driven, sensed);
-    if (verdicts[taxel] != ReadingVerdict::unknown) total += current(sensed, ratio[taxel]);
+    const double own = current(sensed, ratio[taxel]);
+    margins_[sensed] = margins(driven, sensed, own, sigma_ratio);
+    if (verdicts[taxel] != ReadingVerdict::unknown) total += own;
   }
-  for (std::size_t bad = 0; bad <= most_bad(heads_.size()); ++bad) {
+  std::size_t bad = 0;
+  for (; bad <= most_bad(heads_.size()); ++bad) {
+    const double drop = one_loaded_ ? 0.0 : drive_ohm_[driven] * total;
     std::size_t worst = heads_.size();
-    Margins least{0.0, 0.0};
+    double least = 0.0;
+    bool is_impossible = false;
     for (std::size_t sensed = 0; sensed < heads_.size(); ++sensed) {
-      const std::size_t taxel = taxel_of(driven, sensed);
-      if (verdicts[taxel] != ReadingVerdict::possible) continue;
-      const Margins left = margins(driven, sensed, current(sensed, ratio[taxel]), total, sigma_ratio);
-      if (!(left.least() < least.least())) continue;
+      if (verdicts[taxel_of(driven, sensed)] != ReadingVerdict::possible) continue;
+      const Margins& margin = margins_[sensed];
+      const double of_circuit = margin.of_circuit - (1.0 - kAllowedShare) * drop;
+      const double left = std::min(margin.of_short - margin.share_of_short * drop, of_circuit);
+      if (!(left < least)) continue;
       least = left;
+      is_impossible = of_circuit < 0.0;
       worst = sensed;
     }
-    if (worst == heads_.size()) return;
+    if (worst == heads_.size()) return bad;
     const std::size_t taxel = taxel_of(driven, worst);
-    const bool is_impossible = least.of_circuit < 0.0;
     verdicts[taxel] = is_impossible ? ReadingVerdict::impossible : ReadingVerdict::shorted;
     if (is_impossible) total -= current(worst, ratio[taxel]);
   }
+  return bad;
 }
 
 void PossibleReadings::judge_sensed(std::size_t sensed, std::span<const double> ratio, double sigma_ratio,
@@ -307,17 +338,17 @@ void PossibleReadings::judge_sensed(std::size_t sensed, std::span<const double> 
   }
 }
 
-/// `own` is the current of the taxel, `total` that of all readings of the line.
-PossibleReadings::Margins PossibleReadings::margins(std::size_t driven, std::size_t sensed, double own, double total,
+/// `own` is the current of the taxel. Where all columns are loaded, those of its line make a further drop.
+PossibleReadings::Margins PossibleReadings::margins(std::size_t driven, std::size_t sensed, double own,
                                                     double sigma_ratio) const noexcept {
   const Head& head = heads_[sensed];
-  const double taken = head.ohm * own + head.emf + drive_ohm_[driven] * (one_loaded_ ? own : total);
-  const double slack = 1.0 - taken;
+  const double taken = head.ohm * own + head.emf + (one_loaded_ ? drive_ohm_[driven] * own : 0.0);
   const double doubt = kAllowedSigmas * sigma_ratio * std::max(head.ohm * head.current, 0.0);
   const bool is_wary = was_taken(taxel_of(driven, sensed));
   const double short_ohm = head.short_ohm * (is_wary ? kStillShort : 1.0);
-  const double nearer = is_wary ? kStillShare * taken : 0.0;
-  return {slack + kShortShare * taken + doubt - short_ohm * own - nearer, slack + kAllowedShare * taken + doubt};
+  const double share_of_short = 1.0 - kShortShare + (is_wary ? kStillShare : 0.0);
+  return {1.0 - share_of_short * taken + doubt - short_ohm * own, 1.0 - (1.0 - kAllowedShare) * taken + doubt,
+          share_of_short};
 }
 
 bool PossibleReadings::take_largest(std::span<const double> ratio, std::span<TaxelStatus> taxels) noexcept {

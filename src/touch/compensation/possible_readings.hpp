@@ -91,28 +91,35 @@ class PossibleReadings {
   }
   [[nodiscard]] bool was_taken(std::size_t taxel) const noexcept { return last_taken_[taxel] != 0; }
   [[nodiscard]] bool any_may_exceed(std::span<const double> ratio) noexcept;
-  double find_beyond(std::size_t driven, const double* readings) noexcept;
+  void add_up(const double* readings) noexcept;
+
+  /// Of the supply, at a driven line.
+  struct Slack {
+    double left;   ///< by the driver
+    double least;  ///< and by the taxel that has least
+  };
+  [[nodiscard]] Slack find_slack(std::size_t driven, const double* readings) const noexcept;
+  [[nodiscard]] bool is_clean(std::size_t driven, std::span<const double> ratio,
+                              std::span<const ReadingVerdict> verdicts) noexcept;
   [[nodiscard]] const double* readings_of(std::size_t driven, std::span<const double> ratio) noexcept;
   void judge_joined(std::span<const double> ratio, double sigma_ratio, std::span<ReadingVerdict> verdicts) noexcept;
   [[nodiscard]] bool are_joined(std::size_t driven, std::size_t sensed, std::span<const double> ratio,
                                 double sigma_ratio) const noexcept;
   [[nodiscard]] bool are_one_node(std::size_t driven, std::size_t sensed, std::span<const double> ratio,
                                   double sigma_ratio, double allowed) const noexcept;
-  void judge_driven(std::size_t driven, std::span<const double> ratio, double sigma_ratio,
-                    std::span<ReadingVerdict> verdicts) const noexcept;
+  std::size_t judge_driven(std::size_t driven, std::span<const double> ratio, double sigma_ratio,
+                           std::span<ReadingVerdict> verdicts) noexcept;
   void judge_sensed(std::size_t sensed, std::span<const double> ratio, double sigma_ratio,
                     std::span<ReadingVerdict> verdicts) const noexcept;
   void doubt_bad_lines(std::span<ReadingVerdict> verdicts) const noexcept;
 
-  /// The rest of the slack, negative where the verdict is not `possible`.
+  /// The rest of the slack, negative where the verdict is not `possible`, and what a drop at the driver takes of it.
   struct Margins {
     double of_short;
     double of_circuit;
-
-    [[nodiscard]] double least() const noexcept { return of_short < of_circuit ? of_short : of_circuit; }
+    double share_of_short;
   };
-  [[nodiscard]] Margins margins(std::size_t driven, std::size_t sensed, double own, double total,
-                                double sigma_ratio) const noexcept;
+  [[nodiscard]] Margins margins(std::size_t driven, std::size_t sensed, double own, double sigma_ratio) const noexcept;
 
   std::size_t cols_;
   bool rows_are_driven_;
@@ -124,7 +131,7 @@ class PossibleReadings {
   std::vector<Head> heads_;         // [sensed]
   Limits limits_;
   std::vector<double> sums_;              // of readings [sensed]
-  std::vector<double> beyond_;            // the supply, the most of a frame [sensed]
+  std::vector<Margins> margins_;          // of a driven line [sensed]
   std::vector<double> line_;              // readings of a driven line [sensed]
   std::vector<double> totals_;            // currents of the driven lines [driven]
   std::vector<ReadingVerdict> verdicts_;  // [taxels]

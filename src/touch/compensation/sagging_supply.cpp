@@ -39,7 +39,7 @@ InversionResult SaggingSupply::invert(std::span<const double> ratio, std::span<d
   }
   result.residual_ratio += change;
   result.solved = result.solved && change <= tolerance_;
-  if (!result.solved) forget();
+  if (!result.solved) std::fill(left_.begin(), left_.end(), 1.0);
   return result;
 }
 

@@ -286,11 +286,14 @@ void Spikes::remember(const ConditionedFrame& frame, const ConductanceFrame& con
     return;
   }
   any_taken_ = false;
-  for (std::size_t taxel = 0; taxel < last_.size(); ++taxel) {
-    if (has_reading(conductance.taxels[taxel])) {
-      follow(taxel, taxel + 1, frame.ratio, conductance.siemens, noise);
-      frames_[taxel] = 0;
-    } else if (conductance.taxels[taxel] == TaxelStatus::invalid && frames_[taxel] > 0) {
+  std::size_t first = 0;  // of those with a reading
+  for (std::size_t taxel = 0; taxel <= last_.size(); ++taxel) {
+    if (taxel < last_.size() && has_reading(conductance.taxels[taxel])) continue;
+    if (taxel > first) follow(first, taxel, frame.ratio, conductance.siemens, noise);
+    std::fill(&frames_[0] + first, &frames_[0] + taxel, std::uint8_t{0});
+    first = taxel + 1;
+    if (taxel == last_.size()) break;
+    if (conductance.taxels[taxel] == TaxelStatus::invalid && frames_[taxel] > 0) {
       any_taken_ = true;
     } else {
       last_[taxel] = last_siemens_[taxel] = kUnknown;  // others will have changed since

@@ -56,7 +56,8 @@ class Transposed final : public CrosstalkInversion {
     film_.between_cols = film.between_rows;
     inversion_->hold_film(film_);
   }
-  void start_frame(double share) noexcept override { inversion_->start_frame(share); }
+  bool start_frame() noexcept override { return inversion_->start_frame(); }
+  void start_attempt(double share) noexcept override { inversion_->start_attempt(share); }
   void forget() noexcept override { inversion_->forget(); }
   void propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept override {
     inversion_->propagate_noise(sigma_ratio, values_);

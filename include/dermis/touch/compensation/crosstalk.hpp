@@ -32,7 +32,7 @@ struct InversionOptions {
   std::optional<int> most_steps = std::nullopt;
   /// propagate_noise() adds the effect of the drivers' error, readout.drive_error_ohm.
   bool counts_driver_errors = false;
-  /// The steps of one frame are few: start_frame() allows some times what the last frames took. Otherwise each call of
+  /// The steps of one frame are few: start_frame() allows what the frames before have saved. Otherwise each call of
   /// invert() goes on as long as it converges.
   bool is_bounded = false;
   /// By which a film under load (Readout::film) is found from the taxels' conductances. To outlive the making only.
@@ -45,6 +45,7 @@ struct InversionResult {
   /// Certificate: no reading differs from the circuit's reading at `siemens` by more than this. Where a taxel is held
   /// at 0 S its reading may lie below the circuit's by more.
   double residual_ratio = 0.0;
+  bool cut_short = false;  ///< Not solved, as the work that the frame may take was done. The next begins there.
 };
 
 /// Inverts one kind of readout circuit: readings with crosstalk -> the conductance of every taxel. A new circuit is a
@@ -63,17 +64,20 @@ class CrosstalkInversion {
   /// best attempt. Allocates nothing.
   [[nodiscard]] virtual InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept = 0;
 
-  /// The next calls of invert() together may take this share of what one frame may; infinite: nothing limits them.
-  virtual void start_frame(double /*share*/ = 1.0) noexcept {}
+  /// The next calls of invert() are of another frame. Whether frames before have left enough for several attempts.
+  virtual bool start_frame() noexcept { return true; }
+
+  /// They together may take this share of what is left of the work that the frame may take.
+  virtual void start_attempt(double /*share*/) noexcept {}
 
   /// From the next frame on, the row and the column of each of these taxels are one node, and their own conductances
   /// are not solved. A second call replaces the first. false: this circuit is not solved so. The taxels are to be kept
   /// at the conductance of a short, or none of their readings used. Allocates nothing.
   [[nodiscard]] virtual bool set_shorted(std::span<const std::size_t> taxels) noexcept { return taxels.empty(); }
 
-  /// From the next frame on, these lines are broken: silent, at the supply, or joined with the next one. The readings of
-  /// silent lines and of columns at the supply are not used, those of joined lines must agree. A second call replaces
-  /// the first; other kinds of fault do not matter. false: this circuit is not solved so. Allocates nothing.
+  /// From the next frame on, these lines are broken: silent, at the supply, or joined with the next one. The readings
+  /// of silent lines and of columns at the supply are not used, those of joined lines must agree. A second call
+  /// replaces the first; other kinds of fault do not matter. false: this circuit is not solved so. Allocates nothing.
   [[nodiscard]] virtual bool set_broken(std::span<const LineFault> faults) noexcept { return faults.empty(); }
 
   /// The array has this film until further notice: its loads are known. Without a call it has the film that its taxels'
@@ -119,7 +123,8 @@ class Compensator {
   /// Taxels without a reading (TaxelStatus::invalid) are estimated from their neighbours, so that the others are
   /// solved. So are spikes, and readings that the circuit cannot give, whatever the taxels are; they become invalid.
   /// A jump that may be a spike keeps its conductance, with a sigma that says so (FrameStatus::doubtful). If it has no
-  /// solution with the saturated taxels (at most half), or with the largest readings, these follow. Allocates nothing
+  /// solution with the saturated taxels (at most half), or with the largest readings, these follow. A frame that is cut
+  /// short near its solution has a sigma that covers what is left, and is doubtful, too. Allocates nothing
   /// once `conductance` has the array's size.
   void process(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept;
 
@@ -131,10 +136,12 @@ class Compensator {
  private:
   Compensator(const ArrayDescription& array, std::unique_ptr<CrosstalkInversion> inversion,
               const ReferenceConductances& references);
+  InversionResult attempt(const ConditionedFrame& conditioned, ConductanceFrame& conductance, bool is_first) noexcept;
   InversionResult invert(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept;
   InversionResult invert_possible(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept;
   void prepare_errors(std::size_t taxels, ConductanceErrors& errors) const noexcept;
-  void note_errors(const ConditionedFrame& conditioned, ConductanceFrame& conductance) const noexcept;
+  void note_errors(const ConditionedFrame& conditioned, double sigma_ratio,
+                   ConductanceFrame& conductance) const noexcept;
   void mask_faulty_taxels(ConductanceFrame& conductance) const noexcept;
 
   std::unique_ptr<CrosstalkInversion> inversion_;
@@ -143,6 +150,8 @@ class Compensator {
   std::unique_ptr<SupplyError> supply_error_;
   std::shared_ptr<const SharedErrors> shared_errors_;
   std::unique_ptr<FaultInversion> faults_;
+  int solving_attempt_ = 0;  // of the last frame
+  int frames_begun_ = 0;     // where work was scarce
 };
 
 }  // namespace dermis::touch::compensation

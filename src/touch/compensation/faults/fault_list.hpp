@@ -48,6 +48,8 @@ class FaultList {
   /// Readings that are not the taxels' own in this frame, found or not: `taxel_of` each of `suspects`.
   template <typename Suspects, typename TaxelOf>
   void suspect(const Suspects& suspects, const TaxelOf& taxel_of) noexcept {
+    const auto is_same = [&](std::size_t taxel, const auto& suspect) { return taxel == taxel_of(suspect); };
+    if (std::equal(suspected_.begin(), suspected_.end(), suspects.begin(), suspects.end(), is_same)) return;
     suspected_.clear();
     for (const auto& suspect : suspects) suspected_.push_back(taxel_of(suspect));
     mask_taxels();

@@ -19,6 +19,7 @@ namespace {
 
 constexpr int kFrames = 10;
 constexpr std::size_t kMostFound = 12;  // in one frame, and at once: more have a cause in common
+constexpr std::size_t kMostTaken = 4 * kMostFound;
 constexpr double kPerFrame = kEvidence / kFrames;
 constexpr double kStillShorted = 0.15;    // of what a taxel of 0 ohm reads alone: where up to six lines are one
 constexpr double kMostRepetitions = 0.8;  // of the frames; a reading that repeats more in spite of noise is stuck
@@ -33,6 +34,17 @@ constexpr double kPerFrameOfColumn = 0.5 * kPerFrame;
 constexpr double kSilentShare = 0.5;  // of what the taxels of a row read unloaded
 constexpr double kSilentSigmas = 3.0;
 constexpr std::size_t kFewestSilent = 3;  // taxels
+
+DERMIS_PROCESSOR_CLONES std::size_t count_taken(std::span<const TaxelStatus> before,
+                                                std::span<const TaxelStatus> after) {
+  const TaxelStatus* const status = before.data();
+  const TaxelStatus* const kept = after.data();
+  int taken = 0;
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    taken += kept[k] == TaxelStatus::invalid && status[k] != TaxelStatus::invalid ? 1 : 0;
+  }
+  return static_cast<std::size_t>(taken);
+}
 
 bool is_of_faulty_line(const FaultList& faults, std::size_t taxel) {
   return (faults.causes(taxel) & (kRowCause | kColumnCause | kPairCause)) != 0;
@@ -80,7 +92,7 @@ void ImpossibleReadingDetector::watch_new(const Observation& seen, const FaultLi
   const auto& after = seen.conductance.taxels;
   const auto is_bad = [&](std::size_t taxel) { return verdict(seen, taxel) >= ReadingVerdict::shorted; };
   if (std::exchange(any_verdict_, false)) std::fill(verdicts_.begin(), verdicts_.end(), ReadingVerdict::possible);
-  if (watched_.empty() && !any_is_suspicious(before, after)) return;
+  if (watched_.empty() && !any_is_suspicious(before, after)) return doubt_taken(before, after);
   any_verdict_ = true;
   possible_.judge(seen.conditioned.ratio, seen.conditioned.sigma_ratio, before, verdicts_);
   std::size_t bad = 0;
@@ -91,19 +103,29 @@ void ImpossibleReadingDetector::watch_new(const Observation& seen, const FaultLi
   }
 }
 
-/// A reading was taken away, or is at the end of the ADC where that tells something.
-DERMIS_PROCESSOR_CLONES bool ImpossibleReadingDetector::any_is_suspicious(
-    std::span<const TaxelStatus> before, std::span<const TaxelStatus> after) const noexcept {
-  const TaxelStatus* const status = before.data();
-  const TaxelStatus* const kept = after.data();
-  const std::uint8_t rail_tells = rows_tell_ ? 1 : 0;
-  std::uint8_t any = 0;
-  for (std::size_t taxel = 0; taxel < before.size(); ++taxel) {
-    const std::uint8_t is_taken = kept[taxel] == TaxelStatus::invalid && status[taxel] != TaxelStatus::invalid ? 1 : 0;
-    const std::uint8_t is_at_rail = status[taxel] == TaxelStatus::saturated ? rail_tells : 0;
-    any = static_cast<std::uint8_t>(any | is_taken | is_at_rail);
+/// Some readings were taken away, or are at the end of the ADC where that tells something. A row that was taken away
+/// whole has no names for its taxels, and so many have a cause in common.
+bool ImpossibleReadingDetector::any_is_suspicious(std::span<const TaxelStatus> before,
+                                                  std::span<const TaxelStatus> after) const noexcept {
+  const std::size_t cols = array_.cols;
+  std::size_t suspicious = 0;
+  for (std::size_t first = 0; first < before.size(); first += cols) {
+    const std::size_t taken = count_taken(before.subspan(first, cols), after.subspan(first, cols));
+    if (taken < cols) suspicious += taken;
   }
-  return any != 0;
+  if (suspicious > kMostTaken) return false;
+  return suspicious > 0 ||
+         (rows_tell_ && std::find(before.begin(), before.end(), TaxelStatus::saturated) != before.end());
+}
+
+void ImpossibleReadingDetector::doubt_taken(std::span<const TaxelStatus> before,
+                                            std::span<const TaxelStatus> after) noexcept {
+  if (count_taken(before, after) == 0) return;
+  any_verdict_ = true;
+  for (std::size_t taxel = 0; taxel < before.size(); ++taxel) {
+    const bool is_taken = after[taxel] == TaxelStatus::invalid && before[taxel] != TaxelStatus::invalid;
+    if (is_taken) verdicts_[taxel] = ReadingVerdict::unknown;
+  }
 }
 
 void ImpossibleReadingDetector::watch_columns(const Observation& seen, const FaultList& faults) noexcept {

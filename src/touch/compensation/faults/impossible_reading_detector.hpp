@@ -42,6 +42,7 @@ class ImpossibleReadingDetector {
   [[nodiscard]] ReadingVerdict verdict(const Observation& seen, std::size_t taxel) const noexcept;
   [[nodiscard]] bool any_is_suspicious(std::span<const TaxelStatus> before,
                                        std::span<const TaxelStatus> after) const noexcept;
+  void doubt_taken(std::span<const TaxelStatus> before, std::span<const TaxelStatus> after) noexcept;
   void watch_columns(const Observation& seen, const FaultList& faults) noexcept;
   [[nodiscard]] ReadingVerdict verdict_of_column(const Observation& seen, std::size_t taxel) const noexcept;
   [[nodiscard]] bool others_are_unloaded(const Observation& seen, std::size_t col) const noexcept;
