@@ -11,6 +11,18 @@
 #include "dermis/bytes/files/kept_copy.hpp"
 
 namespace dermis::out::serve {
+namespace {
+
+constexpr std::uintmax_t kRoomToResume = std::uintmax_t{64} << 20U;  // some seconds of a large suit
+
+bool has_room(const std::string& path) {
+  std::error_code error;
+  const auto folder = std::filesystem::absolute(path, error).parent_path();
+  const std::filesystem::space_info space = std::filesystem::space(folder, error);
+  return !error && space.available >= kRoomToResume;
+}
+
+}  // namespace
 
 std::string recording_name(const std::string& wanted, bool is_first, std::chrono::system_clock::time_point now) {
   std::error_code error;
@@ -46,11 +58,27 @@ Status SuitRecorder::begin(std::string path) {
   outcome_ = Done{};
   frames_ = 0;
   left_out_ = 0;
+  missed_ = 0;
+  is_broken_ = false;
+  is_wanted_ = true;
   recording_ = true;
   return Done{};
 }
 
+bool SuitRecorder::resume() {
+  if (!is_wanted_ || !is_broken_ || !has_room(path())) return false;
+  const std::uint64_t left_out = left_out_ + missed_;
+  if (!begin()) return false;
+  left_out_ += left_out;
+  return true;
+}
+
 void SuitRecorder::stop() {
+  is_wanted_ = false;
+  release();
+}
+
+void SuitRecorder::release() {
   const std::unique_lock lock(writer_mutex_);
   if (!writer_) return;
   closing_ = std::thread([this, writer = std::move(writer_)] { close(*writer); });
@@ -60,8 +88,10 @@ void SuitRecorder::stop() {
 /// The end is reported here, too: once, and by a thread that nobody waits for.
 void SuitRecorder::close(bytes::recordings::SuitRecordingWriter& writer) {
   outcome_ = writer.commit();
-  if (!outcome_) return failed_(outcome_.error().message);
-  if (written_) written_(frames_);
+  if (outcome_ && written_) written_(frames_);
+  if (outcome_) return;
+  failed_(outcome_.error().message);
+  is_broken_ = true;
 }
 
 Status SuitRecorder::end() {
@@ -86,6 +116,7 @@ void SuitRecorder::write(std::size_t array, const RawFrame& raw) {
     if (taken) ++(*taken ? frames_ : left_out_);
     return taken;
   });
+  if (is_wanted_ && !recording_) ++missed_;
 }
 
 void SuitRecorder::write(const bytes::recordings::RecordedEvent& event) {
@@ -103,7 +134,7 @@ void SuitRecorder::write_with(const Write& write) {
     const std::shared_lock lock(writer_mutex_);
     if (!writer_ || write(*writer_)) return;
   }
-  stop();
+  release();
 }
 
 std::string SuitRecorder::path() const {
