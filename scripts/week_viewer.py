@@ -128,10 +128,19 @@ class Viewer(threading.Thread):
             self.seen = time.monotonic()
 
 
-def set_parameter(port, name, value):
-    """As a person would, on a connection of its own; returns when the server has answered."""
+def ask(port, operation, **fields):
+    """The parameters of the server's answer, by name; on a connection of its own, as a person would."""
     with contextlib.closing(Stream(port)) as stream:
-        stream.say("setParameters", parameters=[{"name": name, "value": value}], id="week")
+        stream.say(operation, **fields, id="week")
         for kind, data in stream.messages():
-            if kind == TEXT and json.loads(data).get("id") == "week":
-                return
+            if kind == TEXT and (told := json.loads(data)).get("id") == "week":
+                return {parameter["name"]: parameter.get("value") for parameter in told["parameters"]}
+        return None
+
+
+def set_parameter(port, name, value):
+    return ask(port, "setParameters", parameters=[{"name": name, "value": value}])
+
+
+def parameter(port, name):
+    return ask(port, "getParameters", parameterNames=[name])[name]

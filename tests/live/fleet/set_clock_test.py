@@ -19,7 +19,7 @@ ROOT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "scripts"))
 
 from served_suit import free_port  # noqa: E402
-from week_viewer import MESSAGE_DATA, TEXT, Stream  # noqa: E402
+from week_viewer import MESSAGE_DATA, TEXT, Stream, parameter, set_parameter  # noqa: E402
 from week_world import ROBOT, Hub, SetClock  # noqa: E402
 
 MOST_SECONDS = 60
@@ -77,6 +77,18 @@ class SetClockTest(unittest.TestCase):
             with contextlib.closing(Stream(self.port)) as stream:
                 of_frame, of_statistics = self.times(stream, ("/chest/raw", "/statistics"))
             self.assertAlmostEqual(of_frame, of_statistics, delta=MOST_SECONDS)
+
+    def test_tare_can_be_undone_for_a_minute_though_the_clock_was_set(self):
+        self.await_messages(0)
+        set_parameter(self.port, "/tare", True)
+        end = time.monotonic() + MOST_SECONDS
+        while not parameter(self.port, "/tare/undo"):
+            self.assertLess(time.monotonic(), end, "nothing was tared")
+            if parameter(self.port, "/tare/refused"):
+                set_parameter(self.port, "/tare/force", True)
+            time.sleep(0.2)
+        self.clock.step(HOUR_S)
+        self.assertTrue(parameter(self.port, "/tare/undo"))
 
     def test_robot_publishes_again_though_its_clock_was_set_back_meanwhile(self):
         self.await_messages(0)
