@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "dermis/bytes/files/kept_copy.hpp"
+#include "dermis/bytes/recordings/mcap.hpp"
 
 namespace dermis::out::serve {
 namespace {
@@ -20,6 +21,17 @@ bool has_room(const std::string& path) {
   const auto folder = std::filesystem::absolute(path, error).parent_path();
   const std::filesystem::space_info space = std::filesystem::space(folder, error);
   return !error && space.available >= kRoomToResume;
+}
+
+/// Of all arrays, by the summary; each frame has one image.
+std::uint64_t frames_in(const std::string& path) {
+  const auto reader = bytes::recordings::McapReader::open(path);
+  if (!reader || !(*reader)->statistics()) return 0;
+  std::uint64_t frames = 0;
+  for (const auto& [channel, messages] : (*reader)->statistics()->channel_messages) {
+    if ((*reader)->channels().at(channel).topic.ends_with("/raw")) frames += messages;
+  }
+  return frames;
 }
 
 }  // namespace
@@ -45,6 +57,12 @@ SuitRecorder::~SuitRecorder() {
 }
 
 Status SuitRecorder::begin(std::string path) {
+  missed_ = 0;
+  return begin(std::move(path), 0);
+}
+
+/// `left_out`: before it.
+Status SuitRecorder::begin(std::string path, std::uint64_t left_out) {
   const std::lock_guard switching(switch_mutex_);
   if (recording_) return bad_input("a recording goes on: " + this->path());
   await_closing();
@@ -57,8 +75,7 @@ Status SuitRecorder::begin(std::string path) {
   path_ = path;
   outcome_ = Done{};
   frames_ = 0;
-  left_out_ = 0;
-  missed_ = 0;
+  left_out_ = left_out + missed_.exchange(0);
   is_broken_ = false;
   is_wanted_ = true;
   recording_ = true;
@@ -66,11 +83,7 @@ Status SuitRecorder::begin(std::string path) {
 }
 
 bool SuitRecorder::resume() {
-  if (!is_wanted_ || !is_broken_ || !has_room(path())) return false;
-  const std::uint64_t left_out = left_out_ + missed_;
-  if (!begin()) return false;
-  left_out_ += left_out;
-  return true;
+  return is_wanted_ && is_broken_ && has_room(path()) && begin({}, left_out_).has_value();
 }
 
 void SuitRecorder::stop() {
@@ -90,6 +103,7 @@ void SuitRecorder::close(bytes::recordings::SuitRecordingWriter& writer) {
   outcome_ = writer.commit();
   if (outcome_ && written_) written_(frames_);
   if (outcome_) return;
+  missed_ += frames_ - frames_in(path());
   failed_(outcome_.error().message);
   is_broken_ = true;
 }

@@ -69,6 +69,7 @@ class SuitRecorder {
   /// `write` counts what the writer took. Ends a recording that cannot be written.
   template <typename Write>
   void write_with(const Write& write);
+  [[nodiscard]] Status begin(std::string path, std::uint64_t left_out);
   void release();
   void close(bytes::recordings::SuitRecordingWriter& writer);
   void await_closing();
@@ -83,7 +84,7 @@ class SuitRecorder {
   std::atomic<std::uint64_t> left_out_{0};
   std::atomic<bool> is_wanted_{false};    // From begin() to stop(), though it may have failed;
   std::atomic<bool> is_broken_{false};    // then its file is closed.
-  std::atomic<std::uint64_t> missed_{0};  // Frames since.
+  std::atomic<std::uint64_t> missed_{0};  // Frames since, and those that waited for the disk.
   Status outcome_ = Done{};               // Of closing_, once it has ended.
 
   mutable std::shared_mutex writer_mutex_;  // Guards the members below; shared by those who write.
