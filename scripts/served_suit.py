@@ -14,27 +14,13 @@ ROOT = Path(__file__).resolve().parent.parent
 BINARY = ROOT / "build/release/bin/dermis"
 
 
-def make_model(binary, folder):
-    """The reference array, calibrated."""
-    array = ROOT / "examples/chest/array.toml"
-    subprocess.run([binary, "simulate", "--array", array, "--scene", "calibration", "--out", folder], check=True)
-    model = folder / "chest.safetensors"
-    subprocess.run(
-        [
-            binary,
-            "calibrate",
-            "--array",
-            array,
-            "--frames",
-            folder / "frames.csv",
-            "--loads",
-            folder / "loads.csv",
-            "--out",
-            model,
-        ],
-        check=True,
-        stdout=subprocess.DEVNULL,
-    )
+def make_model(binary, folder, array=ROOT / "examples/chest/array.toml", seed=1):
+    """An array of the simulator, calibrated."""
+    model = folder / "model.safetensors"
+    scene = ["--scene", "calibration", "--seed", str(seed), "--out", folder]
+    subprocess.run([binary, "simulate", "--array", array, *scene], check=True)
+    tables = ["--frames", folder / "frames.csv", "--loads", folder / "loads.csv", "--out", model]
+    subprocess.run([binary, "calibrate", "--array", array, *tables], check=True, stdout=subprocess.DEVNULL)
     return model
 
 

@@ -220,5 +220,60 @@ TEST(SuitRecorder, tells_once_that_the_disk_is_full) {
   EXPECT_EQ(support::write_within(200'000, path, record), 1);
 }
 
+/// Writes frames of noise from `number` on until the recording ends by itself.
+std::size_t fill(SuitRecorder& recorder, std::size_t number) {
+  const support::SmallDisk disk(200'000);
+  Random random(1);
+  for (; recorder.recording(); ++number) {
+    RawFrame noise = support::random_frame(random, kShape.taxel_count(), support::RandomCounts::whole);
+    noise.time = Nanos(static_cast<std::int64_t>(number + 1) * 1'000'000);
+    recorder.write(0, noise);
+    std::this_thread::sleep_for(std::chrono::microseconds(100));  // so that the file has some chunks
+  }
+  return number;
+}
+
+/// The recorder closes a file in the background.
+bool resumes(SuitRecorder& recorder) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (std::chrono::steady_clock::now() < end) {
+    if (recorder.resume()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return false;
+}
+
+TEST(SuitRecorder, goes_on_in_another_file_when_a_full_disk_has_room_and_counts_the_frames_between) {
+  const TemporaryFolder folder;
+  std::vector<std::string> told;
+  const std::string first = folder.file("rec.mcap");
+  SuitRecorder recorder(first, arrays, [&](const std::string& why) { told.push_back(why); });
+  ASSERT_TRUE(recorder.begin());
+  std::size_t number = fill(recorder, 0);
+  for (std::size_t k = 0; k < 5; ++k) recorder.write(0, frame(number++));
+  ASSERT_TRUE(resumes(recorder));
+  EXPECT_TRUE(recorder.recording());
+  EXPECT_EQ(told.size(), 1U);
+  const auto kept = std::filesystem::exists(first) ? recorded(first).at(0).size() : 0;
+  EXPECT_EQ(kept + recorder.left_out(), number);
+  EXPECT_FALSE(recorder.resume()) << "it goes on already";
+  recorder.write(0, frame(number));
+  const std::string path = recorder.path();
+  ASSERT_TRUE(recorder.end());
+  EXPECT_NE(path, first);
+  EXPECT_EQ(recorded(path).at(0), (std::vector<std::size_t>{number}));
+}
+
+TEST(SuitRecorder, does_not_go_on_after_a_full_disk_where_somebody_has_switched_it_off) {
+  const TemporaryFolder folder;
+  SuitRecorder recorder(folder.file("rec.mcap"), arrays, [](const std::string&) {});
+  ASSERT_TRUE(recorder.begin());
+  const std::size_t number = fill(recorder, 0);
+  ASSERT_FALSE(recorder.end());
+  recorder.write(0, frame(number));
+  EXPECT_FALSE(recorder.resume());
+  EXPECT_FALSE(recorder.recording());
+}
+
 }  // namespace
 }  // namespace dermis::out::serve

@@ -168,7 +168,7 @@ void Tares::end(std::size_t array, const touch::pipeline::Tare& tare) {
 }
 
 void Tares::log(const std::string& what, Outcome outcome) {
-  const std::time_t now = Clock::to_time_t(Clock::now());
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
   std::string line = fmt::format("{:%Y-%m-%d %H:%M:%S} UTC: {}", fmt::gmtime(now), what);
   log_.push_front(line);
   if (log_.size() > kMostLines) log_.pop_back();

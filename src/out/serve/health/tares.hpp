@@ -47,7 +47,7 @@ class Tares final : public Part {
   [[nodiscard]] std::vector<std::string> follow();
 
  private:
-  using Clock = std::chrono::system_clock;
+  using Clock = std::chrono::steady_clock;
 
   struct Zero {
     bool is_tared = false;                   // or is to be

@@ -39,7 +39,8 @@ void Host::show_suit() const {
 }
 
 Nanos Host::now() const {
-  return suit.playback ? suit.playback->status().now : std::chrono::system_clock::now().time_since_epoch();
+  if (suit.playback) return suit.playback->status().now;
+  return std::chrono::steady_clock::now().time_since_epoch() + utc_minus_steady;
 }
 
 void Host::log(const std::string& line) const {

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -37,6 +38,8 @@ struct Host {
   PartList& parts;
   std::unique_ptr<std::mutex> changing =
       std::make_unique<std::mutex>();  ///< One change of models and classes at a time.
+  const Nanos utc_minus_steady =
+      std::chrono::system_clock::now().time_since_epoch() - std::chrono::steady_clock::now().time_since_epoch();
 
   /// Takes a model into use for an array, and notifies all parts and clients.
   [[nodiscard]] Status use_model(std::size_t array, const std::shared_ptr<const touch::pipeline::Model>& model);
@@ -45,7 +48,8 @@ struct Host {
   /// /suit.json, as the suit is now.
   void show_suit() const;
 
-  /// By the clock of the recording that is played, else by that of the machine.
+  /// By the clock of the recording that is played, else by that of the frames: when the clock of the machine is set, it
+  /// does not follow.
   [[nodiscard]] Nanos now() const;
 
   void log(const std::string& line) const;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
+#include <malloc.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -45,6 +46,9 @@ std::string model_name(const Host& host, std::size_t array) {
 /// Contacts that last are published so often; every frame is there, too.
 constexpr Nanos kContactsEvery = std::chrono::milliseconds(40);
 
+/// Of an array in a second; more are sent where frames have waited for the server.
+constexpr std::uint64_t kUsualBatches = 20;
+
 /// The contacts of an array, on its thread.
 struct TouchedArray {
   TouchedArray(const ServedSuit& suit, std::size_t array) : contacts(suit, array) {}
@@ -69,10 +73,14 @@ class Publishing final : public Part {
   void report(live::fleet::RobotHealth& health) const override;
 
  private:
+  void give_back_memory();
+
   Host& host_;
   const std::string live_;
   std::deque<TouchedArray> contacts_;
   const std::unique_ptr<live::fleet::FramePublisher> publisher_;
+  std::uint64_t batches_ = 0;  // A second ago.
+  bool catches_up_ = false;
 };
 
 void Publishing::hear(const live::suits::ArrayResult& result) {
@@ -91,6 +99,7 @@ void Publishing::hear(const live::suits::ArrayResult& result) {
 
 void Publishing::tick(std::int64_t tick) {
   if (tick % kTicksPerSecond != 7) return;
+  give_back_memory();
   live::fleet::RobotHealth health{.time = std::chrono::system_clock::now().time_since_epoch(), .live = live_};
   for (std::size_t k = 0; k < host_.suit.arrays.size(); ++k) {
     const ArrayDescription& description = host_.models.of(k)->array;
@@ -105,6 +114,13 @@ void Publishing::tick(std::int64_t tick) {
   if (!error) health.free_bytes = space.available;
   host_.parts.report(health);
   publisher_->publish(health);
+}
+
+/// Frames that have waited leave holes between what has not, and the C library would keep them.
+void Publishing::give_back_memory() {
+  const std::uint64_t batches = publisher_->counts().batches;
+  const bool catches_up = batches - std::exchange(batches_, batches) > kUsualBatches * contacts_.size();
+  if (std::exchange(catches_up_, catches_up) && !catches_up) ::malloc_trim(0);
 }
 
 void Publishing::report(live::fleet::RobotHealth& health) const {

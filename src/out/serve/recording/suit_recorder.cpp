@@ -9,8 +9,32 @@
 #include <utility>
 
 #include "dermis/bytes/files/kept_copy.hpp"
+#include "dermis/bytes/recordings/mcap.hpp"
 
 namespace dermis::out::serve {
+namespace {
+
+constexpr std::uintmax_t kRoomToResume = std::uintmax_t{64} << 20U;  // some seconds of a large suit
+
+bool has_room(const std::string& path) {
+  std::error_code error;
+  const auto folder = std::filesystem::absolute(path, error).parent_path();
+  const std::filesystem::space_info space = std::filesystem::space(folder, error);
+  return !error && space.available >= kRoomToResume;
+}
+
+/// Of all arrays, by the summary; each frame has one image.
+std::uint64_t frames_in(const std::string& path) {
+  const auto reader = bytes::recordings::McapReader::open(path);
+  if (!reader || !(*reader)->statistics()) return 0;
+  std::uint64_t frames = 0;
+  for (const auto& [channel, messages] : (*reader)->statistics()->channel_messages) {
+    if ((*reader)->channels().at(channel).topic.ends_with("/raw")) frames += messages;
+  }
+  return frames;
+}
+
+}  // namespace
 
 std::string recording_name(const std::string& wanted, bool is_first, std::chrono::system_clock::time_point now) {
   std::error_code error;
@@ -33,6 +57,12 @@ SuitRecorder::~SuitRecorder() {
 }
 
 Status SuitRecorder::begin(std::string path) {
+  missed_ = 0;
+  return begin(std::move(path), 0);
+}
+
+/// `left_out`: before it.
+Status SuitRecorder::begin(std::string path, std::uint64_t left_out) {
   const std::lock_guard switching(switch_mutex_);
   if (recording_) return bad_input("a recording goes on: " + this->path());
   await_closing();
@@ -45,12 +75,23 @@ Status SuitRecorder::begin(std::string path) {
   path_ = path;
   outcome_ = Done{};
   frames_ = 0;
-  left_out_ = 0;
+  left_out_ = left_out + missed_.exchange(0);
+  is_broken_ = false;
+  is_wanted_ = true;
   recording_ = true;
   return Done{};
 }
 
+bool SuitRecorder::resume() {
+  return is_wanted_ && is_broken_ && has_room(path()) && begin({}, left_out_).has_value();
+}
+
 void SuitRecorder::stop() {
+  is_wanted_ = false;
+  release();
+}
+
+void SuitRecorder::release() {
   const std::unique_lock lock(writer_mutex_);
   if (!writer_) return;
   closing_ = std::thread([this, writer = std::move(writer_)] { close(*writer); });
@@ -60,8 +101,11 @@ void SuitRecorder::stop() {
 /// The end is reported here, too: once, and by a thread that nobody waits for.
 void SuitRecorder::close(bytes::recordings::SuitRecordingWriter& writer) {
   outcome_ = writer.commit();
-  if (!outcome_) return failed_(outcome_.error().message);
-  if (written_) written_(frames_);
+  if (outcome_ && written_) written_(frames_);
+  if (outcome_) return;
+  missed_ += frames_ - frames_in(path());
+  failed_(outcome_.error().message);
+  is_broken_ = true;
 }
 
 Status SuitRecorder::end() {
@@ -86,6 +130,7 @@ void SuitRecorder::write(std::size_t array, const RawFrame& raw) {
     if (taken) ++(*taken ? frames_ : left_out_);
     return taken;
   });
+  if (is_wanted_ && !recording_) ++missed_;
 }
 
 void SuitRecorder::write(const bytes::recordings::RecordedEvent& event) {
@@ -103,7 +148,7 @@ void SuitRecorder::write_with(const Write& write) {
     const std::shared_lock lock(writer_mutex_);
     if (!writer_ || write(*writer_)) return;
   }
-  stop();
+  release();
 }
 
 std::string SuitRecorder::path() const {

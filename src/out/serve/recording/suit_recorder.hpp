@@ -49,6 +49,9 @@ class SuitRecorder {
   void stop();
   /// stop(), and waits for it; the outcome of the recording. Done where there is none.
   [[nodiscard]] Status end();
+  /// Begins again after a recording that could not be written, where its disk has room now. False: it does not. The
+  /// frames between are left_out().
+  [[nodiscard]] bool resume();
 
   /// Takes part in the recording that goes on, if there is one. Each array is written by one thread.
   void write(std::size_t array, const RawFrame& raw);
@@ -58,14 +61,16 @@ class SuitRecorder {
   /// Path of the present or the last recording.
   [[nodiscard]] std::string path() const;
   [[nodiscard]] std::uint64_t frames() const noexcept { return frames_.load(); }
-  /// Frames and events, but those of frames, that are missing in the present or the last recording, because its disk
-  /// was too slow.
+  /// Frames and events, but those of frames, that are missing in the present or the last recording: its disk was too
+  /// slow. And those that came while it was full.
   [[nodiscard]] std::uint64_t left_out() const noexcept { return left_out_.load(); }
 
  private:
   /// `write` counts what the writer took. Ends a recording that cannot be written.
   template <typename Write>
   void write_with(const Write& write);
+  [[nodiscard]] Status begin(std::string path, std::uint64_t left_out);
+  void release();
   void close(bytes::recordings::SuitRecordingWriter& writer);
   void await_closing();
 
@@ -77,7 +82,10 @@ class SuitRecorder {
   std::atomic<bool> recording_{false};
   std::atomic<std::uint64_t> frames_{0};
   std::atomic<std::uint64_t> left_out_{0};
-  Status outcome_ = Done{};  // Of closing_, once it has ended.
+  std::atomic<bool> is_wanted_{false};    // From begin() to stop(), though it may have failed;
+  std::atomic<bool> is_broken_{false};    // then its file is closed.
+  std::atomic<std::uint64_t> missed_{0};  // Frames since, and those that waited for the disk.
+  Status outcome_ = Done{};               // Of closing_, once it has ended.
 
   mutable std::shared_mutex writer_mutex_;  // Guards the members below; shared by those who write.
   std::unique_ptr<bytes::recordings::SuitRecordingWriter> writer_;
