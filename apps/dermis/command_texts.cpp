@@ -194,7 +194,8 @@ again is not overwritten:
 Until it is complete, `NAME` grows as the file or folder `NAME.dermis.tmp` beside it, locked by its process. If that is
 killed, the next command that writes into the folder removes it. Until `dermis record` has completed a table such as
 `frames.csv`, the recording `frames.csv.mcap` beside it holds the same frames. It stays where the process is killed:
-`dermis convert frames.csv.mcap frames.csv` makes the table, says that it was cut off, and ends with 1. A new recording to `frames.csv` is refused as long as it is there.
+`dermis convert frames.csv.mcap frames.csv` makes the table, says that it was cut off, and ends with 1. A new
+recording to `frames.csv` is refused as long as it is there.
 
 ## Forces
 

@@ -9,15 +9,15 @@
 
 namespace dermis::bytes::files {
 
-/// What an UnfinishedFile has become.
+/// The end of an UnfinishedFile.
 struct Placed {
   std::string path;
   Status told;  ///< Fails, with both names, where `path` is not the target, since another file has appeared there.
 };
 
 /// An output until it is complete: the file or folder TARGET.dermis.tmp beside its target. It is locked (flock) while
-/// its process lives: a second writer of the target is refused, and what a killed process has left is known by its free
-/// lock. The destructor removes it, unless it has become the target.
+/// its process lives. So a second writer of the target is refused, and what a killed process has left has a free lock.
+/// The destructor removes it, unless it has become the target.
 class UnfinishedFile {
  public:
   UnfinishedFile() = default;  ///< None: the target is written directly.
@@ -51,7 +51,7 @@ class UnfinishedFile {
   enum class Kind { file, folder };
   UnfinishedFile(std::string target, int lock);
   [[nodiscard]] static Result<UnfinishedFile> begin(const std::string& target, Kind kind);
-  /// Of the file that stood in the place of the target at begin(): device and number; zeros where there was none.
+  /// Device and number of the file that stood in the place of the target at begin(); zeros: there was none.
   using FileId = std::pair<unsigned long, unsigned long>;
   [[nodiscard]] static FileId id_of(const std::string& path);
 

@@ -34,7 +34,7 @@ struct FrameOutput {
 /// where the output is a recording itself, or no file.
 [[nodiscard]] std::string recording_beside(const std::string& path);
 
-/// The same for frames that do not come again: those of a table are kept by recording_beside(), until it is complete,
+/// The same for frames that do not come again. Those of a table are kept by recording_beside() until it is complete,
 /// even if the process dies.
 [[nodiscard]] Result<std::unique_ptr<FrameSink>> create_kept_recording(const FrameOutput& output,
                                                                        const FrameShape& shape);
