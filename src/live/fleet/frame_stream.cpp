@@ -128,7 +128,7 @@ Result<const StreamDescription*> FrameStream::Implementation::describe(std::uint
   const Result<std::optional<StoredMessage>> message = broker_->next(stream_, subject_, first);
   if (!message) return message.error();
   if (*message) {
-    const auto found = descriptions_.find(parse_message_id((*message)->id).session, **message);
+    auto found = descriptions_.find(parse_message_id((*message)->id).session, **message);
     if (!found || *found != nullptr) return found;
   }
   return descriptions_.find(parse_message_id(newest.id).session, newest);

@@ -37,7 +37,7 @@ Status NameKeeper::prepare(Broker& broker) {
 
 Status NameKeeper::take(Broker& broker) {
   if (Status prepared = prepare(broker); !prepared) return prepared;
-  const Status taken = own_.take(broker);
+  Status taken = own_.take(broker);
   if (taken && hub_) static_cast<void>(hub_->take(broker));
   const bool is_replaced_there = hub_ && hub_->state() == State::replaced;
   is_replaced_ = own_.state() == State::replaced || is_replaced_there;

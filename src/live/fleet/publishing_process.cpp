@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "live/fleet/publishing_process.hpp"
 
-#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <random>
