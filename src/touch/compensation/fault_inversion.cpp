@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kMostRounds = 12.0;     // of a frame
 constexpr std::size_t kMixingDepth = 8;  // likewise
-constexpr double kLeastChange = 1e-3;    // by an estimate, of the voltages of others
+constexpr double kLeastChange = 2e-5;    // by an estimate, of the voltages of others
 constexpr int kEstimateRounds = 3;       // the estimate from a taxel's neighbours hardly depends on it
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();  // a reading that is not used
 constexpr double kShortSiemens = 20.0;                                 // of a shorted crossing that is kept
@@ -282,8 +282,9 @@ InversionResult FaultInversion::keep_estimates(CrosstalkInversion& healthy, std:
   for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) {
     if (missing_.is_missing(taxel)) equivalent_[taxel] = kNothing;
   }
-  const int first = has_start && missing_.are_fresh() ? kEstimateRounds : has_start ? 2 : 1;
-  for (int round = first; round < kEstimateRounds && !result.cut_short; ++round) {
+  const bool are_fresh = has_start && missing_.are_fresh(measured_);
+  for (int round = are_fresh ? kEstimateRounds : 1; round < kEstimateRounds && !result.cut_short; ++round) {
+    if (round == 1) missing_.note_readings(measured_);
     if (missing_.improve(siemens, !lines_are_solved_) <= kLeastChange && has_start) break;
     keep_crossings(siemens);
     result = healthy.invert(equivalent_, siemens);
