@@ -269,6 +269,7 @@ void GroundedRows::propagate_noise(double sigma_ratio, std::span<double> sigma_s
     sigma_column_[col] = state_.column_ohm[col] == kOpenOhm ? 0.0 : sigma_ratio * reading_siemens_[col];
   }
   spread_noise(state_, sigma_column_, sigma_siemens);
+  if (is_broken_) spread_to_kept(sigma_ratio, sigma_siemens);
   if (!driver_error_) return;
   std::span<const double> between_rows;
   if (state_.film) between_rows = state_.film->follower.film().between_rows;

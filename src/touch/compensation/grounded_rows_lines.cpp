@@ -126,6 +126,14 @@ void GroundedRows::split_joined(std::span<double> siemens) const noexcept {
   }
 }
 
+/// Taxels of broken lines have the noise that a reading of a healthy one would give.
+void GroundedRows::spread_to_kept(double sigma_ratio, std::span<double> sigma_siemens) const noexcept {
+  for (const auto& [row, col, siemens] : state_.kept) {
+    const double share = 1.0 + joined_.column_ohm[col] * siemens;
+    sigma_siemens[row * state_.cols + col] = sigma_ratio * reading_siemens_[col] * share * share;
+  }
+}
+
 /// Joined rows are driven together, and joined columns sensed so; of the second of them nothing is left.
 void GroundedRows::load_joined() noexcept {
   for (const JoinedLines::Pair& pair : joined_.rows) {
