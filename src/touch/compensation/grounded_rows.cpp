@@ -110,7 +110,7 @@ InversionResult GroundedRows::invert(std::span<const double> ratio, std::span<do
   if (!(certificate <= tolerance_)) certificate = iterate_with_mixing(certificate, 0);
   if (!(certificate <= std::max(tolerance_, kRounded))) certificate = iterate_with_mixing(certificate, kDampedSteps);
   const bool solved = certificate <= std::max(tolerance_, kRounded);
-  if (solved && state_.kept.empty()) budget_.learn();
+  if (solved && (is_broken_ || state_.kept.empty())) budget_.learn();
   is_unfinished_ = !solved && budget_.is_used_up() && certificate <= kMostLeft;
   if (!solved && !is_unfinished_) start_anew();
   has_last_ = solved || is_unfinished_;

@@ -55,7 +55,7 @@ class StepBudget {
 
  private:
   static constexpr double kGain = 1.0 / 64.0;
-  static constexpr double kTimes = 1.5;
+  static constexpr double kTimes = 3.0;
   static constexpr double kShare = 1.0 / 256.0;
   static constexpr double kMostRise = 2.0;
   static constexpr double kScarce = 0.25;
