@@ -16,12 +16,11 @@ namespace {
 
 constexpr double kMostRounds = 12.0;     // of a frame
 constexpr std::size_t kMixingDepth = 8;  // likewise
-constexpr double kLeastChange = 1e-3;    // by an estimate, of the voltages of others
+constexpr double kLeastChange = 2e-5;    // by an estimate, of the voltages of others
 constexpr int kEstimateRounds = 3;       // the estimate from a taxel's neighbours hardly depends on it
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();  // a reading that is not used
 constexpr double kShortSiemens = 20.0;                                 // of a shorted crossing that is kept
 constexpr double kOpenSiemens = 1e-9;                                  // of a taxel that is counted elsewhere
-constexpr double kMostStretch = 5.0;
 constexpr std::size_t kMostLines = 256;  // rows and columns together: beyond, the dense equations are too slow
 
 bool is_modelled(const ArrayDescription& array) {
@@ -275,29 +274,6 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
   return {false, result.residual_ratio, true};
 }
 
-/// The correction of the last frame.
-void FaultInversion::start_circuits() noexcept {
-  if (!correction_.has_shift) return missing_.estimate(equivalent_);
-  for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) equivalent_[taxel] += correction_.shift[taxel];
-}
-
-void FaultInversion::keep_shift() noexcept {
-  correction_.has_shift = true;
-  for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) {
-    const double shift = equivalent_[taxel] - measured_[taxel];
-    correction_.shift[taxel] = std::isfinite(shift) ? shift : 0.0;
-  }
-}
-
-void FaultInversion::solve_circuits(std::span<const double> siemens) noexcept {
-  film_.follow(siemens);
-  for (LumpedCircuit* const circuit : {&circuits_->healthy, &circuits_->faulty}) {
-    if (film_.any()) circuit->set_film(film_.film());
-  }
-  circuits_->healthy.solve(siemens, correction_.healthy_ratio);
-  circuits_->faulty.solve(siemens, correction_.faulty_ratio);
-}
-
 /// The inversion knows of the broken lines. Taxels without a reading are estimated, and the others solved with them.
 InversionResult FaultInversion::keep_estimates(CrosstalkInversion& healthy, std::span<double> siemens) noexcept {
   const bool has_start = start_missing(healthy, siemens);
@@ -306,8 +282,9 @@ InversionResult FaultInversion::keep_estimates(CrosstalkInversion& healthy, std:
   for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) {
     if (missing_.is_missing(taxel)) equivalent_[taxel] = kNothing;
   }
-  const int first = has_start && missing_.are_fresh() ? kEstimateRounds : has_start ? 2 : 1;
-  for (int round = first; round < kEstimateRounds && !result.cut_short; ++round) {
+  const bool are_fresh = has_start && missing_.are_fresh(measured_);
+  for (int round = are_fresh ? kEstimateRounds : 1; round < kEstimateRounds && !result.cut_short; ++round) {
+    if (round == 1) missing_.note_readings(measured_);
     if (missing_.improve(siemens, !lines_are_solved_) <= kLeastChange && has_start) break;
     keep_crossings(siemens);
     result = healthy.invert(equivalent_, siemens);
@@ -341,51 +318,6 @@ void FaultInversion::keep_crossings(std::span<double> siemens) noexcept {
   for (const std::size_t taxel : crossings_.taxels) {
     equivalent_[taxel] = crossings_.are_kept ? kNothing : measured_[taxel];
     if (crossings_.are_kept) siemens[taxel] = kShortSiemens;
-  }
-}
-
-/// T' from both circuits at the present conductances; how far it is from the T' that led to them. The step is
-/// Anderson's of depth 1: along the last change of T' as far as makes the difference smallest, were it linear.
-double FaultInversion::correct(bool first) noexcept {
-  double change = 0.0;
-  double sum = 0.0;  // not a number where any difference is none; max() would drop it
-  double along = 0.0;
-  double square = 0.0;
-  for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) {
-    const double known = missing_.is_missing(taxel) ? 0.0 : measured_[taxel] - correction_.faulty_ratio[taxel];
-    const bool is_kept = std::isnan(equivalent_[taxel]);
-    const double difference = is_kept ? 0.0 : correction_.healthy_ratio[taxel] + known - equivalent_[taxel];
-    change = std::max(change, std::abs(difference));
-    sum += difference;
-    const double turn = difference - correction_.last_difference[taxel];
-    along += difference * turn;
-    square += turn * turn;
-    correction_.difference[taxel] = difference;
-  }
-  if (mixing_ && std::isfinite(sum)) {
-    mix(first);
-    return change;
-  }
-  const double share = first || square == 0.0 ? 0.0 : std::clamp(along / square, -kMostStretch, kMostStretch);
-  for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) {
-    const double corrected = equivalent_[taxel] + correction_.difference[taxel];
-    equivalent_[taxel] = corrected - share * (corrected - correction_.last_corrected[taxel]);
-    correction_.last_corrected[taxel] = corrected;
-    correction_.last_difference[taxel] = correction_.difference[taxel];
-  }
-  return std::isfinite(sum) ? change : std::numeric_limits<double>::infinity();
-}
-
-/// A film couples all lines, so that the last change alone does not tell the way.
-void FaultInversion::mix(bool first) noexcept {
-  if (first) mixing_->forget();
-  std::vector<double>& next = correction_.last_corrected;
-  for (std::size_t taxel = 0; taxel < next.size(); ++taxel) {
-    next[taxel] = std::isnan(equivalent_[taxel]) ? 0.0 : equivalent_[taxel];
-  }
-  mixing_->advance(next, correction_.difference);
-  for (std::size_t taxel = 0; taxel < next.size(); ++taxel) {
-    if (!std::isnan(equivalent_[taxel])) equivalent_[taxel] = next[taxel];
   }
 }
 
@@ -428,17 +360,6 @@ void FaultInversion::subtract_supplied_rows(std::span<const double> ratio) noexc
       if (taxel / array_.cols != supplied) measured_[taxel] -= ratio[array_.index(supplied, taxel % array_.cols)];
     }
   }
-}
-
-double FaultInversion::misfit(std::span<const double> siemens) const noexcept {
-  double largest = 0.0;
-  for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
-    if (missing_.is_missing(taxel)) continue;
-    const double difference = measured_[taxel] - correction_.faulty_ratio[taxel];
-    if (siemens[taxel] == 0.0 && difference < 0.0) continue;
-    largest = std::max(largest, std::abs(difference));
-  }
-  return largest;
 }
 
 }  // namespace dermis::touch::compensation

@@ -113,6 +113,7 @@ class GroundedRows final : public CrosstalkInversion {
   [[nodiscard]] bool break_line(const LineFault& fault) noexcept;
   [[nodiscard]] bool join_lines(const LineFault& fault) noexcept;
   void keep_open_rows() noexcept;
+  void spread_to_kept(double sigma_ratio, std::span<double> sigma_siemens) const noexcept;
   void split_joined(std::span<double> siemens) const noexcept;
   void load(std::span<const double> ratio, std::span<const double> siemens) noexcept;
   void load_readings(std::span<const double> ratio) noexcept;

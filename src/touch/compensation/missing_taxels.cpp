@@ -19,6 +19,7 @@ namespace {
 constexpr std::uint8_t kLong = 4;  // frames without a reading, from which on the last conductance is stale
 constexpr Nanos kLongestGap = std::chrono::milliseconds(50);  // likewise, since the last frame
 constexpr Nanos kFresh = std::chrono::milliseconds(5);        // an estimate
+constexpr double kAlike = 0.004;                              // of the supply: readings that tell the same
 constexpr double kDoubtOfEstimate = 0.7;                      // relative
 constexpr double kDoubtOfHeld = 0.15;
 constexpr double kFloorShare = 1e-3;       // of the largest conductance: where logarithms end
@@ -79,6 +80,7 @@ MissingTaxels::MissingTaxels(const ArrayDescription& array, const ReferenceCondu
       last_siemens_(array.taxel_count()),
       frames_ago_(array.taxel_count(), kLong),
       estimated_(array.taxel_count()),
+      estimated_of_(array.taxel_count()),
       doubt_(array.taxel_count()),
       taken_(array.taxel_count()),
       rises_(array.taxel_count()) {
@@ -154,8 +156,20 @@ std::optional<double> MissingTaxels::held(std::size_t taxel) const noexcept {
   return last_siemens_[taxel];
 }
 
-bool MissingTaxels::are_fresh() const noexcept {
-  return estimated_at_ && last_time_ >= *estimated_at_ && last_time_ - *estimated_at_ < kFresh;
+DERMIS_PROCESSOR_CLONES bool MissingTaxels::are_fresh(std::span<const double> ratio) const noexcept {
+  if (!estimated_at_ || last_time_ < *estimated_at_ || last_time_ - *estimated_at_ >= kFresh) return false;
+  const double* const now = ratio.data();
+  const double* const before = estimated_of_.data();
+  int changed = 0;
+  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
+    changed += std::abs(now[taxel] - before[taxel]) > kAlike ? 1 : 0;
+  }
+  return changed == 0;
+}
+
+void MissingTaxels::note_readings(std::span<const double> ratio) noexcept {
+  estimated_at_ = last_time_;
+  std::copy(ratio.begin(), ratio.end(), estimated_of_.begin());
 }
 
 void MissingTaxels::keep_estimates(std::span<const double> siemens, bool are_solved) noexcept {
@@ -201,7 +215,6 @@ void MissingTaxels::estimate(std::span<double> values) const noexcept {
 
 double MissingTaxels::improve(std::span<double> siemens, bool lines_tell) noexcept {
   std::copy(siemens.begin(), siemens.end(), taken_.begin());
-  estimated_at_ = last_time_;
   lines_tell ? weigh(siemens) : estimate(siemens);
   double change = 0.0;
   for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {

@@ -42,14 +42,17 @@ class MissingTaxels {
   /// nothing.
   double improve(std::span<double> siemens, bool lines_tell = true) noexcept;
 
+  /// At these readings the estimates were made.
+  void note_readings(std::span<const double> ratio) noexcept;
+
   /// Where it is known, what a taxel was a moment ago.
   [[nodiscard]] std::optional<double> held(std::size_t taxel) const noexcept;
 
   /// The same, or what it was estimated to be in the last frame.
   [[nodiscard]] std::optional<double> start(std::size_t taxel) const noexcept;
 
-  /// They were estimated a few milliseconds ago, which is good enough for a frame.
-  [[nodiscard]] bool are_fresh() const noexcept;
+  /// They were estimated a few milliseconds ago, at much the same readings.
+  [[nodiscard]] bool are_fresh(std::span<const double> ratio) const noexcept;
 
   /// What missing taxels were taken for in this frame; the next begins there if the frame is solved.
   void keep_estimates(std::span<const double> siemens, bool are_solved) noexcept;
@@ -91,10 +94,11 @@ class MissingTaxels {
   std::vector<double> estimated_;         // in the last frame; 0: it was not [taxels]
   Nanos last_time_{};
   std::optional<Nanos> estimated_at_;
-  std::vector<double> doubt_;   // [taxels]
-  std::vector<double> taken_;   // [taxels]
-  std::vector<double> rises_;   // over the unloaded conductances; 0 where it tells nothing [taxels]
-  std::vector<double> sorted_;  // [taxels]
+  std::vector<double> estimated_of_;  // readings [taxels]
+  std::vector<double> doubt_;         // [taxels]
+  std::vector<double> taken_;         // [taxels]
+  std::vector<double> rises_;         // over the unloaded conductances; 0 where it tells nothing [taxels]
+  std::vector<double> sorted_;        // [taxels]
 };
 
 }  // namespace dermis::touch::compensation

@@ -10,22 +10,23 @@ namespace dermis::touch::compensation {
 /// Residual of a frame that is cut short, as a ratio, from which the next one may go on.
 inline constexpr double kMostLeft = 0.05;
 
-/// Work that one frame may take, in any unit. Frames save what they do not take, up to `most`. So a hard frame after
-/// easy ones may take much, and hard frames in a row together little more than good ones.
+/// Work that one frame may take, in any unit. Frames save what they do not take. So a hard frame after easy ones may
+/// take much, and hard frames in a row together little more than good ones.
 class StepBudget {
  public:
-  /// `most`: of one frame; 0: nothing is ever bounded.
-  explicit StepBudget(double most) : most_(most), saved_(most) {}
+  /// `most`: of one frame; 0: nothing is ever bounded. So many hard `frames` may follow each other.
+  explicit StepBudget(double most, double frames = 1.0)
+      : most_(most), most_saved_(frames * most), saved_(most_saved_) {}
 
   void start_frame() noexcept {
-    saved_ = std::min(most_, std::max(saved_, 0.0) + kGain * most_ + kTimes * typical_);
+    saved_ = std::min(most_saved_, std::max(saved_, 0.0) + kGain * most_ + kTimes * typical_);
     used_ = 0.0;
     start_attempt(1.0);
   }
 
   /// Another attempt at the frame, or the first of several: it may take this share of what is left.
   void start_attempt(double share) noexcept {
-    left_ = most_ > 0.0 ? share * saved_ : std::numeric_limits<double>::infinity();
+    left_ = most_ > 0.0 ? share * std::min(saved_, most_) : std::numeric_limits<double>::infinity();
   }
 
   /// The frame is a good one, and solved; its work is an example of what frames take.
@@ -34,7 +35,10 @@ class StepBudget {
   }
 
   /// The next frame does not depend on those before.
-  void forget() noexcept { *this = StepBudget(most_); }
+  void forget() noexcept {
+    saved_ = most_saved_;
+    typical_ = 0.0;
+  }
 
   /// false: so much is not left.
   [[nodiscard]] bool take(double work) noexcept {
@@ -51,12 +55,13 @@ class StepBudget {
 
  private:
   static constexpr double kGain = 1.0 / 64.0;
-  static constexpr double kTimes = 1.5;
+  static constexpr double kTimes = 3.0;
   static constexpr double kShare = 1.0 / 256.0;
   static constexpr double kMostRise = 2.0;
   static constexpr double kScarce = 0.25;
 
   double most_;
+  double most_saved_;
   double saved_;
   double typical_ = 0.0;
   double used_ = 0.0;
