@@ -255,7 +255,7 @@ TEST(SuitRecorder, goes_on_in_another_file_when_a_full_disk_has_room_and_counts_
   EXPECT_TRUE(recorder.recording());
   EXPECT_EQ(told.size(), 1U);
   const auto kept = std::filesystem::exists(first) ? recorded(first).at(0).size() : 0;
-  EXPECT_EQ(kept + recorder.left_out(), number);
+  EXPECT_EQ(kept + recorder.missed(), number);
   EXPECT_FALSE(recorder.resume()) << "it goes on already";
   recorder.write(0, frame(number));
   const std::string path = recorder.path();

@@ -60,7 +60,7 @@ class HealthPart final : public Part {
     statistics.recording = host_.recorder.recording();
     statistics.recording_file = host_.recorder.path();
     statistics.recording_frames = host_.recorder.frames();
-    statistics.recording_left_out = host_.recorder.left_out();
+    statistics.recording_left_out = host_.recorder.left_out() + host_.recorder.missed();
     const websocket::ServerStatistics server = host_.server.statistics();
     statistics.clients = static_cast<std::uint32_t>(server.clients);
     statistics.client_drops = server.dropped;

@@ -48,8 +48,8 @@ struct Host {
   /// /suit.json, as the suit is now.
   void show_suit() const;
 
-  /// By the clock of the recording that is played, else by that of the frames: when the clock of the machine is set, it
-  /// does not follow.
+  /// By the clock of the recording that is played, else by that of the frames. When the clock of the machine is set,
+  /// it does not follow.
   [[nodiscard]] Nanos now() const;
 
   void log(const std::string& line) const;

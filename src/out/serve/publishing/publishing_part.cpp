@@ -46,8 +46,8 @@ std::string model_name(const Host& host, std::size_t array) {
 /// Contacts that last are published so often; every frame is there, too.
 constexpr Nanos kContactsEvery = std::chrono::milliseconds(40);
 
-/// Of an array in a second; more are sent where frames have waited for the server.
-constexpr std::uint64_t kUsualBatches = 20;
+/// Frames that have waited leave holes between what has not, and the C library would keep them. It takes some 5 ms.
+constexpr std::int64_t kTicksToGiveBackMemory = std::int64_t{60} * Part::kTicksPerSecond;
 
 /// The contacts of an array, on its thread.
 struct TouchedArray {
@@ -73,14 +73,10 @@ class Publishing final : public Part {
   void report(live::fleet::RobotHealth& health) const override;
 
  private:
-  void give_back_memory();
-
   Host& host_;
   const std::string live_;
   std::deque<TouchedArray> contacts_;
   const std::unique_ptr<live::fleet::FramePublisher> publisher_;
-  std::uint64_t batches_ = 0;  // A second ago.
-  bool catches_up_ = false;
 };
 
 void Publishing::hear(const live::suits::ArrayResult& result) {
@@ -98,8 +94,8 @@ void Publishing::hear(const live::suits::ArrayResult& result) {
 }
 
 void Publishing::tick(std::int64_t tick) {
+  if (tick % kTicksToGiveBackMemory == 0) ::malloc_trim(0);
   if (tick % kTicksPerSecond != 7) return;
-  give_back_memory();
   live::fleet::RobotHealth health{.time = std::chrono::system_clock::now().time_since_epoch(), .live = live_};
   for (std::size_t k = 0; k < host_.suit.arrays.size(); ++k) {
     const ArrayDescription& description = host_.models.of(k)->array;
@@ -114,13 +110,6 @@ void Publishing::tick(std::int64_t tick) {
   if (!error) health.free_bytes = space.available;
   host_.parts.report(health);
   publisher_->publish(health);
-}
-
-/// Frames that have waited leave holes between what has not, and the C library would keep them.
-void Publishing::give_back_memory() {
-  const std::uint64_t batches = publisher_->counts().batches;
-  const bool catches_up = batches - std::exchange(batches_, batches) > kUsualBatches * contacts_.size();
-  if (std::exchange(catches_up_, catches_up) && !catches_up) ::malloc_trim(0);
 }
 
 void Publishing::report(live::fleet::RobotHealth& health) const {

@@ -30,7 +30,7 @@ class Resumption final : public Part {
     next_ = tick + pause_;
     if (!is_resumed) return;
     host_.notify(fmt::format("the recording goes on in {}; {} frames are in none", absolute_path(host_.recorder.path()),
-                             host_.recorder.left_out()));
+                             host_.recorder.missed()));
     host_.server.parameters_changed();
   }
 

@@ -23,7 +23,7 @@ bool has_room(const std::string& path) {
   return !error && space.available >= kRoomToResume;
 }
 
-/// Of all arrays, by the summary; each frame has one image.
+/// Those of all arrays, by the summary; each frame has one image.
 std::uint64_t frames_in(const std::string& path) {
   const auto reader = bytes::recordings::McapReader::open(path);
   if (!reader || !(*reader)->statistics()) return 0;
@@ -57,12 +57,10 @@ SuitRecorder::~SuitRecorder() {
 }
 
 Status SuitRecorder::begin(std::string path) {
-  missed_ = 0;
-  return begin(std::move(path), 0);
+  return begin(std::move(path), Counts::anew);
 }
 
-/// `left_out`: before it.
-Status SuitRecorder::begin(std::string path, std::uint64_t left_out) {
+Status SuitRecorder::begin(std::string path, Counts counts) {
   const std::lock_guard switching(switch_mutex_);
   if (recording_) return bad_input("a recording goes on: " + this->path());
   await_closing();
@@ -75,7 +73,9 @@ Status SuitRecorder::begin(std::string path, std::uint64_t left_out) {
   path_ = path;
   outcome_ = Done{};
   frames_ = 0;
-  left_out_ = left_out + missed_.exchange(0);
+  const std::uint64_t left_out = left_out_.exchange(0);
+  if (counts == Counts::go_on) missed_ += left_out;
+  if (counts == Counts::anew) missed_ = 0;
   is_broken_ = false;
   is_wanted_ = true;
   recording_ = true;
@@ -83,7 +83,7 @@ Status SuitRecorder::begin(std::string path, std::uint64_t left_out) {
 }
 
 bool SuitRecorder::resume() {
-  return is_wanted_ && is_broken_ && has_room(path()) && begin({}, left_out_).has_value();
+  return is_wanted_ && is_broken_ && has_room(path()) && begin({}, Counts::go_on).has_value();
 }
 
 void SuitRecorder::stop() {

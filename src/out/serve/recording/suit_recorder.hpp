@@ -50,7 +50,7 @@ class SuitRecorder {
   /// stop(), and waits for it; the outcome of the recording. Done where there is none.
   [[nodiscard]] Status end();
   /// Begins again after a recording that could not be written, where its disk has room now. False: it does not. The
-  /// frames between are left_out().
+  /// frames between are missed().
   [[nodiscard]] bool resume();
 
   /// Takes part in the recording that goes on, if there is one. Each array is written by one thread.
@@ -61,15 +61,18 @@ class SuitRecorder {
   /// Path of the present or the last recording.
   [[nodiscard]] std::string path() const;
   [[nodiscard]] std::uint64_t frames() const noexcept { return frames_.load(); }
-  /// Frames and events, but those of frames, that are missing in the present or the last recording: its disk was too
-  /// slow. And those that came while it was full.
+  /// Frames and events, but those of frames, that are missing in the present or the last recording, because its disk
+  /// was too slow.
   [[nodiscard]] std::uint64_t left_out() const noexcept { return left_out_.load(); }
+  /// Frames that are in no recording since begin(): they came before resume(), or waited when the disk was full.
+  [[nodiscard]] std::uint64_t missed() const noexcept { return missed_.load(); }
 
  private:
   /// `write` counts what the writer took. Ends a recording that cannot be written.
   template <typename Write>
   void write_with(const Write& write);
-  [[nodiscard]] Status begin(std::string path, std::uint64_t left_out);
+  enum class Counts : std::uint8_t { anew, go_on };
+  [[nodiscard]] Status begin(std::string path, Counts counts);
   void release();
   void close(bytes::recordings::SuitRecordingWriter& writer);
   void await_closing();
@@ -82,10 +85,10 @@ class SuitRecorder {
   std::atomic<bool> recording_{false};
   std::atomic<std::uint64_t> frames_{0};
   std::atomic<std::uint64_t> left_out_{0};
-  std::atomic<bool> is_wanted_{false};    // From begin() to stop(), though it may have failed;
-  std::atomic<bool> is_broken_{false};    // then its file is closed.
-  std::atomic<std::uint64_t> missed_{0};  // Frames since, and those that waited for the disk.
-  Status outcome_ = Done{};               // Of closing_, once it has ended.
+  std::atomic<bool> is_wanted_{false};  // From begin() to stop(), though it may have failed;
+  std::atomic<bool> is_broken_{false};  // then its file is closed.
+  std::atomic<std::uint64_t> missed_{0};
+  Status outcome_ = Done{};  // Of closing_, once it has ended.
 
   mutable std::shared_mutex writer_mutex_;  // Guards the members below; shared by those who write.
   std::unique_ptr<bytes::recordings::SuitRecordingWriter> writer_;
