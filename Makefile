@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # CI runs these targets (.ci/run). Each installs what it needs.
 
-.PHONY: build setup demo live python wheels reference test lint numerics sanitize fuzz check-all bench profile docs bare package package-test site campaigns clean
+.PHONY: build setup demo live python wheels reference test lint numerics sanitize fuzz coverage check-all bench profile docs bare package package-test site campaigns clean
 
 build: setup
 	cmake --preset release
@@ -56,6 +56,12 @@ lint: setup
 fuzz: numerics
 	scripts/setup fuzz
 	scripts/fuzz
+
+# What the fuzzers and the tests reach of the rooms that read bytes.
+coverage: numerics
+	scripts/setup test
+	scripts/setup fuzz
+	scripts/fuzz_coverage
 
 check-all:
 	.ci/all

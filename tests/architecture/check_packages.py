@@ -64,6 +64,7 @@ BRINGS = {
     "rosidl-generator-c-cpp": "rosidl_generator_cpp",
     "clang-format-16": "clang-format-16",
     "clang-tidy-16": "clang-tidy-16",
+    "llvm-16": "llvm-cov-16 llvm-profdata-16",
     "libtorch-dev": "torch torch_cpu c10 torch/csrc/api/include/torch/torch.h",
     "libfann-dev": "floatfann floatfann.h",
     "libopenblas-dev": "openblas openblas_config.h",

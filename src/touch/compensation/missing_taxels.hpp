@@ -37,7 +37,7 @@ class MissingTaxels {
   /// Readings or conductances from those of their neighbours.
   void estimate(std::span<double> values) const noexcept;
 
-  /// `siemens` are solved, with what was taken for the missing taxels; these become better, by the neighbours alone or
+  /// `siemens` are solved, with what was taken for the missing taxels. These become better, by the neighbours alone or
   /// by the others of the line, too. Returns the largest share of a voltage by which that matters to others. Allocates
   /// nothing.
   double improve(std::span<double> siemens, bool lines_tell = true) noexcept;

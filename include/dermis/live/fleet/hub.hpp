@@ -43,7 +43,7 @@ struct RobotState {
   [[nodiscard]] bool is_silent(Nanos now) const noexcept {
     return health_time + kSilentAfter < now || now + kSilentAfter < health_time;
   }
-  /// What it told last may not be so any more.
+  /// Its last health may not be so any more.
   [[nodiscard]] bool is_stale(Nanos now) const noexcept {
     return is_silent(now) || (health_time + kStaleAfter < now && !comes);
   }
