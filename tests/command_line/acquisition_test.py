@@ -355,7 +355,8 @@ class Refused(Devices):
         terminal = Terminal(link)
         process = self.start(*self.record(f"serial://{link}?protocol=csv"))
         read_until(process, "no bytes from")  # it has the device
-        self.refuse(self.record(f"serial://{link}?protocol=csv"), [link, "in use by another program"], status=1)
+        again = ["record", "--from", f"serial://{link}?protocol=csv", "--out", self.work / "again.mcap"]
+        self.refuse(again, [link, "in use by another program"], status=1)
         process.send_signal(signal.SIGINT)
         finish(process)
         terminal.unplug()

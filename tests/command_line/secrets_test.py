@@ -51,11 +51,13 @@ def stream_of(port, token, least):
             f"Sec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n"
             "Sec-WebSocket-Protocol: foxglove.websocket.v1\r\n\r\n".encode()
         )
+        got = b""
+        while b"\r\n\r\n" not in got:  # who sends sooner breaks the protocol
+            got += stream.recv(65536)
         wanted = {"op": "subscribe", "subscriptions": [{"id": k, "channelId": k} for k in range(30)]}
         for request in (wanted, {"op": "getParameters", "parameterNames": [], "id": "all"}):
             text = json.dumps(request).encode().ljust(126)  # of the second form of lengths
             stream.sendall(b"\x81\xfe" + len(text).to_bytes(2, "big") + bytes(4) + text)
-        got = b""
         while len(got) < least:
             part = stream.recv(65536)
             if not part:

@@ -235,7 +235,10 @@ class Serve(SmallArray):
         serve = ["serve", "--port", "0"]
         frames = self.contacts / "frames.csv"
         self.refuse([*serve, "--model", self.model], ["--from", "--model"])
-        self.refuse([*serve, "--host", "0.0.0.0", "--token", "a-long-token"], ["host", "URI"])
+        token = self.work / "token"
+        token.touch(0o600)
+        token.write_text("a-long-token")
+        self.refuse([*serve, "--host", "0.0.0.0", "--token-file", token], ["host", "URI"])
         self.refuse([*serve, "--from", frames], ["make a recording of it first"])
         self.refuse([*serve, "--from", LIVE, "--model", self.work / "none.safetensors"], ["none.safetensors"])
         self.refuse([*serve, "--from", frames, "--model", self.model], ["frames.csv", "convert", "to .mcap"])
