@@ -65,11 +65,14 @@ bool PacketDecoder::next(RawFrame& frame) {
 
 PacketDecoder::Found PacketDecoder::next_packet(RawFrame& frame) {
   const std::span<const std::uint8_t> bytes = window_.bytes();
-  if (bytes.empty()) return Found::nothing;
+  if (bytes.empty() || (bytes.size() < needed_ && !has_ended_)) return Found::nothing;
   const auto mark = std::ranges::find_if(bytes, [&](std::uint8_t byte) { return begins_mark_[byte]; });
   if (mark != bytes.begin()) return skip(static_cast<std::size_t>(mark - bytes.begin()));
   const auto [outcome, match] = read(bytes);
-  if (outcome == PacketMatch::Outcome::unfinished) return Found::nothing;
+  if (outcome == PacketMatch::Outcome::unfinished) {
+    needed_ = match->needed();
+    return Found::nothing;
+  }
   if (outcome == PacketMatch::Outcome::damaged) assembly_.damage(0);
   if (outcome != PacketMatch::Outcome::whole) return skip(1);
   if (match->has_checksum()) return take(*match, bytes, match->size(), frame);
@@ -106,18 +109,22 @@ bool PacketDecoder::is_followed_by_packet(std::span<const std::uint8_t> rest) co
   });
 }
 
+void PacketDecoder::drop(std::size_t bytes) {
+  window_.drop(bytes);
+  needed_ = 0;
+  escaped_.searched = 0;
+}
+
 PacketDecoder::Found PacketDecoder::skip(std::size_t bytes) {
   assembly_.skip(bytes);
-  window_.drop(bytes);
-  escaped_.searched = 0;
+  drop(bytes);
   return Found::packet;
 }
 
 PacketDecoder::Found PacketDecoder::take(const PacketMatch& match, std::span<const std::uint8_t> packet,
                                          std::size_t bytes, RawFrame& frame) {
   match.read_numbers(packet, numbers_);
-  window_.drop(bytes);
-  escaped_.searched = 0;
+  drop(bytes);
   const bool is_frame = assembly_.add(piece_, numbers_, bytes, frame);
   if (is_frame) frame_end_ = window_.position();
   is_sending_ = is_sending_ || is_frame;

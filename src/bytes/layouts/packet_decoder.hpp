@@ -53,6 +53,7 @@ class PacketDecoder final : public Decoder {
   [[nodiscard]] bool is_further(std::size_t fields) const noexcept;
   void keep_misfit(std::size_t fields, const std::string& text);
   [[nodiscard]] std::string without_packet() const;
+  void drop(std::size_t bytes);
   Found skip(std::size_t bytes);
   Found take(const PacketMatch& match, std::span<const std::uint8_t> packet, std::size_t bytes, RawFrame& frame);
 
@@ -61,6 +62,7 @@ class PacketDecoder final : public Decoder {
   std::size_t array_;
   std::array<bool, 256> begins_mark_{};  ///< [byte]
   ByteWindow window_;
+  std::size_t needed_ = 0;            ///< Bytes of the window before more can be said of its first packet.
   std::vector<PacketMatch> matches_;  ///< [packets of the layout]
   FrameAssembly assembly_;
   Piece piece_;

@@ -153,7 +153,7 @@ PacketMatch::Outcome PacketMatch::read_field(std::size_t place, std::span<const 
   if (field.role == Role::literal) return read_literal(field, rest);
   if (field.role == Role::values) return read_values(field, rest, piece);
   const std::size_t size = field.role == Role::skip ? field.count : bytes_of(field.type, 1);
-  if (rest.size() < size) return Outcome::unfinished;
+  if (rest.size() < size) return unfinished(at_ + size);
   const std::size_t begin = at_;
   at_ += size;
   if (field.role == Role::skip) return Outcome::whole;
@@ -164,12 +164,17 @@ PacketMatch::Outcome PacketMatch::read_field(std::size_t place, std::span<const 
   return use(field, number_of(bits, field.type), piece) ? Outcome::whole : Outcome::foreign;
 }
 
+PacketMatch::Outcome PacketMatch::unfinished(std::size_t needed) noexcept {
+  needed_ = needed;
+  return Outcome::unfinished;
+}
+
 PacketMatch::Outcome PacketMatch::read_literal(const PacketField& field, std::span<const std::uint8_t> bytes) {
   const std::size_t size = std::min(bytes.size(), field.literal.size());
   if (!std::equal(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size), field.literal.begin())) {
     return Outcome::foreign;
   }
-  if (size < field.literal.size()) return Outcome::unfinished;
+  if (size < field.literal.size()) return unfinished(at_ + size + 1);
   at_ += size;
   return Outcome::whole;
 }
@@ -181,7 +186,7 @@ PacketMatch::Outcome PacketMatch::read_values(const PacketField& field, std::spa
   const std::size_t count = count_of(field, array, piece);
   if (count > taxels || (array == array_ && count > taxels - count_)) return Outcome::foreign;
   const std::size_t size = bytes_of(field.type, count);
-  if (bytes.size() < size) return Outcome::unfinished;
+  if (bytes.size() < size) return unfinished(at_ + size);
   if (array == array_) {
     numbers_.push_back({at_, count, &field.type});
     count_ += count;
