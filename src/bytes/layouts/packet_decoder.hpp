@@ -62,8 +62,12 @@ class PacketDecoder final : public Decoder {
   std::size_t array_;
   std::array<bool, 256> begins_mark_{};  ///< [byte]
   ByteWindow window_;
-  std::size_t needed_ = 0;            ///< Bytes of the window before more can be said of its first packet.
   std::vector<PacketMatch> matches_;  ///< [packets of the layout]
+  struct {
+    std::size_t needed = 0;  ///< Bytes, before more can be said.
+    std::size_t match = 0;   ///< Those before do not fit.
+    PacketMatch::Outcome outcome = PacketMatch::Outcome::foreign;
+  } front_;  ///< What the window begins with.
   FrameAssembly assembly_;
   Piece piece_;
   std::vector<float> numbers_;  ///< Of the last packet.
