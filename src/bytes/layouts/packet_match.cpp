@@ -24,8 +24,9 @@ std::uint64_t bits_at(std::span<const std::uint8_t> bytes, const WireType& type,
   if (type.bits % 8 == 0) {
     const std::size_t size = type.bits / 8;
     const std::uint8_t* const first = bytes.data() + index * size;
+    const bool is_big_endian = type.is_big_endian;
     std::uint64_t value = 0;
-    for (std::size_t i = 0; i < size; ++i) value = value << 8U | first[type.is_big_endian ? i : size - 1 - i];
+    for (std::size_t i = 0; i < size; ++i) value = value << 8U | first[is_big_endian ? i : size - 1 - i];
     return value;
   }
   std::uint64_t value = 0;
