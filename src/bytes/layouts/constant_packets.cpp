@@ -3,7 +3,6 @@
 #include "bytes/layouts/constant_packets.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <set>
 #include <utility>
 
@@ -13,9 +12,6 @@ namespace dermis::bytes::layouts {
 namespace {
 
 using Packet = PacketLayout::Packet;
-
-/// Chains of every size are sought before the shortest frame is passed: all sizes together, of the shortest one.
-constexpr std::size_t kMostSizes = 5;
 
 const PacketField& mark_of(const Packet& packet) {
   return packet.front().role == Role::literal ? packet.front() : packet.back();
@@ -88,7 +84,7 @@ bool has_constant_sizes(const Layout& layout) {
       return false;
     }
   }
-  return std::accumulate(sizes.begin(), sizes.end(), std::size_t{0}) <= kMostSizes * *sizes.begin();
+  return true;
 }
 
 ConstantPackets::Form::Form(const Layout& of_packets, const Packet& packet, std::size_t array)

@@ -19,19 +19,18 @@ constexpr std::size_t kSmallStep = 4;  ///< Most bytes that damage adds or drops
 
 }  // namespace
 
-MarkChainDecoder::MarkChainDecoder(Bytes mark, MarkAt place, std::vector<std::size_t> frame_sizes, FirstMark first)
-    : mark_(mark),
-      taken_(place == MarkAt::end ? mark.size() : 0),
-      first_mark_(first),
-      frame_sizes_(std::move(frame_sizes)) {
-  const std::size_t longest = *std::max_element(frame_sizes_.begin(), frame_sizes_.end());
+MarkChainDecoder::MarkChainDecoder(Bytes mark, MarkAt place, const std::vector<std::size_t>& frame_sizes,
+                                   FirstMark first)
+    : mark_(mark), taken_(place == MarkAt::end ? mark.size() : 0), first_mark_(first) {
+  for (const std::size_t size : frame_sizes) sizes_.push_back({size});
+  const std::size_t longest = std::ranges::max(frame_sizes);
   last_payload_.reserve(longest);
   marks_in_phase_.reserve(longest);
   MarkChainDecoder::begin_again();
 }
 
 std::optional<std::size_t> MarkChainDecoder::frame_size() const noexcept {
-  return frame_sizes_.size() == 1 ? std::optional(frame_sizes_.front()) : std::nullopt;
+  return sizes_.size() == 1 ? std::optional(sizes_.front().bytes) : std::nullopt;
 }
 
 /// With marks at the end, the first bytes are a frame, whole or not.
@@ -41,11 +40,25 @@ void MarkChainDecoder::begin_again() {
   after_mark_ = false;
   is_at_begin_ = first_mark_ == FirstMark::begins_frame;
   frames_compared_ = marks_needed();
+  forget_chains();
 }
 
 std::size_t MarkChainDecoder::marks_needed() const noexcept {
   if (!frame_size()) return kMarksForUnknownSize;
   return last_payload_.empty() ? kMarksForKnownSize : kMarksWhenResuming;
+}
+
+/// Chains of other lengths are other chains.
+void MarkChainDecoder::compare(std::size_t frames) noexcept {
+  if (frames != frames_compared_) forget_chains();
+  frames_compared_ = frames;
+}
+
+void MarkChainDecoder::forget_chains() noexcept {
+  for (Size& size : sizes_) {
+    size.known_until = 0;
+    size.chains.clear();
+  }
 }
 
 bool MarkChainDecoder::mark_at(Bytes bytes, std::size_t position) const noexcept {
@@ -60,7 +73,7 @@ Verdict MarkChainDecoder::judge(Bytes bytes, bool ended, RawFrame& frame) {
 }
 
 Verdict MarkChainDecoder::follow(Bytes bytes, bool ended, RawFrame& frame) {
-  const std::size_t size = frame_sizes_.front();
+  const std::size_t size = sizes_.front().bytes;
   const bool has_its_mark = mark_at(bytes, 0);
   const auto reaches = [&](std::size_t position) { return length(bytes) >= position + mark_.size(); };
   if (!reaches(size)) {
@@ -83,7 +96,7 @@ Verdict MarkChainDecoder::follow(Bytes bytes, bool ended, RawFrame& frame) {
 }
 
 Verdict MarkChainDecoder::deliver(Bytes bytes, RawFrame& frame) {
-  const std::size_t size = frame_sizes_.front();
+  const std::size_t size = sizes_.front().bytes;
   const Bytes payload = bytes.subspan(mark_.size() - taken_, size - mark_.size());
   if (!read(bytes.first(size), frame)) return pass(bytes, Verdict::Kind::damaged, size);
   last_payload_.assign(payload.begin(), payload.end());
@@ -97,22 +110,19 @@ Verdict MarkChainDecoder::pass(Bytes bytes, Verdict::Kind kind, std::size_t size
 }
 
 Verdict MarkChainDecoder::search(Bytes bytes, bool ended) {
-  const auto [shortest, longest] = std::minmax_element(frame_sizes_.begin(), frame_sizes_.end());
-  const std::size_t needed = frames_compared_ * *longest + mark_.size() - 1 - taken_;
+  const std::size_t shortest = std::ranges::min(sizes_, {}, &Size::bytes).bytes;
+  const std::size_t longest = std::ranges::max(sizes_, {}, &Size::bytes).bytes;
+  const std::size_t needed = frames_compared_ * longest + mark_.size() - 1 - taken_;
   const bool is_short = bytes.size() < needed && !ended;
   if (is_short && !is_idle()) return {};
   const Bytes compared = bytes.first(std::min(needed, bytes.size()));
-  chain_count_ = 0;
-  for (const std::size_t size : frame_sizes_) {
-    find_chains(compared, size);
-    if (chain_count_ > chains_.size()) break;  // of which none can be the true one
-  }
+  find_chains(compared, bytes.size() >= needed);
 
   const Chain* chain = true_chain();
   if (is_short && (chain == nullptr || !ends_with_frame(bytes, *chain))) return {};
   if (chain != nullptr) {
     const std::size_t start = chain->start;
-    frame_sizes_.assign(1, chain->frame_size);
+    sizes_.assign(1, {chain->frame_size});
     in_step_ = true;
     return pass(bytes, Verdict::Kind::noise, start);
   }
@@ -121,12 +131,12 @@ Verdict MarkChainDecoder::search(Bytes bytes, bool ended) {
                                          [&](const Chain& chain) { return chain.is_whole && !is_imitation(chain); });
   if (more_may_tell && frames_compared_ < kMaxFramesCompared) {
     if (bytes.size() < needed) return {};
-    ++frames_compared_;
+    compare(frames_compared_ + 1);
     return {Verdict::Kind::noise, 0};
   }
-  if (!more_may_tell) frames_compared_ = marks_needed();
+  if (!more_may_tell) compare(marks_needed());
   // No frame begins within the shortest one; but the bytes before the next may belong to the mark before it.
-  return pass(bytes, Verdict::Kind::noise, std::min(*shortest - taken_, bytes.size()));
+  return pass(bytes, Verdict::Kind::noise, std::min(shortest - taken_, bytes.size()));
 }
 
 void MarkChainDecoder::look_for_first_mark(Bytes bytes) {
@@ -139,30 +149,71 @@ bool MarkChainDecoder::ends_with_frame(Bytes bytes, const Chain& chain) noexcept
   return (bytes.size() - chain.start) % chain.frame_size == 0;
 }
 
-void MarkChainDecoder::find_chains(Bytes bytes, std::size_t frame_size) {
-  const std::size_t end = std::min(length(bytes), frames_compared_ * frame_size + mark_.size() - 1);
-  const Bytes compared = bytes.first(end - taken_);
-  marks_in_phase_.assign(frame_size, 0);
-  if (mark_at(compared, 0) && taken_ > 0) ++marks_in_phase_[0];
-  auto mark = compared.begin();
-  while ((mark = std::search(mark, compared.end(), mark_.begin(), mark_.end())) != compared.end()) {
-    ++marks_in_phase_[(taken_ + static_cast<std::size_t>(mark - compared.begin())) % frame_size];
-    ++mark;
+/// Where the size is not known, a chain is sought once at each place, however often the window moves on.
+void MarkChainDecoder::find_chains(Bytes bytes, bool are_kept) {
+  if (frame_size() || !are_kept) forget_chains();
+  chain_count_ = 0;
+  for (Size& size : sizes_) {
+    find_chains(bytes, size);
+    for (const Chain& chain : size.chains) {
+      const std::size_t start = chain.start - position();
+      if (chain_count_ < chains_.size()) chains_[chain_count_] = {start, chain.frame_size, chain.is_whole};
+      ++chain_count_;
+    }
+    if (chain_count_ > chains_.size()) break;  // of which none can be the true one
   }
+  if (!are_kept) forget_chains();
+}
+
+void MarkChainDecoder::find_chains(Bytes bytes, Size& size) {
+  const std::size_t end = std::min(length(bytes), frames_compared_ * size.bytes + mark_.size() - 1);
+  const Bytes compared = bytes.first(end - taken_);
+  if (frame_size()) count_marks(compared, size.bytes);
   // At the end of the stream there may be fewer than needed: two, or the one of a stream that is nothing but a frame.
-  const bool is_one_frame = this->frame_size() && bytes.size() == frame_size;
-  const std::size_t fewest = is_one_frame ? 1 : this->frame_size() ? 2 : kMarksForUnknownSize;
-  for (std::size_t phase = 0; phase < frame_size && phase + mark_.size() <= end; ++phase) {
-    const std::size_t possible = 1 + (end - mark_.size() - phase) / frame_size;
-    const std::size_t missing = possible - marks_in_phase_[phase];
+  const bool is_one_frame = frame_size() && bytes.size() == size.bytes;
+  const std::size_t fewest = is_one_frame ? 1 : frame_size() ? 2 : kMarksForUnknownSize;
+  forget_taken_marks(size);
+  std::size_t phase = std::max(size.known_until, position()) - position();
+  for (; phase < size.bytes && phase + mark_.size() <= end && size.chains.size() <= chains_.size(); ++phase) {
+    const std::size_t possible = 1 + (end - mark_.size() - phase) / size.bytes;
+    const std::size_t missing = missing_marks(compared, {phase, size.bytes, false}, possible);
     const bool may_be_whole = missing == 0 || (missing == 1 && possible >= kMarksForKnownSize);
     if (!may_be_whole) continue;
-    const bool has_frame = phase + frame_size <= compared.size();
-    if (has_frame && !fits(compared.subspan(phase, frame_size))) continue;
-    const bool is_whole = missing == 0 && possible >= fewest && phase + frame_size <= end;
-    if (chain_count_ < chains_.size()) chains_[chain_count_] = {phase, frame_size, is_whole};
-    ++chain_count_;
+    const bool has_frame = phase + size.bytes <= compared.size();
+    if (has_frame && !fits(compared.subspan(phase, size.bytes))) continue;
+    const bool is_whole = missing == 0 && possible >= fewest && phase + size.bytes <= end;
+    size.chains.push_back({position() + phase, size.bytes, is_whole});
   }
+  size.known_until = position() + phase;
+  if (!frame_size() && !size.chains.empty() && is_size_of_last_frame(size.bytes)) count_marks(compared, size.bytes);
+}
+
+/// A first mark that is no longer in the window, or only in part, is missing.
+void MarkChainDecoder::forget_taken_marks(Size& size) const noexcept {
+  const auto is_cut = [&](const Chain& chain) { return chain.start > position() && chain.start < position() + taken_; };
+  std::erase_if(size.chains,
+                [&](const Chain& chain) { return chain.start < position() || (is_cut(chain) && !chain.is_whole); });
+  for (Chain& chain : size.chains) chain.is_whole = chain.is_whole && !is_cut(chain);
+}
+
+void MarkChainDecoder::count_marks(Bytes bytes, std::size_t frame_size) {
+  marks_in_phase_.assign(frame_size, 0);
+  if (mark_at(bytes, 0) && taken_ > 0) ++marks_in_phase_[0];
+  auto mark = bytes.begin();
+  while ((mark = std::search(mark, bytes.end(), mark_.begin(), mark_.end())) != bytes.end()) {
+    ++marks_in_phase_[(taken_ + static_cast<std::size_t>(mark - bytes.begin())) % frame_size];
+    ++mark;
+  }
+}
+
+/// No more than two are counted where the size is not known.
+std::size_t MarkChainDecoder::missing_marks(Bytes bytes, const Chain& chain, std::size_t possible) const noexcept {
+  if (frame_size()) return possible - marks_in_phase_[chain.start];
+  std::size_t missing = 0;
+  for (std::size_t k = 0; k < possible && missing < 2; ++k) {
+    if (!mark_at(bytes, chain.start + k * chain.frame_size)) ++missing;
+  }
+  return missing;
 }
 
 std::span<const MarkChainDecoder::Chain> MarkChainDecoder::chains() const noexcept {
@@ -191,6 +242,7 @@ const MarkChainDecoder::Chain* MarkChainDecoder::true_chain() const noexcept {
 /// Readings of the last frame looked like a mark, and a mark stands where it must if the chain is made of those
 /// readings.
 bool MarkChainDecoder::is_imitation(const Chain& chain) const noexcept {
+  if (!is_size_of_last_frame(chain.frame_size)) return false;
   auto reading = last_payload_.begin();
   while ((reading = std::search(reading, last_payload_.end(), mark_.begin(), mark_.end())) != last_payload_.end()) {
     const std::size_t distance = mark_.size() + static_cast<std::size_t>(reading - last_payload_.begin());

@@ -29,7 +29,7 @@ class MarkChainDecoder : public WindowDecoder {
   enum class FirstMark { begins_frame, may_be_readings };
 
   /// `mark` must outlive the decoder; `frame_sizes` are those that the device may have, mark included; one with `end`.
-  MarkChainDecoder(std::span<const std::uint8_t> mark, MarkAt place, std::vector<std::size_t> frame_sizes,
+  MarkChainDecoder(std::span<const std::uint8_t> mark, MarkAt place, const std::vector<std::size_t>& frame_sizes,
                    FirstMark first);
 
   /// Mark included; empty until it is known.
@@ -55,6 +55,13 @@ class MarkChainDecoder : public WindowDecoder {
     bool is_whole;  ///< Long enough, and no mark is missing.
   };
 
+  /// A size that frames may have, and what is known of chains of it. Starts are places in the stream.
+  struct Size {
+    std::size_t bytes;
+    std::uint64_t known_until = 0;  ///< No other chain starts before.
+    std::vector<Chain> chains{};
+  };
+
   Verdict judge(Bytes bytes, bool ended, RawFrame& frame) final;
   Verdict follow(Bytes bytes, bool ended, RawFrame& frame);
   Verdict search(Bytes bytes, bool ended);
@@ -67,9 +74,18 @@ class MarkChainDecoder : public WindowDecoder {
   [[nodiscard]] bool mark_at(Bytes bytes, std::size_t position) const noexcept;
 
   [[nodiscard]] std::size_t marks_needed() const noexcept;
+  void compare(std::size_t frames) noexcept;
+  void forget_chains() noexcept;
   void look_for_first_mark(Bytes bytes);
-  void find_chains(Bytes bytes, std::size_t frame_size);
+  void find_chains(Bytes bytes, bool are_kept);
+  void find_chains(Bytes bytes, Size& size);
+  void forget_taken_marks(Size& size) const noexcept;
+  void count_marks(Bytes bytes, std::size_t frame_size);
+  [[nodiscard]] std::size_t missing_marks(Bytes bytes, const Chain& chain, std::size_t possible) const noexcept;
   [[nodiscard]] static bool ends_with_frame(Bytes bytes, const Chain& chain) noexcept;
+  [[nodiscard]] bool is_size_of_last_frame(std::size_t size) const noexcept {
+    return size == mark_.size() + last_payload_.size();
+  }
   [[nodiscard]] bool is_imitation(const Chain& chain) const noexcept;
   [[nodiscard]] std::span<const Chain> chains() const noexcept;
   [[nodiscard]] const Chain* true_chain() const noexcept;
@@ -77,12 +93,12 @@ class MarkChainDecoder : public WindowDecoder {
   Bytes mark_;
   std::size_t taken_;  ///< Length of the mark before the window, 0 with marks at the begin.
   FirstMark first_mark_;
-  std::vector<std::size_t> frame_sizes_;  ///< One, once it is known.
-  bool in_step_ = false;                  ///< A frame begins at the front of the window.
-  bool was_in_step_ = false;              ///< One would, had no bytes been lost or added since the last.
-  bool after_mark_ = false;               ///< The bytes taken before the window ended with a mark.
-  bool is_at_begin_ = true;               ///< Nothing of the stream was taken, and it may begin with a frame.
-  std::size_t frames_compared_ = 0;       ///< Over how many frames chains are followed at present.
+  std::vector<Size> sizes_;          ///< One, once it is known.
+  bool in_step_ = false;             ///< A frame begins at the front of the window.
+  bool was_in_step_ = false;         ///< One would, had no bytes been lost or added since the last.
+  bool after_mark_ = false;          ///< The bytes taken before the window ended with a mark.
+  bool is_at_begin_ = true;          ///< Nothing of the stream was taken, and it may begin with a frame.
+  std::size_t frames_compared_ = 0;  ///< Over how many frames chains are followed at present.
   std::optional<std::uint64_t> first_mark_at_;
   std::vector<std::uint8_t> last_payload_;
   std::vector<std::uint8_t> marks_in_phase_;  ///< Number of marks at each position modulo the frame size.

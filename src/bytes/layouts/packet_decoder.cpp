@@ -65,7 +65,7 @@ bool PacketDecoder::next(RawFrame& frame) {
 
 PacketDecoder::Found PacketDecoder::next_packet(RawFrame& frame) {
   const std::span<const std::uint8_t> bytes = window_.bytes();
-  if (bytes.empty()) return Found::nothing;
+  if (bytes.empty() || (bytes.size() < front_.needed && !has_ended_)) return Found::nothing;
   const auto mark = std::ranges::find_if(bytes, [&](std::uint8_t byte) { return begins_mark_[byte]; });
   if (mark != bytes.begin()) return skip(static_cast<std::size_t>(mark - bytes.begin()));
   const auto [outcome, match] = read(bytes);
@@ -85,16 +85,19 @@ PacketDecoder::Found PacketDecoder::next_packet(RawFrame& frame) {
 /// Tries the packets of the layout. One that may be more than the bytes so far keeps those behind it waiting, but not
 /// at the end.
 PacketDecoder::Reading PacketDecoder::read(std::span<const std::uint8_t> bytes) {
-  Reading reading;
-  for (PacketMatch& match : matches_) {
+  for (; front_.match < matches_.size(); ++front_.match) {
+    PacketMatch& match = matches_[front_.match];
     const PacketMatch::Outcome outcome = match.read(bytes, window_.position(), piece_);
     if (outcome == PacketMatch::Outcome::whole) return {outcome, &match};
-    if (outcome == PacketMatch::Outcome::unfinished && !has_ended_) return {outcome, &match};
-    if (outcome == PacketMatch::Outcome::unfinished) continue;
+    if (outcome == PacketMatch::Outcome::unfinished && has_ended_) continue;
+    if (outcome == PacketMatch::Outcome::unfinished) {
+      front_.needed = match.needed();
+      return {outcome, &match};
+    }
     if (is_further(match.fitted())) keep_misfit(match.fitted(), match.misfit());
-    if (outcome == PacketMatch::Outcome::damaged) reading.outcome = outcome;
+    if (outcome == PacketMatch::Outcome::damaged) front_.outcome = outcome;
   }
-  return reading;
+  return {front_.outcome, nullptr};
 }
 
 /// Packets without a checksum are believed where the next one begins behind them.
@@ -106,18 +109,22 @@ bool PacketDecoder::is_followed_by_packet(std::span<const std::uint8_t> rest) co
   });
 }
 
+void PacketDecoder::drop(std::size_t bytes) {
+  window_.drop(bytes);
+  front_ = {};
+  escaped_.searched = 0;
+}
+
 PacketDecoder::Found PacketDecoder::skip(std::size_t bytes) {
   assembly_.skip(bytes);
-  window_.drop(bytes);
-  escaped_.searched = 0;
+  drop(bytes);
   return Found::packet;
 }
 
 PacketDecoder::Found PacketDecoder::take(const PacketMatch& match, std::span<const std::uint8_t> packet,
                                          std::size_t bytes, RawFrame& frame) {
   match.read_numbers(packet, numbers_);
-  window_.drop(bytes);
-  escaped_.searched = 0;
+  drop(bytes);
   const bool is_frame = assembly_.add(piece_, numbers_, bytes, frame);
   if (is_frame) frame_end_ = window_.position();
   is_sending_ = is_sending_ || is_frame;

@@ -53,6 +53,7 @@ class PacketDecoder final : public Decoder {
   [[nodiscard]] bool is_further(std::size_t fields) const noexcept;
   void keep_misfit(std::size_t fields, const std::string& text);
   [[nodiscard]] std::string without_packet() const;
+  void drop(std::size_t bytes);
   Found skip(std::size_t bytes);
   Found take(const PacketMatch& match, std::span<const std::uint8_t> packet, std::size_t bytes, RawFrame& frame);
 
@@ -62,6 +63,11 @@ class PacketDecoder final : public Decoder {
   std::array<bool, 256> begins_mark_{};  ///< [byte]
   ByteWindow window_;
   std::vector<PacketMatch> matches_;  ///< [packets of the layout]
+  struct {
+    std::size_t needed = 0;  ///< Bytes, before more can be said.
+    std::size_t match = 0;   ///< Those before do not fit.
+    PacketMatch::Outcome outcome = PacketMatch::Outcome::foreign;
+  } front_;  ///< What the window begins with.
   FrameAssembly assembly_;
   Piece piece_;
   std::vector<float> numbers_;  ///< Of the last packet.

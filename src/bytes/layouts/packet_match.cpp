@@ -24,8 +24,9 @@ std::uint64_t bits_at(std::span<const std::uint8_t> bytes, const WireType& type,
   if (type.bits % 8 == 0) {
     const std::size_t size = type.bits / 8;
     const std::uint8_t* const first = bytes.data() + index * size;
+    const bool is_big_endian = type.is_big_endian;
     std::uint64_t value = 0;
-    for (std::size_t i = 0; i < size; ++i) value = value << 8U | first[type.is_big_endian ? i : size - 1 - i];
+    for (std::size_t i = 0; i < size; ++i) value = value << 8U | first[is_big_endian ? i : size - 1 - i];
     return value;
   }
   std::uint64_t value = 0;
@@ -153,7 +154,7 @@ PacketMatch::Outcome PacketMatch::read_field(std::size_t place, std::span<const 
   if (field.role == Role::literal) return read_literal(field, rest);
   if (field.role == Role::values) return read_values(field, rest, piece);
   const std::size_t size = field.role == Role::skip ? field.count : bytes_of(field.type, 1);
-  if (rest.size() < size) return Outcome::unfinished;
+  if (rest.size() < size) return unfinished(at_ + size);
   const std::size_t begin = at_;
   at_ += size;
   if (field.role == Role::skip) return Outcome::whole;
@@ -164,12 +165,17 @@ PacketMatch::Outcome PacketMatch::read_field(std::size_t place, std::span<const 
   return use(field, number_of(bits, field.type), piece) ? Outcome::whole : Outcome::foreign;
 }
 
+PacketMatch::Outcome PacketMatch::unfinished(std::size_t needed) noexcept {
+  needed_ = needed;
+  return Outcome::unfinished;
+}
+
 PacketMatch::Outcome PacketMatch::read_literal(const PacketField& field, std::span<const std::uint8_t> bytes) {
   const std::size_t size = std::min(bytes.size(), field.literal.size());
   if (!std::equal(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size), field.literal.begin())) {
     return Outcome::foreign;
   }
-  if (size < field.literal.size()) return Outcome::unfinished;
+  if (size < field.literal.size()) return unfinished(at_ + size + 1);
   at_ += size;
   return Outcome::whole;
 }
@@ -181,7 +187,7 @@ PacketMatch::Outcome PacketMatch::read_values(const PacketField& field, std::spa
   const std::size_t count = count_of(field, array, piece);
   if (count > taxels || (array == array_ && count > taxels - count_)) return Outcome::foreign;
   const std::size_t size = bytes_of(field.type, count);
-  if (bytes.size() < size) return Outcome::unfinished;
+  if (bytes.size() < size) return unfinished(at_ + size);
   if (array == array_) {
     numbers_.push_back({at_, count, &field.type});
     count_ += count;

@@ -44,6 +44,8 @@ class PacketMatch {
   [[nodiscard]] const PacketLayout::Packet& packet() const noexcept { return packet_; }
   [[nodiscard]] bool has_checksum() const noexcept { return has_checksum_; }
   [[nodiscard]] std::size_t size() const noexcept { return at_; }
+  /// Fewer bytes than so many leave the last one unfinished.
+  [[nodiscard]] std::size_t needed() const noexcept { return needed_; }
   /// How many fields of the last one did fit.
   [[nodiscard]] std::size_t fitted() const noexcept { return misfit_; }
   /// "packet[3], a checksum, is 5F where 33 is expected", of the last one that did not fit.
@@ -59,6 +61,7 @@ class PacketMatch {
 
   [[nodiscard]] Outcome read_field(std::size_t place, std::span<const std::uint8_t> bytes, std::uint64_t position,
                                    Piece& piece);
+  [[nodiscard]] Outcome unfinished(std::size_t needed) noexcept;
   [[nodiscard]] Outcome read_literal(const PacketField& field, std::span<const std::uint8_t> bytes);
   [[nodiscard]] Outcome read_values(const PacketField& field, std::span<const std::uint8_t> bytes, const Piece& piece);
   [[nodiscard]] bool use(const PacketField& field, double number, Piece& piece);
@@ -74,6 +77,7 @@ class PacketMatch {
   std::vector<Numbers> numbers_;
   std::size_t count_ = 0;  ///< Readings so far.
   std::size_t at_ = 0;
+  std::size_t needed_ = 0;
   std::optional<std::uint64_t> given_count_;
   std::optional<std::uint64_t> end_;  ///< As a field `length` says.
   std::size_t misfit_ = 0;            ///< The field that did not fit.

@@ -755,6 +755,25 @@ TEST(PacketLayout, the_distance_of_marks_tells_packets_that_differ_in_size) {
   EXPECT_EQ(readings_of(keys, bytes), Readings(6, {1, 2, 3, 4}));
 }
 
+TEST(PacketLayout, the_distance_of_marks_tells_packets_however_much_they_differ_in_size) {
+  const std::string begin = "packet = [[\"AA 55\", \"values u8\"], [\"AA 55\", \"values u8\", \"skip 90\"]]\n";
+  const std::string end = "packet = [[\"values u8\", \"AA 55\"], [\"values u8\", \"skip 90\", \"AA 55\"]]\n";
+  const Bytes readings = {1, 2, 3, 4};
+  const Bytes mark = {0xAA, 0x55};
+  Bytes marked_first;
+  Bytes marked_last;
+  for (int k = 0; k < 6; ++k) {
+    Bytes rest = readings;
+    rest.resize(94, 9);
+    marked_first.insert(marked_first.end(), mark.begin(), mark.end());
+    marked_first.insert(marked_first.end(), rest.begin(), rest.end());
+    marked_last.insert(marked_last.end(), rest.begin(), rest.end());
+    marked_last.insert(marked_last.end(), mark.begin(), mark.end());
+  }
+  EXPECT_EQ(readings_of(begin, marked_first), Readings(6, {1, 2, 3, 4}));
+  EXPECT_EQ(readings_of(end, marked_last), Readings(5, {1, 2, 3, 4}));
+}
+
 TEST(PacketLayout, a_clock_that_leaps_beyond_all_time_begins_anew) {
   const std::string keys = R"(packet = ["AA 55", "time_ms u32be", "values u8", "checksum sum8"]
 )";
