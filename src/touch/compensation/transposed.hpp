@@ -45,7 +45,10 @@ class Transposed final : public CrosstalkInversion {
       const auto exchanged = exchange(fault.kind);
       const LineFaultScope scope = traits_of(fault.kind).scope;
       if (scope == LineFaultScope::taxel || scope == LineFaultScope::driver) continue;
-      if (!exchanged || broken_.size() == broken_.capacity()) return inversion_->set_broken({}) && false;
+      if (!exchanged || broken_.size() == broken_.capacity()) {
+        static_cast<void>(inversion_->set_broken({}));
+        return false;
+      }
       fault.kind = *exchanged;
       broken_.push_back(fault);
     }

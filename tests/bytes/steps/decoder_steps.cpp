@@ -24,7 +24,7 @@ std::uint64_t blocks = 0;
 }  // namespace
 
 extern "C" {
-// NOLINTBEGIN(bugprone-reserved-identifier): of the compiler
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming,bugprone-macro-parentheses): of the compiler
 void __sanitizer_cov_trace_pc();
 void __sanitizer_cov_trace_pc() {
   ++blocks;
@@ -70,9 +70,9 @@ std::uint32_t __tsan_atomic32_fetch_add(std::uint32_t* to, std::uint32_t value, 
 std::uint32_t __tsan_atomic32_fetch_add(std::uint32_t* to, std::uint32_t value, int) {
   return __atomic_fetch_add(to, value, __ATOMIC_SEQ_CST);
 }
-// NOLINTEND(bugprone-reserved-identifier)
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming,bugprone-macro-parentheses)
 
-// NOLINTBEGIN(bugprone-reserved-identifier): of the linker
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): of the linker
 void* __real_memchr(const void* bytes, int byte, std::size_t size);
 void* __wrap_memchr(const void* bytes, int byte, std::size_t size);
 int __real_memcmp(const void* a, const void* b, std::size_t size);
@@ -106,7 +106,7 @@ void* __wrap_memset(void* to, int byte, std::size_t size) {
   blocks += size / 8;
   return __real_memset(to, byte, size);
 }
-// NOLINTEND(bugprone-reserved-identifier)
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
 }
 
 namespace dermis::bytes {
@@ -204,14 +204,8 @@ bool report(const std::string& what, const Measured& measured) {
   return measured.beyond == 0;
 }
 
-}  // namespace
-}  // namespace dermis::bytes
-
-int main(int argc, char** argv) {
-  using namespace dermis::bytes;
-  const std::size_t count = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 500;
-  const std::uint64_t seed = argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 1;
-  dermis::Random random(seed);
+bool measure_all(std::size_t count, std::uint64_t seed) {
+  Random random(seed);
   std::printf("seed %lu\n", seed);
   Measured of_layouts;
   for (std::size_t tried = 0; of_layouts.runs < 2 * count && tried < 100 * count; ++tried)
@@ -222,5 +216,14 @@ int main(int argc, char** argv) {
     for (std::size_t k = 0; k < count / 20; ++k) measure_protocol(name, random, of_protocol);
     is_good = report(name, of_protocol) && is_good;
   }
-  return is_good ? 0 : 1;
+  return is_good;
+}
+
+}  // namespace
+}  // namespace dermis::bytes
+
+int main(int argc, char** argv) {
+  const std::size_t count = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 500;
+  const std::uint64_t seed = argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 1;
+  return dermis::bytes::measure_all(count, seed) ? 0 : 1;
 }
