@@ -21,6 +21,7 @@ constexpr std::int64_t kNanosPerMs = 1'000'000;
 
 #define DERMIS_TAKES_PLACE extern "C" __attribute__((visibility("default")))
 
+// NOLINTBEGIN(readability-identifier-naming): of the library
 DERMIS_TAKES_PLACE std::int64_t nats_NowInNanoSeconds() {
   return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -44,3 +45,4 @@ DERMIS_TAKES_PLACE natsStatus natsCondition_TimedWait(pthread_cond_t* condition,
   if (ms <= 0) return NATS_TIMEOUT;
   return natsCondition_AbsoluteTimedWait(condition, mutex, nats_Now() + ms);
 }
+// NOLINTEND(readability-identifier-naming)

@@ -62,7 +62,8 @@ DERMIS_PROCESSOR_CLONES double median_of(std::span<const double> values) {
 #pragma omp simd
     for (std::size_t k = 0; k < size; ++k) ranks[k] += value < all[k] ? 1.0 : 0.0;
   }
-  const auto middle = static_cast<double>(size / 2);
+  const std::size_t half = size / 2;
+  const auto middle = static_cast<double>(half);
   double median = 0.0;
   for (std::size_t k = 0; k < size; ++k) median = ranks[k] <= middle && all[k] > median ? all[k] : median;
   return median;

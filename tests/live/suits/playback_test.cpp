@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 #include <thread>
 
@@ -207,14 +208,28 @@ TEST(Playback, of_no_frame_is_refused) {
   EXPECT_EQ(playback.error().kind, ErrorKind::bad_input);
 }
 
+/// Where it begins: records of MCAP have an opcode and the length of what follows.
+std::ptrdiff_t second_chunk(const std::string& bytes) {
+  constexpr std::size_t kMagic = 8;
+  constexpr std::size_t kHead = 9;
+  constexpr char kChunk = 6;
+  int chunks = 0;
+  std::size_t place = kMagic;
+  while (place + kHead < bytes.size()) {
+    if (bytes[place] == kChunk && ++chunks == 2) return static_cast<std::ptrdiff_t>(place + kHead);
+    std::uint64_t length = 0;
+    std::memcpy(&length, &bytes[place + 1], sizeof length);
+    place += kHead + length;
+  }
+  ADD_FAILURE() << "the recording has " << chunks << " chunks";
+  return 0;
+}
+
 TEST(Playback, a_damaged_recording_gives_its_error_to_all_sources) {
   const TemporaryFolder folder;
-  record(folder.file("rec.mcap"), 35'000);
+  record(folder.file("rec.mcap"), 35'000);  // two chunks; more where writing is slow
   std::string bytes = support::read_bytes(folder.file("rec.mcap"));
-  // Wider than the index of a chunk, in which damage goes unseen. Where chunks end depends on the time that writing
-  // took.
-  std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2),
-            bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() * 9 / 10), 'x');
+  std::fill_n(bytes.begin() + second_chunk(bytes) + 100, 2000, 'x');
   support::write_bytes(folder.file("rec.mcap"), bytes);
   const auto playback = opened(folder.file("rec.mcap"));
   playback->control({.speed = 10'000.0});

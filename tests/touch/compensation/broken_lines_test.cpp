@@ -18,8 +18,8 @@ namespace dermis::touch::compensation {
 namespace {
 
 struct Case {
-  LineFaultKind kind;
-  std::size_t place;
+  LineFaultKind kind{};
+  std::size_t place = 0;
   bool grounded = false;
 };
 
