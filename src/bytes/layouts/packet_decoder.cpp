@@ -44,7 +44,7 @@ PacketDecoder::PacketDecoder(std::shared_ptr<const Layout> layout, std::size_t a
 }
 
 void PacketDecoder::push(std::span<const std::uint8_t> bytes) {
-  is_idle_ = false;
+  input_.is_idle = false;
   window_.push(bytes);
 }
 
@@ -55,7 +55,7 @@ bool PacketDecoder::next(RawFrame& frame) {
     if (found == Found::frame) return true;
     if (found == Found::nothing) break;
   }
-  if (std::exchange(has_ended_, false)) {
+  if (std::exchange(input_.has_ended, false)) {
     skip(window_.bytes().size());
     assembly_.end_frame();
     is_sending_ = false;
@@ -65,7 +65,7 @@ bool PacketDecoder::next(RawFrame& frame) {
 
 PacketDecoder::Found PacketDecoder::next_packet(RawFrame& frame) {
   const std::span<const std::uint8_t> bytes = window_.bytes();
-  if (bytes.empty() || (bytes.size() < front_.needed && !has_ended_)) return Found::nothing;
+  if (bytes.empty() || (bytes.size() < front_.needed && !input_.has_ended)) return Found::nothing;
   const auto mark = std::ranges::find_if(bytes, [&](std::uint8_t byte) { return begins_mark_[byte]; });
   if (mark != bytes.begin()) return skip(static_cast<std::size_t>(mark - bytes.begin()));
   const auto [outcome, match] = read(bytes);
@@ -74,7 +74,7 @@ PacketDecoder::Found PacketDecoder::next_packet(RawFrame& frame) {
   if (outcome != PacketMatch::Outcome::whole) return skip(1);
   if (match->has_checksum()) return take(*match, bytes, match->size(), frame);
   const std::span<const std::uint8_t> rest = bytes.subspan(match->size());
-  const bool is_decided = rest.size() >= longest_mark(form_) || is_idle_ || has_ended_;
+  const bool is_decided = rest.size() >= longest_mark(form_) || input_.is_idle || input_.has_ended;
   if (!is_decided) return Found::nothing;
   if (is_followed_by_packet(rest)) return take(*match, bytes, match->size(), frame);
   if (is_further(match->packet().size()))
@@ -89,7 +89,7 @@ PacketDecoder::Reading PacketDecoder::read(std::span<const std::uint8_t> bytes) 
     PacketMatch& match = matches_[front_.match];
     const PacketMatch::Outcome outcome = match.read(bytes, window_.position(), piece_);
     if (outcome == PacketMatch::Outcome::whole) return {outcome, &match};
-    if (outcome == PacketMatch::Outcome::unfinished && has_ended_) continue;
+    if (outcome == PacketMatch::Outcome::unfinished && input_.has_ended) continue;
     if (outcome == PacketMatch::Outcome::unfinished) {
       front_.needed = match.needed();
       return {outcome, &match};

@@ -27,8 +27,8 @@ class PacketDecoder final : public Decoder {
 
   void push(std::span<const std::uint8_t> bytes) override;
   [[nodiscard]] bool next(RawFrame& frame) override;
-  void idle() override { is_idle_ = true; }
-  void finish() override { has_ended_ = true; }
+  void idle() override { input_.is_idle = true; }
+  void finish() override { input_.has_ended = true; }
   [[nodiscard]] std::uint64_t frame_end() const noexcept override { return frame_end_; }
   [[nodiscard]] std::optional<FrameShape> shape() const noexcept override { return layout_->arrays[array_].shape; }
   [[nodiscard]] const DecoderCounts& counts() const noexcept override { return assembly_.counts(); }
@@ -81,9 +81,11 @@ class PacketDecoder final : public Decoder {
     std::string text{};
     std::size_t fields = 0;  ///< That did fit.
   } misfit_;                 ///< By a packet before the first frame.
-  bool has_ended_ = false;
   bool is_sending_ = false;
-  bool is_idle_ = false;
+  struct {
+    bool has_ended = false;
+    bool is_idle = false;
+  } input_;
 };
 
 }  // namespace dermis::bytes::layouts

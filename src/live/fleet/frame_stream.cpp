@@ -33,6 +33,7 @@ struct End {
 
 }  // namespace
 
+/// Many members: the place in the stream, what is known of its senders, and the frames at hand.
 class FrameStream::Implementation {
  public:
   Implementation(const StreamAddress& address, FrameStreamOptions options, std::unique_ptr<Broker> broker)

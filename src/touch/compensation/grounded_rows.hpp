@@ -54,6 +54,7 @@ namespace dermis::touch::compensation {
 ///
 /// G is not always unique. On large arrays of low resistance beside weak drivers (max Rd sum_j G_ij above about 2) two
 /// arrays can give the same readings. The result is the one that is reached from G = 0 as all readings grow.
+/// Many members: the iterate, what is kept of the last frame, and work space, as no frame allocates.
 class GroundedRows final : public CrosstalkInversion {
  public:
   /// `array` is a divider or transimpedance with grounded idle rows.

@@ -21,7 +21,8 @@ namespace dermis::touch::compensation {
 ///   s = (g + x) / (g + X)
 ///
 /// times what they are. The true values of unloaded ones are known from the rest of the array. Both are weighed by
-/// their standard deviations, in logarithms.
+/// their standard deviations, in logarithms. Many members: what is known of each taxel, of the last frame and of this
+/// one, and work space, as no frame allocates.
 class MissingTaxels {
  public:
   MissingTaxels(const ArrayDescription& array, const ReferenceConductances& references);
