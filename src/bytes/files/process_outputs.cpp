@@ -9,20 +9,18 @@
 namespace dermis::bytes::files {
 namespace {
 
-/// Never destroyed: outputs of static objects may end later.
-std::atomic<ProcessOutputs*>& outputs_of_process() {
-  static std::atomic<ProcessOutputs*> outputs = new ProcessOutputs;
-  return outputs;
-}
+std::atomic<ProcessOutputs*> shared = nullptr;  // by another part of the process
 
 }  // namespace
 
 ProcessOutputs& process_outputs() {
-  return *outputs_of_process();
+  if (ProcessOutputs* const outputs = shared) return *outputs;
+  static auto* const own = new ProcessOutputs;  // never destroyed: outputs of static objects may end later
+  return *own;
 }
 
 void share_process_outputs(ProcessOutputs& outputs) {
-  outputs_of_process() = &outputs;
+  shared = &outputs;
 }
 
 }  // namespace dermis::bytes::files
