@@ -4,7 +4,6 @@
 // Time of one frame, one thread, counts to newtons. Frames are those of the simulator's multitouch scene, each a touch
 // of its own; the networks have random parameters, as their values do not change the time.
 #include <benchmark/benchmark.h>
-#include <fmt/core.h>
 
 #include <algorithm>
 #include <chrono>
@@ -19,8 +18,8 @@
 #include "dermis/touch/fusion/typical_siemens.hpp"
 #include "dermis/touch/pipeline/pipeline.hpp"
 #include "frame_times.hpp"
+#include "random_model.hpp"
 #include "rows.hpp"
-#include "support/random_networks.hpp"
 #include "support/reference_array.hpp"
 
 namespace dermis {
@@ -36,16 +35,6 @@ std::vector<RawFrame> frames_of(const ArrayDescription& array, const char* scene
     if (!simulator.value()->next(frame)) std::abort();
   }
   return frames;
-}
-
-touch::pipeline::Model random_model(const ArrayDescription& array) {
-  touch::pipeline::Model model;
-  model.array = array;
-  model.networks = support::random_networks(array.taxel_count(), touch::fusion::kInputsWithTemperature, 4, 1);
-  // What the simulated array is, unloaded: else its taxels are found to be dead.
-  model.networks.unloaded.offset_siemens.assign(array.taxel_count(),
-                                                1.0 / learn::simulation::RubberOptions{}.unloaded_ohm);
-  return model;
 }
 
 void measure_pipeline(benchmark::State& state, const touch::pipeline::Model& model, const char* scene) {
@@ -185,125 +174,6 @@ void memory_alone(benchmark::State& state) {
   state.counters["checked"] = checked ? 1 : 0;
 }
 
-/// Frames that no array gives, made of a good one.
-struct BadInput {
-  const char* name = nullptr;
-  void (*spoil)(RawFrame& frame, std::size_t number, Random& random) = nullptr;
-};
-
-constexpr float kFullScale = 4095.0F;
-constexpr std::size_t kGoodFirst = 64;
-constexpr std::size_t kBadFrames = 256;
-constexpr int kTimings = 5;  // of each frame, of which the least counts: what else runs on the machine is no input
-
-float any_count(Random& random) {
-  return static_cast<float>(random.below(4096));
-}
-
-void set_some(RawFrame& frame, double share, Random& random) {
-  for (float& count : frame.counts) {
-    if (random.uniform() < share) count = any_count(random);
-  }
-}
-
-constexpr BadInput kBadInputs[] = {
-    {"random counts", [](RawFrame& frame, std::size_t, Random& random) { set_some(frame, 1.0, random); }},
-    {"a third of them random", [](RawFrame& frame, std::size_t, Random& random) { set_some(frame, 0.33, random); }},
-    {"spikes in 1 %", [](RawFrame& frame, std::size_t, Random& random) { set_some(frame, 0.01, random); }},
-    {"all saturated",
-     [](RawFrame& frame, std::size_t, Random&) { std::fill(frame.counts.begin(), frame.counts.end(), kFullScale); }},
-    {"one saturated row",
-     [](RawFrame& frame, std::size_t, Random&) { std::fill_n(frame.counts.begin() + 48, 16, kFullScale); }},
-    {"alternating spikes",
-     [](RawFrame& frame, std::size_t number, Random&) {
-       for (std::size_t taxel = 0; number % 2 == 1 && taxel < frame.counts.size(); taxel += 7) {
-         frame.counts[taxel] = kFullScale;
-       }
-     }},
-    {"one stuck taxel", [](RawFrame& frame, std::size_t, Random&) { frame.counts[37] = 3500.0F; }},
-    {"one taxel of any count",
-     [](RawFrame& frame, std::size_t, Random& random) { frame.counts[37] = any_count(random); }},
-};
-
-/// Seconds of each frame.
-std::vector<double> time_frames(const touch::pipeline::Model& model, std::vector<RawFrame>& frames) {
-  using Clock = std::chrono::steady_clock;
-  std::vector<double> least(frames.size(), 1.0);
-  ForceFrame force;
-  for (int timing = 0; timing < kTimings; ++timing) {
-    auto pipeline = touch::pipeline::Pipeline::create(model);
-    for (std::size_t k = 0; k < frames.size(); ++k) {
-      const auto start = Clock::now();
-      pipeline->process(frames[k], force);
-      least[k] = std::min(least[k], std::chrono::duration<double>(Clock::now() - start).count());
-    }
-  }
-  return least;
-}
-
-/// The frame that takes longest, of counts that are changed few at a time as long as that makes it slower.
-double search_slowest(const touch::pipeline::Model& model, const std::vector<RawFrame>& good, Random& random) {
-  constexpr int kSteps = 100;
-  constexpr int kMostChanged = 8;
-  double slowest = 0.0;
-  std::vector<RawFrame> frames(good.begin(), good.begin() + kGoodFirst + 1);
-  RawFrame best = frames.back();
-  for (int step = 0; step < kSteps; ++step) {
-    frames.back().counts = best.counts;
-    for (std::size_t k = 0; k <= random.below(kMostChanged); ++k) {
-      frames.back().counts[random.below(best.counts.size())] = any_count(random);
-    }
-    const double seconds = time_frames(model, frames).back();
-    if (seconds <= slowest) continue;
-    slowest = seconds;
-    best.counts = frames.back().counts;
-  }
-  return slowest;
-}
-
-std::vector<RawFrame> contact_frames(const ArrayDescription& array) {
-  constexpr std::size_t kFrom = 150;  // something presses
-  const std::size_t count = kFrom + kGoodFirst + kBadFrames;
-  auto simulator = learn::simulation::Simulator::create(array, {}, "contacts", 1, count);
-  std::vector<RawFrame> frames(count);
-  for (RawFrame& frame : frames) {
-    if (!simulator.value()->next(frame)) std::abort();
-  }
-  frames.erase(frames.begin(), frames.begin() + kFrom);
-  return frames;
-}
-
-/// The slowest frame of any input beside the median of good ones.
-void slowest_frame(benchmark::State& state) {
-  const auto lines = static_cast<std::size_t>(state.range(0));
-  const ArrayDescription array = support::reference_array(lines, lines);
-  const touch::pipeline::Model model = random_model(array);
-  std::vector<RawFrame> good = contact_frames(array);
-  Random random(1);
-  std::vector<double> times = time_frames(model, good);
-  std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2), times.end());
-  const double median = times[times.size() / 2];
-  double slowest = 0.0;
-  for (auto _ : state) {
-    for (const BadInput& input : kBadInputs) {
-      std::vector<RawFrame> frames = good;
-      for (std::size_t k = kGoodFirst; k < frames.size(); ++k) input.spoil(frames[k], k, random);
-      const std::vector<double> bad = time_frames(model, frames);
-      const double worst = *std::max_element(bad.begin() + kGoodFirst, bad.end());
-      fmt::print("  {:<24} {:6.1f} us, {:.1f} times the median\n", input.name, 1e6 * worst, worst / median);
-      slowest = std::max(slowest, worst);
-    }
-    const double searched = search_slowest(model, good, random);
-    fmt::print("  {:<24} {:6.1f} us, {:.1f} times the median\n", "searched", 1e6 * searched, searched / median);
-    slowest = std::max(slowest, searched);
-    state.SetIterationTime(slowest);
-  }
-  state.counters["p50_us"] = 1e6 * median;
-  state.counters["p99_us"] = state.counters["max_us"] = 1e6 * slowest;
-  state.counters["allocations"] = 0.0;
-  state.counters["checked"] = 1;
-}
-
 BENCHMARK(frame_counts_to_newtons)
     ->Name("frame: counts to newtons|dermis")
     ->Arg(8)
@@ -318,7 +188,6 @@ BENCHMARK(frame_of_a_material_with_memory)
     ->Arg(32)
     ->Arg(64)
     ->UseManualTime();
-BENCHMARK(slowest_frame)->Name("slowest of any input|dermis")->Arg(16)->Iterations(1)->UseManualTime();
 BENCHMARK(memory_alone)->Name("memory of the material|dermis")->Arg(8)->Arg(16)->Arg(32)->Arg(64)->UseManualTime();
 
 }  // namespace

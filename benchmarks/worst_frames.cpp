@@ -16,9 +16,8 @@
 
 #include "dermis/learn/simulation/simulator.hpp"
 #include "dermis/touch/frames/random.hpp"
-#include "dermis/touch/fusion/force_fusion.hpp"
 #include "dermis/touch/pipeline/pipeline.hpp"
-#include "support/random_networks.hpp"
+#include "random_model.hpp"
 #include "support/reference_array.hpp"
 
 namespace dermis {
@@ -155,15 +154,6 @@ std::vector<BadInput> bad_inputs() {
   add("one taxel of any count",
       [](RawFrame& frame, std::size_t, Random& random) { frame.counts[37] = any_count(random); });
   return inputs;
-}
-
-touch::pipeline::Model random_model(const ArrayDescription& array) {
-  touch::pipeline::Model model;
-  model.array = array;
-  model.networks = support::random_networks(array.taxel_count(), touch::fusion::kInputsWithTemperature, 4, 1);
-  model.networks.unloaded.offset_siemens.assign(array.taxel_count(),
-                                                1.0 / learn::simulation::RubberOptions{}.unloaded_ohm);
-  return model;
 }
 
 std::vector<RawFrame> frames_of(const ArrayDescription& array, const LineFaults& faults, std::size_t count) {

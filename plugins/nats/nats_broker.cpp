@@ -66,9 +66,16 @@ class NatsBroker final : public Broker {
                                                           std::uint64_t sequence) override;
 
  private:
+  struct Published {
+    natsStatus status = NATS_OK;
+    jsErrCode code{};
+    PublishAck acknowledged{};
+  };
+
   [[nodiscard]] Result<std::optional<StoredMessage>> get(const std::string& stream, jsDirectGetMsgOptions& which,
                                                          const std::string& domain = "");
   [[nodiscard]] Error why_not(natsStatus status) const;
+  [[nodiscard]] Published publish(const std::string& subject, std::string_view bytes, jsPubOptions& options);
   [[nodiscard]] Error why_not_stored(natsStatus status, jsErrCode code);
 
   const std::string url_;
@@ -99,19 +106,25 @@ Status NatsBroker::send(const std::string& subject, const std::string& text) {
   return Done{};
 }
 
+NatsBroker::Published NatsBroker::publish(const std::string& subject, std::string_view bytes, jsPubOptions& options) {
+  options.MaxWait = kAnswerMs;
+  Published published;
+  jsPubAck* answer = nullptr;
+  published.status = js_Publish(&answer, jet_stream_.get(), subject.c_str(), bytes.data(),
+                                static_cast<int>(bytes.size()), &options, &published.code);
+  published.acknowledged.reset(answer);
+  return published;
+}
+
 Result<std::uint64_t> NatsBroker::store(const std::string& subject, const std::string& id,
                                         std::span<const std::uint8_t> bytes) {
   jsPubOptions options;
   jsPubOptions_Init(&options);
   if (!id.empty()) options.MsgId = id.c_str();
-  options.MaxWait = kAnswerMs;
-  jsPubAck* answer = nullptr;
-  jsErrCode code{};
-  const natsStatus published = js_Publish(&answer, jet_stream_.get(), subject.c_str(), bytes.data(),
-                                          static_cast<int>(bytes.size()), &options, &code);
-  const PublishAck acknowledged(answer);
-  if (published == NATS_MAX_PAYLOAD) return bad_input(url_ + ": " + subject + ": the server takes no message so large");
-  if (published != NATS_OK) return why_not_stored(published, code);
+  const auto [status, code, acknowledged] =
+      publish(subject, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, options);
+  if (status == NATS_MAX_PAYLOAD) return bad_input(url_ + ": " + subject + ": the server takes no message so large");
+  if (status != NATS_OK) return why_not_stored(status, code);
   return acknowledged->Sequence;
 }
 
@@ -121,14 +134,9 @@ Result<std::optional<std::uint64_t>> NatsBroker::store_after(std::uint64_t last,
   jsPubOptions_Init(&options);
   options.ExpectLastSubjectSeq = last;
   options.ExpectNoMessage = last == 0;
-  options.MaxWait = kAnswerMs;
-  jsPubAck* answer = nullptr;
-  jsErrCode code{};
-  const natsStatus published = js_Publish(&answer, jet_stream_.get(), subject.c_str(), text.data(),
-                                          static_cast<int>(text.size()), &options, &code);
-  const PublishAck acknowledged(answer);
+  const auto [status, code, acknowledged] = publish(subject, text, options);
   if (code == JSStreamWrongLastSequenceErr) return std::optional<std::uint64_t>();
-  if (published != NATS_OK) return why_not_stored(published, code);
+  if (status != NATS_OK) return why_not_stored(status, code);
   return std::optional(acknowledged->Sequence);
 }
 
