@@ -15,8 +15,8 @@ std::atomic<ProcessOutputs*> shared = nullptr;  // by another part of the proces
 
 ProcessOutputs& process_outputs() {
   if (ProcessOutputs* const outputs = shared) return *outputs;
-  static auto* const own = new ProcessOutputs;  // never destroyed: outputs of static objects may end later
-  return *own;
+  static auto* const kOwn = new ProcessOutputs;  // never destroyed: outputs of static objects may end later
+  return *kOwn;
 }
 
 void share_process_outputs(ProcessOutputs& outputs) {
