@@ -179,9 +179,9 @@ void add_serve(Command& command) {
   auto options = std::make_shared<ServeOptions>();
   command.option("--from", options->place.from,
                  "URI of a device or of the simulator, or a recording; without it the page asks where the array is");
-  command.option(
-      "--model", options->place.model,
-      "Its model, or the array.toml of an array to be calibrated; without it the recording tells, or the page asks");
+  command.option("--model", options->place.model,
+                 "Its model, or the array.toml of an array to be calibrated; without it recording or simulator tell, "
+                 "or the page asks");
   command.option("--suit", options->place.suit, "suit.toml: several arrays with their sources and models");
   command.option("--classes", options->place.classes,
                  "Classes of 'dermis recognise learn', from newtons: name what touches the array");

@@ -197,6 +197,12 @@ class Serve(SmallArray):
         self.assertEqual((array["name"], array["rows"], array["cols"]), ("small", 4, 5))
         self.end(process)
 
+    def test_the_simulator_needs_no_model(self):
+        process, address = self.serve("--from", LIVE)
+        [array] = json.loads(self.get(address + "suit.json"))["arrays"]
+        self.assertEqual((array["rows"], array["cols"]), (4, 5))
+        self.end(process)
+
     def test_the_array_of_any_other_recording_is_asked_for_as_that_of_a_device(self):
         recording = self.work / "untold.mcap"
         self.succeed("convert", self.contacts / "frames.csv", recording)

@@ -15,6 +15,7 @@
 #include "dermis/bytes/files/array_toml.hpp"
 #include "dermis/learn/simulation/reference_array.hpp"
 #include "dermis/learn/simulation/simulator.hpp"
+#include "dermis/live/sources/simulated_calibration.hpp"
 #include "live/sources/contact_loop.hpp"
 #include "live/sources/rehearsal.hpp"
 #include "live/sources/simulated_device.hpp"
@@ -30,7 +31,7 @@ constexpr std::size_t kLeastFrames = 16;
 constexpr std::uint64_t kMostFramesToCatchUp = 100;
 constexpr std::string_view kRehearsal = "rehearsal";
 
-Result<ArrayDescription> array_of(const bytes::devices::SourceUri& uri, const ArrayDescription* given) {
+Result<ArrayDescription> named_array(const bytes::devices::SourceUri& uri, const ArrayDescription* given) {
   Result<ArrayDescription> array = learn::simulation::reference_array(uri.array_shape.value_or(FrameShape{16, 16}));
   if (!uri.array.empty()) {
     array = bytes::files::read_array(uri.array);
@@ -44,6 +45,12 @@ Result<ArrayDescription> array_of(const bytes::devices::SourceUri& uri, const Ar
         fmt::format("'{}': the array of {} has {}x{} taxels", uri.text, uri.array, array->rows, array->cols));
   }
   return array;
+}
+
+Result<ArrayDescription> array_of(const bytes::devices::SourceUri& uri, const ArrayDescription* given) {
+  Result<ArrayDescription> array = named_array(uri, given);
+  if (!array || !array->has_unknown_circuit()) return array;
+  return bad_input("'" + uri.text + "': a circuit that is to be fitted cannot be simulated; name it in array.toml");
 }
 
 /// A scene once, as fast as it is read.
@@ -215,9 +222,6 @@ Result<std::unique_ptr<FrameSource>> open_simulation(const bytes::devices::Sourc
                                                      const SourceOptions& options) {
   const Result<ArrayDescription> array = array_of(uri, options.array);
   if (!array) return array.error();
-  if (array->has_unknown_circuit()) {
-    return bad_input("'" + uri.text + "': a circuit that is to be fitted cannot be simulated; name it in array.toml");
-  }
   Result<std::unique_ptr<FrameSource>> source = open_scene(uri, *array, options);
   if (!source) return bad_input("'" + uri.text + "': " + source.error().message);
   const ArrayDescription* const expected = options.array;
@@ -226,6 +230,27 @@ Result<std::unique_ptr<FrameSource>> open_simulation(const bytes::devices::Sourc
                                  expected->rows, expected->cols));
   }
   return source;
+}
+
+Result<SimulatedCalibration> simulate_calibration(const bytes::devices::SourceUri& uri) {
+  Result<ArrayDescription> array = array_of(uri, nullptr);
+  if (!array) return array.error();
+  learn::simulation::SimulationOptions options;
+  const Result<learn::simulation::RubberOptions> rubber = rubber_of(uri);
+  if (!rubber) return rubber.error();
+  options.rubber = *rubber;
+  auto simulator = learn::simulation::Simulator::create(*array, options, "uniform", uri.seed);
+  if (!simulator) return bad_input("'" + uri.text + "': " + simulator.error().message);
+  SimulatedCalibration calibration{.array = *std::move(array)};
+  RawFrame frame;
+  for (;;) {
+    const Result<bool> more = (*simulator)->next(frame);
+    if (!more) return more.error();
+    if (!*more) return calibration;
+    calibration.frames.push_back(frame);
+    const std::vector<Load>& loads = (*simulator)->loads();
+    calibration.loads.insert(calibration.loads.end(), loads.begin(), loads.end());
+  }
 }
 
 }  // namespace dermis::live::sources

@@ -79,6 +79,22 @@ TEST(ServedSuit, opens_an_array_that_is_still_to_be_calibrated) {
   EXPECT_EQ(suit->arrays[0].model->networks.dead, std::vector<std::uint8_t>(kRows * kCols, 1));
 }
 
+TEST(ServedSuit, calibrates_the_array_of_the_simulator_where_no_model_is_named) {
+  std::vector<std::string> told;
+  const Result<ServedSuit> suit = open_suit({.from = "sim:contacts?rate=100&rows=3&cols=4"},
+                                            {.notice = [&](const std::string& line) { told.push_back(line); }});
+  ASSERT_TRUE(suit) << suit.error().message;
+  EXPECT_EQ(suit->arrays[0].model->networks.dead, std::vector<std::uint8_t>(12, 0));
+  EXPECT_EQ(told, std::vector<std::string>{"sim:contacts?rate=100&rows=3&cols=4: the simulator loads its array to "
+                                           "calibrate it"});
+}
+
+TEST(ServedSuit, asks_for_the_model_of_a_device_and_of_a_simulated_calibration) {
+  for (const std::string from : {"tcp://127.0.0.1:7000", "sim:rehearsal?rate=100"}) {
+    EXPECT_EQ(refusal({.from = from}), "'" + from + "': name its model, too, or its array.toml");
+  }
+}
+
 TEST(ServedSuit, opens_all_arrays_of_a_suit_where_they_sit) {
   const ModelFolder folder;
   write_bytes(folder.file("suit.toml"),

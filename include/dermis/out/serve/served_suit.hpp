@@ -68,14 +68,15 @@ struct ServedSuit {
 /// Fails, with the mend, on a source that is neither a device nor a recording.
 [[nodiscard]] Status check_served(const live::sources::SourceName& from);
 
-/// Whether it is a recording that holds the description of its array.
+/// Whether it needs no model: a recording that holds the description of its array, or a simulation, which is
+/// calibrated.
 [[nodiscard]] bool describes_its_array(const live::sources::SourceName& from);
 
 /// The place to be opened: one source with its model, or a suit.
 struct SuitPlace {
   std::string from{};  ///< URI or recording; of a suit: a recording of it, or empty for its own sources.
-  /// Model file, or the array.toml of an array to be calibrated, where `suit` is empty. Empty: `from` describes its
-  /// array.
+  /// Model file, or the array.toml of an array to be calibrated, where `suit` is empty. Empty: `from` is of such that
+  /// describes_its_array().
   std::string model{};
   std::string suit{};     ///< suit.toml
   std::string classes{};  ///< From `dermis recognise learn`, for one source; a suit.toml names its own. Empty: none.

@@ -44,6 +44,19 @@ std::string topic_name(const std::string& name) {
   return begins_with_letter ? topic : "array_" + topic;
 }
 
+using Notice = std::function<void(const std::string&)>;
+
+/// Without a model.
+Result<ModelOrArray> array_of_source(const std::string& text, const Notice& notice) {
+  const Result<SourceName> from = SourceName::parse(text);
+  if (!from) return from.error();
+  if (Status can = check_served(*from); !can) return can.error();
+  if (from->kind == SourceKind::recording) return read_recorded_array(text);
+  if (!describes_its_array(*from)) return bad_input("'" + text + "': name its model, too, or its array.toml");
+  if (notice) notice(text + ": the simulator loads its array to calibrate it");
+  return calibrate_simulated_array(*from->uri);
+}
+
 /// Models, read once each.
 class Models {
  public:
@@ -52,12 +65,11 @@ class Models {
     ArrayDescription description;
   };
 
-  /// Without a model, the recording describes its array.
-  Result<Known> read(const SuitArray& array) {
+  Result<Known> read(const SuitArray& array, const Notice& notice) {
     const std::string& path = array.model;
     const auto known = read_.find(path);
     if (known != read_.end()) return known->second;
-    Result<ModelOrArray> read = path.empty() ? read_recorded_array(array.from) : read_model_or_array(path);
+    Result<ModelOrArray> read = path.empty() ? array_of_source(array.from, notice) : read_model_or_array(path);
     if (!read) return read.error();
     Known fresh{std::make_shared<const touch::pipeline::Model>(std::move(read->model)), std::move(read->array)};
     read_[path] = fresh;
@@ -79,8 +91,6 @@ Result<SuitDescription> describe(const SuitPlace& place) {
   suit.arrays.push_back(std::move(array));
   return suit;
 }
-
-using Notice = std::function<void(const std::string&)>;
 
 /// `create(classes)`: the recognition that they are for.
 template <typename Create>
@@ -171,7 +181,7 @@ Result<RestPlace> place_of(const SuitArray& array, const BodyParts* parts, const
 
 Result<ServedArray> open_array(const SuitArray& described, const Pose& suit_from_array, const Notice& notice,
                                Models& models) {
-  Result<Models::Known> known = models.read(described);
+  Result<Models::Known> known = models.read(described, notice);
   if (!known) return known.error();
   const ArrayDescription& array = known->model->array;
   std::string name = described.name.empty() ? topic_name(array.name) : described.name;
@@ -319,6 +329,8 @@ Status check_served(const SourceName& from) {
 }
 
 bool describes_its_array(const SourceName& from) {
+  // A rehearsal is one of a calibration, by somebody who has no model.
+  if (from.kind == SourceKind::simulation) return from.uri->path != "rehearsal";
   if (from.kind != SourceKind::recording) return false;
   const Result<bytes::recordings::FrameNotes> notes = bytes::recordings::read_frame_notes(from.text);
   return notes && !notes->array_toml.empty();

@@ -7,7 +7,9 @@
 #include "dermis/bytes/files/array_toml.hpp"
 #include "dermis/bytes/models/model_file.hpp"
 #include "dermis/bytes/recordings/frame_files.hpp"
+#include "dermis/learn/calibration/calibrate.hpp"
 #include "dermis/learn/calibration/uncalibrated_model.hpp"
+#include "dermis/live/sources/simulated_calibration.hpp"
 
 namespace dermis::out::serve {
 
@@ -39,6 +41,14 @@ Result<ModelOrArray> read_recorded_array(const std::string& recording) {
   }
   if (notes->array_toml.empty()) return bad_input(recording + ": does not describe its array; name the model of it");
   return uncalibrated(bytes::files::array_from_toml(notes->array_toml, recording));
+}
+
+Result<ModelOrArray> calibrate_simulated_array(const bytes::devices::SourceUri& uri) {
+  const Result<live::sources::SimulatedCalibration> rig = live::sources::simulate_calibration(uri);
+  if (!rig) return rig.error();
+  Result<learn::calibration::Calibration> made = learn::calibration::calibrate(rig->array, rig->frames, rig->loads);
+  if (!made) return bad_input("'" + uri.text + "': " + made.error().message);
+  return calibrated(std::move(made->model));
 }
 
 }  // namespace dermis::out::serve

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "dermis/bytes/devices/source_uri.hpp"
 #include "dermis/touch/frames/array_description.hpp"
 #include "dermis/touch/frames/result.hpp"
 #include "dermis/touch/pipeline/model.hpp"
@@ -21,5 +22,8 @@ struct ModelOrArray {
 
 /// The array that a recording describes, with the model in it, if there is one. Fails where it describes none.
 [[nodiscard]] Result<ModelOrArray> read_recorded_array(const std::string& recording);
+
+/// The array of a simulation, calibrated by loads that are simulated.
+[[nodiscard]] Result<ModelOrArray> calibrate_simulated_array(const bytes::devices::SourceUri& uri);
 
 }  // namespace dermis::out::serve
