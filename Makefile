@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # CI runs these targets (.ci/run). Each installs what it needs.
 
-.PHONY: build setup demo live python wheels reference test lint numerics sanitize fuzz coverage check-all bench profile docs bare package package-test site campaigns clean
+.PHONY: build setup demo live python wheels reference test lint numerics sanitize fuzz coverage check-all bench profile docs bare package package-test release site campaigns clean
 
 build: setup
 	cmake --preset release
@@ -22,10 +22,16 @@ python: setup
 	cmake --preset release
 	cmake --build --preset release --target dermis_python
 
-# A wheel for each Python that is here, with its libraries inside, and the sources, in build/wheels.
+# A wheel for each architecture, with its libraries inside, and the sources, in build/wheels.
 wheels: setup
 	scripts/setup python
 	scripts/wheels.py
+
+# What is published, in build/release_files, tried where nothing is installed. As root.
+release: wheels package site
+	scripts/setup test
+	scripts/setup bare
+	scripts/release
 
 test: setup
 	scripts/setup test

@@ -1,120 +1,82 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
-"""Usage: wheels.py [PYTHON...]
+"""Usage: wheels.py [ARCHITECTURE...]
 
-Makes a wheel for each Python of 3.11 to 3.13 that this machine has, and the archive of the sources, in build/wheels.
-Each wheel has its libraries inside: it runs where nothing but glibc 2.36 and the library of C++ is installed."""
+Makes one wheel for each architecture, with a module for each Python of MINORS that has headers here, and the archive of
+the sources, in build/wheels. A wheel has its libraries inside: it runs where nothing but glibc 2.31 is installed."""
 
-import json
 import os
-import re
-import shutil
 import subprocess
 import sys
-from pathlib import Path
 
-sys.path.append(str(Path(__file__).resolve().parent.parent / "bindings/python"))
+import components
+import machines
+
+sys.path.append(str(components.ROOT / "bindings/python"))
 import build_backend
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = components.ROOT
+
 WHEELS = ROOT / "build/wheels"
-REQUIREMENTS = ROOT / "packaging/wheels/requirements.txt"
-PLATFORM = "manylinux_2_36_x86_64"
-PYTHONS = ("3.11", "3.12", "3.13")
-# The platform lets a wheel expect these, but a server or a container has them not.
-NOT_EVERYWHERE = {"libX11.so.6", "libXext.so.6", "libXrender.so.1", "libexpat.so.1", "libz.so.1"}
-LIBRARY = re.compile(r"=> (/\S+)")
+TOOLS = ROOT / "packaging/wheels"
+REQUIREMENTS = TOOLS / "requirements.txt"
+ARCHITECTURES = ("x86_64", "aarch64")
+GLIBC = "2_31"
+MINORS = range(9, 15)  # of Python 3
+TARGETS = ("dermis_cli", "dermis_python")
 
 
-def has_headers(python):
-    code = "import os, sysconfig; print(os.path.exists(sysconfig.get_path('include') + '/Python.h'))"
-    return subprocess.run([python, "-c", code], capture_output=True, text=True).stdout.strip() == "True"
+def find_headers():
+    """Minor version -> folder."""
+    found = {}
+    for minor in MINORS:
+        tried = subprocess.run([TOOLS / "python_headers", str(minor)], stdout=subprocess.PIPE, text=True)
+        if tried.returncode == 0:
+            found[minor] = tried.stdout.strip()
+        else:
+            print(f"Python 3.{minor}: no headers; the wheels are not for it", file=sys.stderr)
+    return found
 
 
-def found_pythons():
-    """Those that pyenv has, else that of the path."""
-    for version in PYTHONS:
-        name = f"python{version}"
-        places = [*Path.home().glob(f".pyenv/versions/{version}.*/bin/{name}"), Path("/usr/bin") / name]
-        there = next((place for place in places if place.exists() and has_headers(place)), None)
-        print(
-            f"{name}: {there}"
-            if there
-            else f"{name}: is not here, or without its headers; there will be no wheel of it"
-        )
-        if there:
-            yield there
+def pythons_of(minors):
+    """As Requires-Python says it."""
+    missing = [f"!=3.{minor}.*" for minor in range(min(minors), max(minors)) if minor not in minors]
+    return ",".join([f">=3.{min(minors)}", *missing, f"<3.{max(minors) + 1}"])
 
 
-def make_tools(venv):
-    """The environment with what REQUIREMENTS names."""
+def add_tools():
+    """Puts what REQUIREMENTS names before the packages of this Python."""
+    venv = WHEELS / "tools"
     installed = venv / "requirements.txt"
-    if installed.exists() and installed.read_text() == REQUIREMENTS.read_text():
-        return venv
-    subprocess.run(["/usr/bin/python3", "-m", "venv", "--clear", venv], check=True)
-    subprocess.run([venv / "bin/pip", "install", "--quiet", "--requirement", REQUIREMENTS], check=True)
-    installed.write_text(REQUIREMENTS.read_text())
-    return venv
+    if not (installed.exists() and installed.read_text() == REQUIREMENTS.read_text()):
+        subprocess.run(["/usr/bin/python3", "-m", "venv", "--clear", venv], check=True)
+        subprocess.run([venv / "bin/pip", "install", "--quiet", "--requirement", REQUIREMENTS], check=True)
+        installed.write_text(REQUIREMENTS.read_text())
+    sys.path[:0] = map(str, venv.glob("lib/python3*/site-packages"))
 
 
-def expect_less(tools):
-    """Takes NOT_EVERYWHERE from what auditwheel expects of a machine."""
-    for policy in tools.glob("lib/python3*/site-packages/auditwheel/policy/manylinux-policy.json"):
-        rules = json.loads(policy.read_text())
-        for rule in rules:
-            rule["lib_whitelist"] = [name for name in rule["lib_whitelist"] if name not in NOT_EVERYWHERE]
-        policy.write_text(json.dumps(rules))
+def build_folder(architecture):
+    return ROOT / f"build/wheel_{architecture}"
 
 
-def licenses_of(package):
-    """The copyright files of Debian for the libraries that the module and its plugin load."""
-    loaded = subprocess.run(["ldd", *package.glob("*.so")], check=True, capture_output=True, text=True).stdout
-    paths = {os.path.realpath(path) for path in LIBRARY.findall(loaded)}
-    owners = subprocess.run(["dpkg-query", "-S", *paths], capture_output=True, text=True).stdout
-    names = sorted({line.split(":")[0] for line in owners.splitlines()} - {"libc6"})
-    texts = {name: Path("/usr/share/doc") / name / "copyright" for name in names}
-    return {name: path.read_bytes() for name, path in texts.items() if path.exists()}
-
-
-def repair(tools, wheel, folder):
-    """Puts its libraries into a wheel, which gets the name of the platform. Returns its new path."""
-    expect_less(tools)
-    environment = {**os.environ, "PATH": f"{tools / 'bin'}:{os.environ['PATH']}"}
-    command = [tools / "bin/auditwheel", "repair", "--plat", PLATFORM, "--only-plat", "--strip", "-w", folder, wheel]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True)
-    if done.returncode:
-        sys.exit(f"auditwheel: {done.stdout}{done.stderr}")
-    (repaired,) = Path(folder).glob(wheel.name.split("-linux")[0] + f"-{PLATFORM}.whl")
-    return repaired
-
-
-def make_wheel(python, tools):
-    raw = WHEELS / "raw"
-    shutil.rmtree(raw, ignore_errors=True)
-    raw.mkdir(parents=True)
-    (packages,) = tools.glob("lib/python3*/site-packages")
-    launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
-    build = (
-        "import build_backend, wheels; package = build_backend.build_package(); "
-        "print(build_backend.pack_wheel(package, 'build/wheels/raw', wheels.licenses_of(package)))"
-    )
-    environment = {
-        **os.environ,
-        "CMAKE_ARGS": " ".join(launcher),
-        "PYTHONPATH": f"{ROOT / 'bindings/python'}:{ROOT / 'scripts'}:{packages}",
-    }
-    subprocess.run([python, "-c", build], cwd=ROOT, env=environment, check=True, stdout=sys.stderr)
-    (wheel,) = raw.glob("*.whl")
-    return repair(tools, wheel, WHEELS)
+def make_wheel(architecture, headers):
+    """Returns its path."""
+    subprocess.run([TOOLS / "prefix", architecture], check=True, stdout=sys.stderr)
+    os.environ["DERMIS_WHEEL_ROOT"] = str(machines.CACHE / "dermis/wheels" / architecture)
+    folder = build_folder(architecture)
+    contents = build_backend.build(folder, headers.values(), f"-DCMAKE_TOOLCHAIN_FILE={TOOLS / 'toolchain.cmake'}")
+    licenses = {part.name: part.license.encode() for part in components.components(folder, TARGETS)}
+    tag = f"py3-none-manylinux_{GLIBC}_{architecture}"
+    return WHEELS / build_backend.pack_wheel(contents, WHEELS, tag, licenses, pythons_of(headers))
 
 
 def main():
     WHEELS.mkdir(parents=True, exist_ok=True)
-    tools = make_tools(WHEELS / "tools")
-    made = [make_wheel(python, tools) for python in map(Path, sys.argv[1:] or found_pythons())]
+    add_tools()
+    headers = find_headers()
+    made = [make_wheel(architecture, headers) for architecture in sys.argv[1:] or ARCHITECTURES]
     made.append(WHEELS / build_backend.build_sdist(WHEELS))
-    shutil.rmtree(WHEELS / "raw", ignore_errors=True)
     for path in made:
         print(f"{path} ({path.stat().st_size / 1e6:.1f} MB)")
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
-"""Makes the wheel and the archive of the sources (PEP 517). CMake builds the module for the Python that runs this, and
-the package is zipped. CMAKE_ARGS has further options of cmake."""
+"""Makes the wheel and the archive of the sources (PEP 517). CMake builds and installs what a wheel has
+(cmake/Wheel.cmake), and that is zipped. CMAKE_ARGS has further options of cmake."""
 
 import base64
 import gzip
@@ -11,6 +11,7 @@ import io
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import sysconfig
@@ -20,8 +21,6 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 BUILD = ROOT / "build/wheel"
-# Names by which cmake remembers the Python of an earlier wheel.
-OF_PYTHON = ("Python*", "PYTHON*", "_Python*", "pybind11*", "PYBIND11*")
 
 
 def version():
@@ -32,21 +31,12 @@ def info():
     return f"dermis-{version()}.dist-info"
 
 
-def metadata():
+def metadata(pythons=">=3.9"):
     return (
         f"Metadata-Version: 2.1\nName: dermis\nVersion: {version()}\n"
         "Summary: Calibrated force from resistive tactile arrays\n"
-        "License: Apache-2.0\nRequires-Python: >=3.9\nRequires-Dist: numpy\n"
+        f"License: Apache-2.0\nRequires-Python: {pythons}\nRequires-Dist: numpy\n"
     )
-
-
-def configure(*options):
-    forget = [word for names in OF_PYTHON for word in ("-U", names)]
-    options = [*forget, *options, *shlex.split(os.environ.get("CMAKE_ARGS", ""))]
-    try:
-        subprocess.run(["cmake", "-S", ROOT, "-B", BUILD, "-G", "Ninja", *options], check=True)
-    except (FileNotFoundError, subprocess.CalledProcessError):
-        sys.exit("dermis cannot be built: cmake, a compiler or a library is missing; scripts/setup build installs them")
 
 
 def headers_of_pybind11():
@@ -61,20 +51,30 @@ def headers_of_pybind11():
     return [f"-Dpybind11_DIR={pybind11.get_cmake_dir()}"]
 
 
-def build_package():
-    configure(
-        *headers_of_pybind11(),
+def build(folder, headers, *options):
+    """Builds in `folder`, with a module for each Python of whose headers a folder is given. Returns the folder that has
+    what a wheel holds."""
+    options = [
         "-DCMAKE_BUILD_TYPE=Release",
         "-DDERMIS_UNITY_BUILD=ON",
         "-DDERMIS_BUILD_PYTHON=ON",
         "-DDERMIS_BUILD_TESTS=OFF",
-        f"-DPython3_EXECUTABLE={sys.executable}",
-    )
-    package = BUILD / "python" / "dermis"
-    for earlier in package.glob("_dermis*.so"):
-        earlier.unlink()
-    subprocess.run(["cmake", "--build", BUILD, "--target", "dermis_python"], check=True)
-    return package
+        "-DDERMIS_SHARED=ON",
+        f"-DDERMIS_PYTHON_HEADERS={';'.join(map(str, headers))}",
+        *headers_of_pybind11(),
+        *options,
+        *shlex.split(os.environ.get("CMAKE_ARGS", "")),
+    ]
+    try:
+        subprocess.run(["cmake", "-S", ROOT, "-B", folder, "-G", "Ninja", *options], check=True)
+    except (FileNotFoundError, subprocess.CalledProcessError):
+        sys.exit("dermis cannot be built: cmake, a compiler or a library is missing; scripts/setup build installs them")
+    subprocess.run(["cmake", "--build", folder, "--target", "dermis_python", "dermis_cli"], check=True)
+    contents = folder / "wheel"
+    shutil.rmtree(contents, ignore_errors=True)
+    install = ["cmake", "--install", folder, "--component", "wheel", "--strip", "--prefix", contents]
+    subprocess.run(install, check=True, stdout=subprocess.DEVNULL)
+    return contents
 
 
 def record_line(name, content):
@@ -97,35 +97,52 @@ def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
-    return pack_wheel(build_package(), wheel_directory)
+    tag = f"cp3{sys.version_info.minor}"
+    platform = re.sub(r"[-.]", "_", sysconfig.get_platform())
+    return pack_wheel(build(BUILD, [sysconfig.get_path("include")]), wheel_directory, f"{tag}-{tag}-{platform}")
 
 
-def pack_wheel(package, wheel_directory, licenses=None):
-    """`licenses`: name -> text, of the libraries that will be inside."""
-    tag = f"cp{sys.version_info.major}{sys.version_info.minor}"
-    tag = f"{tag}-{tag}-{sysconfig.get_platform().replace('-', '_').replace('.', '_')}"
-    files = {f"dermis/{file.name}": file.read_bytes() for file in sorted(package.iterdir()) if file.is_file()}
-    files[f"{info()}/METADATA"] = metadata().encode()
+def pack_wheel(contents, wheel_directory, tag, licenses=None, pythons=">=3.9"):
+    """`licenses`: name -> text, of the libraries that are inside. The same contents give the same bytes."""
+    paths = sorted(path for path in contents.rglob("*") if path.is_file())
+    files = {str(path.relative_to(contents)): path.read_bytes() for path in paths}
+    programs = {str(path.relative_to(contents)) for path in paths if os.access(path, os.X_OK)}
+    files[f"{info()}/METADATA"] = metadata(pythons).encode()
     files[f"{info()}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: dermis\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()
+    files[f"{info()}/licenses/LICENSE"] = (ROOT / "LICENSE").read_bytes()
     for library, text in (licenses or {}).items():
         files[f"{info()}/licenses/{library}"] = text
     record = "".join(record_line(name, content) for name, content in files.items()) + f"{info()}/RECORD,,\n"
     files[f"{info()}/RECORD"] = record.encode()
     name = f"dermis-{version()}-{tag}.whl"
-    with zipfile.ZipFile(os.path.join(wheel_directory, name), "w", zipfile.ZIP_DEFLATED) as wheel:
+    with zipfile.ZipFile(os.path.join(wheel_directory, name), "w", zipfile.ZIP_DEFLATED, compresslevel=9) as wheel:
         for place, content in files.items():
-            wheel.writestr(place, content)
+            entry = zipfile.ZipInfo(place)  # of 1980
+            entry.external_attr = (0o100755 if place in programs else 0o100644) << 16
+            wheel.writestr(entry, content, zipfile.ZIP_DEFLATED, 9)
     return name
 
 
 def source_files():
     """All that is in git; all files in an archive of the sources, which has no git."""
     if (ROOT / "PKG-INFO").exists():
+        found = (path for path in ROOT.rglob("*") if path.is_file() or path.is_symlink())
         return sorted(
-            path.relative_to(ROOT) for path in ROOT.rglob("*") if path.is_file() and BUILD not in path.parents
+            path.relative_to(ROOT) for path in found if path.name != "PKG-INFO" and ROOT / "build" not in path.parents
         )
     listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True, text=True).stdout
     return sorted(Path(name) for name in listed.split("\0") if name and (ROOT / name).exists())
+
+
+def archived(source, name):
+    """The entry of a file or link, with nothing of this machine: no owner, no time, no umask."""
+    entry = tarfile.TarInfo(name)
+    if source.is_symlink():
+        entry.type, entry.linkname = tarfile.SYMTYPE, os.readlink(source)
+        return entry, b""
+    content = source.read_bytes()
+    entry.size, entry.mode = len(content), 0o755 if os.access(source, os.X_OK) else 0o644
+    return entry, content
 
 
 def build_sdist(sdist_directory, config_settings=None):
@@ -138,15 +155,9 @@ def build_sdist(sdist_directory, config_settings=None):
         tarfile.open(fileobj=packed, mode="w", format=tarfile.PAX_FORMAT) as archive,
     ):
         for path in source_files():
-            entry = archive.gettarinfo(ROOT / path, f"{folder}/{path}")
-            entry.uid, entry.gid, entry.uname, entry.gname, entry.mtime = 0, 0, "", "", 0
-            if entry.isreg():
-                with open(ROOT / path, "rb") as content:
-                    archive.addfile(entry, content)
-            else:
-                archive.addfile(entry)
-        if not (ROOT / "PKG-INFO").exists():
-            entry = tarfile.TarInfo(f"{folder}/PKG-INFO")
-            entry.size = len(metadata().encode())
-            archive.addfile(entry, io.BytesIO(metadata().encode()))
+            entry, content = archived(ROOT / path, f"{folder}/{path}")
+            archive.addfile(entry, io.BytesIO(content))
+        entry = tarfile.TarInfo(f"{folder}/PKG-INFO")
+        entry.size = len(metadata().encode())
+        archive.addfile(entry, io.BytesIO(metadata().encode()))
     return name

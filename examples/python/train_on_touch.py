@@ -50,7 +50,7 @@ class Network:
         back = (error @ out.T) * (1 - hidden**2)
         slopes = [inputs.T @ back, back.sum(0), hidden.T @ error, error.sum(0)]
         self.steps += 1
-        for weight, mean, square, slope in zip(self.weights, self.mean, self.square, slopes, strict=True):
+        for weight, mean, square, slope in zip(self.weights, self.mean, self.square, slopes):
             mean += 0.1 * (slope - mean)
             square += 0.001 * (slope**2 - square)
             step = mean / (1 - 0.9**self.steps) / (np.sqrt(square / (1 - 0.999**self.steps)) + 1e-8)
@@ -66,7 +66,7 @@ def main(model: str, recordings: list[str], seconds: float) -> None:
         cut = len(wanted) * 4 // 5
         training.append((inputs[:cut], wanted[:cut]))
         judging.append((inputs[cut:], wanted[cut:]))
-    inputs, wanted = (np.concatenate(parts) for parts in zip(*training, strict=True))
+    inputs, wanted = (np.concatenate(parts) for parts in zip(*training))
     scale, largest = max(inputs.std(), 1e-9), max(wanted.std(), 1e-9)
     random = np.random.default_rng(1)
     network = Network(inputs.shape[1], random)
@@ -74,7 +74,7 @@ def main(model: str, recordings: list[str], seconds: float) -> None:
     while time.monotonic() < end:
         batch = random.integers(0, len(wanted), BATCH)
         network.train(inputs[batch] / scale, wanted[batch] / largest)
-    unseen, truth = (np.concatenate(parts) for parts in zip(*judging, strict=True))
+    unseen, truth = (np.concatenate(parts) for parts in zip(*judging))
     error = np.abs(network.predict(unseen / scale) * largest - truth).mean()
     print(f"{len(wanted)} steps of {len(dataset)} episodes, {network.steps} batches")
     print(f"mean error on steps that it has not seen: {error:.3f} N, of forces of {np.abs(truth).mean():.3f} N")

@@ -18,7 +18,7 @@ BRINGS = {
     "ccache": "ccache",
     "nodejs": "node",
     "npm": "npm",
-    "build-essential": "c++ nm dpkg-architecture dpkg-buildpackage",
+    "build-essential": "c++ nm objdump dpkg-architecture dpkg-buildpackage",
     "pkg-config": "PkgConfig",
     "libeigen3-dev": "Eigen3",
     "libhwy-dev": "HWY",
@@ -105,9 +105,9 @@ TRACES = {
 }
 # What a bare Debian has, with make, git and sudo, and what bash is made of.
 BARE = set(
-    """apt-config apt-get bash case cat cd cmp command cp date declare dirname do done dpkg-query echo elif else env
-esac exec exit export fi find flock for git grep id if install ldd local ls make mkdir mktemp mount nproc printf
-return rm sed set sh sudo tail tar then touch trap umount while xargs""".split()
+    """apt-config apt-get bash case cat cd cmp command compgen cp date declare dirname do done dpkg dpkg-query echo elif
+else env esac exec exit export fi find flock for git grep gzip id if install ldd local ls make mkdir mktemp mount nproc
+printf return rm sed set sh sha256sum sudo tail tar then touch trap umount uname while xargs""".split()
 )
 # Our own package and what makes its wheel, what ROS 2 brings to a launch file, what an example asks of PyPI, and what
 # tests/requirements.txt names.

@@ -4,6 +4,8 @@
 
 import os
 import signal
+import subprocess
+import sys
 import threading
 import time
 import urllib.request
@@ -59,6 +61,17 @@ class Sources(workspace.CalibratedArray):
             urllib.request.urlopen(url)
         with self.assertRaises(dermis.Error):
             dermis.serve("nothing.csv", self.model, port=0)
+
+    def test_serve_needs_no_model_of_the_simulator(self):
+        with dermis.serve("sim:contacts?rate=50&rows=3&cols=4", port=0) as server:
+            self.assertEqual(urllib.request.urlopen(server.url).status, 200)
+        with self.assertRaisesRegex(dermis.BadInput, "name its model, too, or its array.toml"):
+            dermis.serve("tcp://127.0.0.1:7000", port=0)
+
+    def test_the_package_is_the_command_that_was_installed_with_it(self):
+        version = [sys.executable, "-m", "dermis", "--version"]
+        said = subprocess.run(version, check=True, capture_output=True, text=True).stdout
+        self.assertEqual(said, f"{dermis.__version__}\n")
 
 
 class Recordings(workspace.CalibratedArray):

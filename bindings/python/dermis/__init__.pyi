@@ -574,6 +574,7 @@ def serve(
     dds: bool = False,
     domain: int | None = None,
 ) -> Server:
-    """The page and the stream of an array (uri and model) or of a suit; port 0 is any that is free. Where `record`
+    """The page and the stream of an array (uri and model) or of a suit; port 0 is any that is free. The simulator and
+    recordings that describe their array need no model. Where `record`
     exists, the recording has the UTC time in its name. With `dds` nodes of ROS 2 hear its topics, in their `domain` or
     in that of ROS_DOMAIN_ID."""

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 The dermis authors
+"""What a build is made of: the packages of Debian and npm whose headers it compiled and whose libraries it linked, by
+the build's own lists."""
+
+import json
+import os
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+@dataclass(frozen=True)
+class Component:
+    name: str
+    version: str
+    license: str  # its text
+    url: str  # as of https://github.com/package-url/purl-spec
+
+
+def files_of(build, targets):
+    """Those from outside of this folder that the targets were made of, with what links among them lead to."""
+    inputs = ["ninja", "-C", build, "-t", "inputs", *targets]
+    headers = ["ninja", "-C", build, "-t", "deps"]
+    lines = "".join(
+        subprocess.run(list_, check=True, capture_output=True, text=True).stdout for list_ in (inputs, headers)
+    )
+    names = {line.strip() for line in lines.splitlines() if line.lstrip().startswith("/")}
+    outside = {name for name in map(os.path.normpath, names) if not Path(name).is_relative_to(ROOT)}
+    return outside | {os.path.realpath(name) for name in outside}
+
+
+def debian_packages(files, root=Path("/")):
+    """The sources of those of Debian below `root`."""
+    query = ["dpkg-query", f"--admindir={root / 'var/lib/dpkg'}"]
+    names = sorted("/" + str(Path(name).relative_to(root)) for name in files if Path(name).is_relative_to(root))
+    owners = subprocess.run(
+        [*query, "-S", *names], capture_output=True, text=True
+    ).stdout  # fails where one has no owner
+    packages = sorted(
+        {owner.split(":")[0] for line in owners.splitlines() for owner in line.split(": ")[0].split(", ")}
+    )
+    show = ["-W", "-f", "${Package} ${source:Package} ${source:Version}\n", *packages]
+    sources = {}
+    for line in subprocess.run([*query, *show], check=True, capture_output=True, text=True).stdout.splitlines():
+        package, name, version = line.split()
+        text = (root / "usr/share/doc" / package / "copyright").read_text()
+        sources[name] = Component(name, version, text, f"pkg:deb/debian/{name}@{version}?arch=source")
+    return list(sources.values())
+
+
+def npm_packages():
+    """Those that the page has inside."""
+    for place, package in json.loads((ROOT / "viewer/package-lock.json").read_text())["packages"].items():
+        if not place or package.get("dev"):
+            continue
+        name, version = place.removeprefix("node_modules/"), package["version"]
+        texts = sorted((ROOT / "viewer" / place).glob("[Ll][Ii][Cc][Ee][Nn][SsCc][Ee]*"))
+        yield Component(name, version, "\n".join(map(Path.read_text, texts)), f"pkg:npm/{name}@{version}")
+
+
+def components(build, targets):
+    return [*debian_packages(files_of(build, targets)), *npm_packages()]
