@@ -3,9 +3,11 @@
 # Libraries and modules find each other in the folder of the package; the command finds it beside its own folder.
 get_property(modules GLOBAL PROPERTY DERMIS_PYTHON_MODULES)
 set(libraries ${modules})
-if(TARGET dermis_libhdf5)
-  list(APPEND libraries dermis_libhdf5)
-endif()
+foreach(library dermis_shared dermis_libhdf5 dermis_cairo)
+  if(TARGET ${library})
+    list(APPEND libraries ${library})
+  endif()
+endforeach()
 if(DERMIS_SHARED)
   set_target_properties(${libraries} PROPERTIES INSTALL_RPATH "$ORIGIN")
   # Of a Python or a virtual environment, of pip --user, of Fedora, of Debian's root, of pip --target.
