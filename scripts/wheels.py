@@ -6,12 +6,10 @@
 Makes one wheel for each architecture, with a module for each Python of MINORS that has headers here, and the archive of
 the sources, in build/wheels. A wheel has its libraries inside: it runs where nothing but glibc 2.31 is installed."""
 
-import os
 import subprocess
 import sys
 
 import components
-import machines
 
 sys.path.append(str(components.ROOT / "bindings/python"))
 import build_backend
@@ -56,16 +54,12 @@ def add_tools():
     sys.path[:0] = map(str, venv.glob("lib/python3*/site-packages"))
 
 
-def build_folder(architecture):
-    return ROOT / f"build/wheel_{architecture}"
-
-
 def make_wheel(architecture, headers):
     """Returns its path."""
     subprocess.run([TOOLS / "prefix", architecture], check=True, stdout=sys.stderr)
-    os.environ["DERMIS_WHEEL_ROOT"] = str(machines.CACHE / "dermis/wheels" / architecture)
-    folder = build_folder(architecture)
-    contents = build_backend.build(folder, headers.values(), f"-DCMAKE_TOOLCHAIN_FILE={TOOLS / 'toolchain.cmake'}")
+    folder = ROOT / f"build/wheel_{architecture}"
+    toolchain = (f"-DCMAKE_TOOLCHAIN_FILE={TOOLS / 'toolchain.cmake'}", f"-DDERMIS_WHEEL_ARCH={architecture}")
+    contents = build_backend.build(folder, headers.values(), *toolchain)
     licenses = {part.name: part.license.encode() for part in components.components(folder, TARGETS)}
     tag = f"py3-none-manylinux_{GLIBC}_{architecture}"
     return WHEELS / build_backend.pack_wheel(contents, WHEELS, tag, licenses, pythons_of(headers))
