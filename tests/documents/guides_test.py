@@ -29,10 +29,12 @@ def blocks(page, language):
 
 
 def commands(page):
-    """All but those of make and what it builds, which scripts/bare_machine runs, and what needs a terminal."""
+    """All but those of make and pip, which scripts/bare_machine and scripts/bare_pip run, and what needs a terminal."""
     lines = "".join(blocks(page, "sh")).splitlines(keepends=True)
     return "".join(
-        line for line in lines if not re.match(r"(make|sudo|git|cd dermis|pip|export PATH|dermis top)\b", line)
+        line
+        for line in lines
+        if not re.match(r"(make|sudo|git|cd dermis|python3 -m venv|venv/bin|export PATH|dermis top)\b", line)
     )
 
 
