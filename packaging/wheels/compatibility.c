@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-// libstdc++.a of Debian 12 asks for names of glibc 2.32 to 2.36. glibc 2.31 has them not.
+// Static libraries of Debian 12 ask for names of glibc 2.32 to 2.36. glibc 2.31 has them not.
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,10 +11,19 @@
 /// Reference counts are always atomic.
 HIDDEN char __libc_single_threaded = 0;
 
+/// For Expat. getentropy() gives at most 256 bytes a call.
+HIDDEN void arc4random_buf(void* bytes, size_t size) {
+  for (size_t done = 0; done < size;) {
+    const size_t piece = size - done < 256 ? size - done : 256;
+    if (getentropy((char*)bytes + done, piece) != 0) abort();
+    done += piece;
+  }
+}
+
 /// For std::random_device.
 HIDDEN uint32_t arc4random(void) {
   uint32_t bits;
-  if (getentropy(&bits, sizeof bits) != 0) abort();
+  arc4random_buf(&bits, sizeof bits);
   return bits;
 }
 
