@@ -25,6 +25,7 @@ python: setup
 # A wheel for each architecture, with its libraries inside, and the sources, in build/wheels.
 wheels: setup
 	scripts/setup python
+	scripts/setup wheels
 	scripts/wheels.py
 
 # What is published, in build/release_files, tried where nothing is installed. As root.

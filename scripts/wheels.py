@@ -3,8 +3,8 @@
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Usage: wheels.py [ARCHITECTURE...]
 
-Makes one wheel for each architecture, with a module for each Python of MINORS that has headers here, and the archive of
-the sources, in build/wheels. A wheel has its libraries inside: it runs where nothing but glibc 2.31 is installed."""
+Makes one wheel for each architecture, with a module for each Python of 3.9 to 3.14 that has headers here, and the
+archive of the sources, in build/wheels. A wheel has its libraries inside: it runs where only glibc 2.31 is installed."""
 
 import subprocess
 import sys
@@ -21,26 +21,19 @@ TOOLS = ROOT / "packaging/wheels"
 REQUIREMENTS = TOOLS / "requirements.txt"
 ARCHITECTURES = ("x86_64", "aarch64")
 GLIBC = "2_31"
-MINORS = range(9, 15)  # of Python 3
 TARGETS = ("dermis_cli", "dermis_python")
 
 
 def find_headers():
     """Minor version -> folder."""
     found = {}
-    for minor in MINORS:
+    for minor in build_backend.MINORS:
         tried = subprocess.run([TOOLS / "python_headers", str(minor)], stdout=subprocess.PIPE, text=True)
         if tried.returncode == 0:
             found[minor] = tried.stdout.strip()
         else:
             print(f"Python 3.{minor}: no headers; the wheels are not for it", file=sys.stderr)
     return found
-
-
-def pythons_of(minors):
-    """As Requires-Python says it."""
-    missing = [f"!=3.{minor}.*" for minor in range(min(minors), max(minors)) if minor not in minors]
-    return ",".join([f">=3.{min(minors)}", *missing, f"<3.{max(minors) + 1}"])
 
 
 def add_tools():
@@ -62,7 +55,7 @@ def make_wheel(architecture, headers):
     contents = build_backend.build(folder, headers.values(), *toolchain)
     licenses = {part.name: part.license.encode() for part in components.components(folder, TARGETS)}
     tag = f"py3-none-manylinux_{GLIBC}_{architecture}"
-    return WHEELS / build_backend.pack_wheel(contents, WHEELS, tag, licenses, pythons_of(headers))
+    return WHEELS / build_backend.pack_wheel(contents, WHEELS, tag, licenses, build_backend.pythons_of(headers))
 
 
 def main():

@@ -21,6 +21,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 BUILD = ROOT / "build/wheel"
+MINORS = range(9, 15)  # of the Pythons that wheels are for
 
 
 def version():
@@ -29,6 +30,12 @@ def version():
 
 def info():
     return f"dermis-{version()}.dist-info"
+
+
+def pythons_of(minors):
+    """As Requires-Python says it."""
+    missing = [f"!=3.{minor}.*" for minor in range(min(minors), max(minors)) if minor not in minors]
+    return ",".join([f">=3.{min(minors)}", *missing, f"<3.{max(minors) + 1}"])
 
 
 def metadata(pythons=">=3.9"):

@@ -26,7 +26,6 @@ sys.path.append(str(Path(__file__).resolve().parents[2] / "scripts"))
 import bill_of_materials
 import build_backend
 import components
-import wheels
 
 ROOT = Path(__file__).resolve().parents[2]
 BUILD = Path(sys.argv.pop(1))
@@ -91,7 +90,7 @@ class Archives(unittest.TestCase):
         self.assertEqual({name for name, mode in modes.items() if mode == 0o755}, {"dermis-9.data/scripts/dermis"})
 
     def test_pythons_without_a_module_are_excluded(self):
-        self.assertEqual(wheels.pythons_of([9, 10, 12, 14]), ">=3.9,!=3.11.*,!=3.13.*,<3.15")
+        self.assertEqual(build_backend.pythons_of([9, 10, 12, 14]), ">=3.9,!=3.11.*,!=3.13.*,<3.15")
 
     def test_headers_of_pybind11_are_those_of_version_2(self):
         there = types.ModuleType("pybind11")

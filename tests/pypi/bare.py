@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy
 from support import SmallArray, dermis
 
-GLIBC = ("ld-linux", "libc.", "libm.", "libpthread.", "libdl.", "librt.", "libresolv.", "libutil.")
+GLIBC = ("ld-linux", "libc.", "libgcc_s.", "libm.", "libpthread.", "libdl.", "librt.", "libresolv.", "libutil.")
 PROGRAM = """
 import bisect, bz2, lzma, random, zlib  # parts of Python with libraries of their own
 import sys

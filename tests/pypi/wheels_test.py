@@ -13,11 +13,9 @@ from pathlib import Path
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "command_line"))
 sys.path.append(str(Path(__file__).resolve().parents[2] / "bindings/python"))
-sys.path.append(str(Path(__file__).resolve().parents[2] / "scripts"))
 import bare
 import build_backend
 import support
-import wheels
 
 TESTS = Path(__file__).resolve().parents[1]
 WHEEL, FOLDER = (Path(sys.argv.pop(2)).resolve() for _ in range(2))
@@ -38,7 +36,7 @@ NEWEST_GLIBC = (2, 31)
 
 def pythons():
     """Minor version -> Python."""
-    for minor in wheels.MINORS:
+    for minor in build_backend.MINORS:
         name = f"python3.{minor}"
         places = [*Path.home().glob(f".pyenv/versions/3.{minor}.*/bin/{name}"), Path("/usr/bin") / name]
         there = next((place for place in places if place.exists()), None)
