@@ -4,7 +4,7 @@
 """Usage: wheels.py [ARCHITECTURE...]
 
 Makes one wheel for each architecture, with a module for each Python of 3.9 to 3.14 that has headers here, and the
-archive of the sources, in build/wheels. A wheel has its libraries inside: it runs where only glibc 2.31 is installed."""
+archive of the sources, in build/wheels. A wheel has its libraries inside: it runs where only glibc 2.31 is."""
 
 import subprocess
 import sys
