@@ -14,7 +14,7 @@ STANDARD_HEADER = re.compile(r"[a-z_]+")
 OPTION_IN_A_TEXT = re.compile(r'"(?:[^"\\\n]|\\.)*--[a-z](?:[^"\\\n]|\\.)*"')
 # Counts to newtons needs nothing of the machine: it runs in another program, and as WebAssembly.
 NOT_IN_TOUCH = re.compile(
-    r"^\s*#\s*include\s*<(?:fstream|filesystem|mutex|thread|unistd\.h|(?:sys|fmt|tbb|toml\+\+|nlohmann)/[^>]+)>"
+    r"^\s*#\s*include\s*<(?:fstream|filesystem|mutex|thread|unistd\.h|(?:sys|fmt|toml\+\+|nlohmann)/[^>]+)>"
     r"|\b(?:throw|try|catch)\b"
 )
 SPDX = "// SPDX-License-Identifier: Apache-2.0\n// SPDX-FileCopyrightText: 2026 The dermis authors\n"

@@ -22,7 +22,6 @@ BRINGS = {
     "pkg-config": "PkgConfig",
     "libeigen3-dev": "Eigen3",
     "libhwy-dev": "HWY",
-    "libtbb-dev": "TBB",
     "libtomlplusplus-dev": "tomlplusplus",
     "libcli11-dev": "CLI11",
     "libfmt-dev": "fmt",
