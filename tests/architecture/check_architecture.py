@@ -211,9 +211,17 @@ def touch_violations(root):
                     yield f"{path.relative_to(root)}:{number}: touch stands alone, without {found.group().strip()}"
 
 
+# Files that cannot take the version from CMakeLists.txt.
+VERSIONS = {
+    "CITATION.cff": r"^version: \"?([\d.]+)\"?$",
+    "CHANGELOG.md": r"^## \[([\d.]+)\]",
+    "bindings/ros/dermis_msgs/package.xml": r"<version>([\d.]+)</version>",
+}
+
+
 def version_violations(root):
     project = re.search(r"project\(dermis VERSION ([\d.]+)", (root / "CMakeLists.txt").read_text()).group(1)
-    for name, pattern in (("CITATION.cff", r"^version: \"?([\d.]+)\"?$"), ("CHANGELOG.md", r"^## \[([\d.]+)\]")):
+    for name, pattern in VERSIONS.items():
         found = re.search(pattern, (root / name).read_text(), re.MULTILINE)
         version = found.group(1) if found else "none"
         if version != project:
