@@ -22,7 +22,7 @@ namespace dermis::bytes::layouts {
 [[nodiscard]] Moduli moduli_of(const PacketLayout& layout);
 
 /// Reads one of the packets of a layout. Keeps the readings of one array of those that a packet has. Whether bytes are
-/// a packet is asked at every byte of a stream, so that looks at each field once, and only at those that can refuse it.
+/// a packet is asked at every byte of a stream: it takes one look at each field that can refuse them.
 class PacketMatch {
  public:
   enum class Outcome {
