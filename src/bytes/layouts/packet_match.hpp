@@ -21,8 +21,8 @@ namespace dermis::bytes::layouts {
 /// Where the fields of packets wrap.
 [[nodiscard]] Moduli moduli_of(const PacketLayout& layout);
 
-/// Reads one of the packets of a layout. Keeps the readings of one array of those that a packet has. Whether bytes are
-/// a packet is asked at every byte of a stream: it takes one look at each field that can refuse them.
+/// Reads one of the packets of a layout. Keeps the readings of one array of those that a packet has. read() is asked at
+/// every byte of a stream. So it looks at a field once, and only at a field that can refuse the packet.
 class PacketMatch {
  public:
   enum class Outcome {
