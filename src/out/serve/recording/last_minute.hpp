@@ -37,7 +37,9 @@ class LastMinute {
   };
   struct Track {
     mutable std::mutex mutex;
-    std::pmr::unsynchronized_pool_resource room;  ///< Its own: else frames that come and go leave holes between others.
+    /// Its own: else frames that come and go leave holes between others.
+    std::pmr::unsynchronized_pool_resource room{
+        {.max_blocks_per_chunk = 16, .largest_required_pool_block = 32U << 10U}};
     std::pmr::deque<Kept> kept{&room};
   };
 
