@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <memory_resource>
 #include <mutex>
 #include <vector>
 
@@ -31,16 +30,12 @@ class LastMinute {
 
  private:
   struct Kept {
-    RawFrame frame;                         ///< Without its counts;
-    std::pmr::vector<std::uint16_t> whole;  ///< these have half the room
-    std::pmr::vector<float> fractions;      ///< of these.
+    RawFrame frame;                    ///< Without its counts, where `whole` has them
+    std::vector<std::uint16_t> whole;  ///< in half the room.
   };
   struct Track {
     mutable std::mutex mutex;
-    /// Its own: else frames that come and go leave holes between others.
-    std::pmr::unsynchronized_pool_resource room{
-        {.max_blocks_per_chunk = 16, .largest_required_pool_block = 32U << 10U}};
-    std::pmr::deque<Kept> kept{&room};
+    std::deque<Kept> kept;
   };
 
   [[nodiscard]] std::size_t most_frames(std::size_t taxels) const noexcept;
