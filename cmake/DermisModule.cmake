@@ -25,6 +25,30 @@ if(DERMIS_SANITIZE)
   target_compile_definitions(dermis_build_flags INTERFACE _GLIBCXX_ASSERTIONS)
 endif()
 
+# With DERMIS_SHARED, src and viewer are one library, which the command and the Python package share. Calls within it are as
+# quick as in a program.
+if(DERMIS_SHARED)
+  set(DERMIS_SYMBOLS ${PROJECT_SOURCE_DIR}/cmake/shared_symbols.map)
+  add_library(dermis_shared SHARED)
+  set_target_properties(dermis_shared PROPERTIES OUTPUT_NAME dermis LINKER_LANGUAGE CXX LINK_DEPENDS ${DERMIS_SYMBOLS}
+                                                 LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
+  target_link_options(dermis_shared PRIVATE -Wl,--version-script=${DERMIS_SYMBOLS} -Wl,-Bsymbolic-functions
+                                            -Wl,-z,now -Wl,--no-undefined)
+endif()
+
+# name_library(<target> <what it links>): it is dermis::<name> to the others. With DERMIS_SHARED, that is the one library.
+function(name_library target)
+  string(REPLACE dermis_ dermis:: name ${target})
+  if(NOT DERMIS_SHARED)
+    add_library(${name} ALIAS ${target})
+    return()
+  endif()
+  target_sources(dermis_shared PRIVATE $<TARGET_OBJECTS:${target}>)
+  target_include_directories(dermis_shared INTERFACE $<TARGET_PROPERTY:${target},INTERFACE_INCLUDE_DIRECTORIES>)
+  target_link_libraries(dermis_shared PRIVATE ${ARGN})
+  add_library(${name} ALIAS dermis_shared)
+endfunction()
+
 # For loops with DERMIS_PROCESSOR_CLONES: a choice or a square root becomes a vector only where a comparison need not trap
 # nor a root set errno; a sum, only where "omp simd" allows any order; a product and a sum are rounded apart everywhere.
 set(DERMIS_VECTOR_OPTIONS -fopenmp-simd -fno-trapping-math -fno-math-errno -ffp-contract=off)
@@ -87,7 +111,7 @@ function(dermis_module name)
       target_compile_options(dermis_${name} PRIVATE -O1)
     endif()
   endif()
-  add_library(dermis::${name} ALIAS dermis_${name})
+  name_library(dermis_${name} ${MODULE_PRIVATE})
 
   if(MODULE_NUMERICS AND DERMIS_CHECK_NUMERICS)
     checked_modules(depends ${MODULE_DEPENDS})

@@ -5,7 +5,14 @@
 scripts in bash."""
 
 # Of each plugin, the room that loads it: its header is all that the plugin knows of the project, beside frames.
-PLUGINS = {"dds": "live/dds", "hdf5": "bytes/recordings", "modbus": "live/buses", "mpi": "paper", "nats": "live/fleet"}
+PLUGINS = {
+    "dds": "live/dds",
+    "hdf5": "bytes/recordings",
+    "modbus": "live/buses",
+    "mpi": "paper",
+    "nats": "live/fleet",
+    "pictures": "out/report",
+}
 PRODUCTION = ("include", "src", "apps", "bindings", "plugins")
 ALL = (*PRODUCTION, "examples", "benchmarks", "fuzz", "tests")
 

@@ -66,7 +66,7 @@ Status check(const ImageOptions& options) {
   return Done{};
 }
 
-std::string bytes_of(const ImageOptions& options, const std::vector<out::report::FramePicture>& pictures) {
+Result<std::string> bytes_of(const ImageOptions& options, const std::vector<out::report::FramePicture>& pictures) {
   if (options.to_s) {
     return out::report::frame_film(pictures,
                                    std::chrono::duration_cast<std::chrono::milliseconds>(views::kPictureTime));
@@ -84,9 +84,11 @@ Status image(const ImageOptions& options) {
   const Result<std::vector<out::report::FramePicture>> pictures =
       views::draw_pictures(**view, *range, options.high, &stop_flag());
   if (!pictures) return pictures.error();
+  const Result<std::string> bytes = bytes_of(options, *pictures);
+  if (!bytes) return bytes.error();
   Result<bytes::files::AtomicFile> file = bytes::files::AtomicFile::create(options.out);
   if (!file) return file.error();
-  file->write(bytes_of(options, *pictures));
+  file->write(*bytes);
   if (Status committed = file->commit(); !committed) return committed;
   return (*view)->verdict();
 }

@@ -65,6 +65,17 @@ class Image(SmallArray):
             self.assertEqual(len(pixels), height * (1 + 3 * width))
         self.assertEqual((self.work / "force.png").read_bytes()[:33], (self.work / "number.png").read_bytes()[:33])
 
+    def test_without_what_paints_pixels_there_are_still_drawings(self):
+        binary = support.binary_without("libdermis_pictures.so", self.work)
+        for name, status in (("frame.png", 2), ("film.gif", 2), ("frame.svg", 0)):
+            out = self.work / name
+            span = ("--from", 0, "--to", 0.5) if name == "film.gif" else ()
+            result = dermis("image", "--in", self.recording, "--out", out, *span, executable=binary)
+            self.assertEqual((result.returncode, out.exists()), (status, status == 0), result.stderr)
+            if status:
+                line = r"^dermis: a \.png or \.gif needs libdermis_no\.so .*libcairo2.* which \.svg does not: .*\n$"
+                self.assertRegex(result.stderr, line)
+
     def test_svg_says_unit_scale_and_forces(self):
         out = self.work / "force.svg"
         self.draw(out, "--model", self.model, "--at", 0.5, "--high", 20)

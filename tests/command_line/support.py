@@ -44,6 +44,16 @@ def dermis(*arguments, prefix=(), **options):
     return subprocess.run(command, capture_output=True, text=True, timeout=300, **options)
 
 
+def binary_without(plugin, folder):
+    """A copy of the binary that looks for another plugin, libdermis_no.so, in the place of this one."""
+    content, name = Path(BINARY).read_bytes(), plugin.encode()
+    assert name in content
+    binary = Path(folder) / "dermis"
+    binary.write_bytes(content.replace(name, b"libdermis_no.so".ljust(len(name), b"\0")))
+    binary.chmod(0o755)
+    return binary
+
+
 def files_limited_to(size):
     """Options of dermis() under which no file can grow beyond `size` bytes."""
     return {"preexec_fn": lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))}

@@ -172,12 +172,7 @@ class Mpirun(SmallArray):
         self.assertEqual({name for name in loaded if "mpi" in name}, set())
 
     def test_a_plugin_that_is_missing_is_named(self):
-        binary = self.work / "dermis"
-        plugin = b"libdermis_mpi.so"
-        content = Path(support.BINARY).read_bytes()
-        self.assertIn(plugin, content)
-        binary.write_bytes(content.replace(plugin, b"libdermis_no.so\0"))
-        binary.chmod(0o755)
+        binary = support.binary_without("libdermis_mpi.so", self.work)
         environment = {**os.environ, "OMPI_COMM_WORLD_SIZE": "2"}
         result = dermis(*self.train(self.work / "bank", steps=1), executable=binary, env=environment)
         self.assertEqual(result.returncode, 2)

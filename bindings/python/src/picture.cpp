@@ -6,9 +6,9 @@
 namespace dermis::python {
 namespace {
 
-/// A PNG of one value a taxel, in a scale that ends at 1, 2, 5, 10, ...
-py::bytes picture(const py::object& values, const std::string& title, const std::string& subtitle,
-                  const std::string& unit) {
+/// A PNG of one value a taxel, in a scale that ends at 1, 2, 5, 10, ...; None where nothing can paint it.
+std::optional<py::bytes> picture(const py::object& values, const std::string& title, const std::string& subtitle,
+                                 const std::string& unit) {
   const py::array_t<double> taxels = numbers<double>(values, "values", {-1, -1});
   out::report::FramePicture frame;
   frame.title = title;
@@ -18,7 +18,8 @@ py::bytes picture(const py::object& values, const std::string& title, const std:
   frame.values.assign(taxels.data(), taxels.data() + taxels.size());
   frame.high = out::report::force_scale(out::report::largest_of(frame.values));
   frame.unit = unit;
-  return out::report::frame_png(frame);
+  const Result<std::string> png = out::report::frame_png(frame);
+  return png ? std::optional<py::bytes>(*png) : std::nullopt;
 }
 
 }  // namespace

@@ -10,12 +10,11 @@
 #include <iterator>
 #include <limits>
 #include <numbers>
-#include <optional>
 #include <utility>
 
+#include "dermis/bytes/system/plugin.hpp"
 #include "out/report/brush.hpp"
-#include "out/report/gif.hpp"
-#include "out/report/pixel_brush.hpp"
+#include "out/report/picture_plugin.hpp"
 
 namespace dermis::out::report {
 namespace {
@@ -99,8 +98,8 @@ class Painter {
 
   void paint(Brush& brush) const {
     brush.fill({0.0, 0.0}, width(), height(), kPaper);
-    brush.text(Anchor::start, {kMargin, 30.0}, 12.0, kInk, picture_.title);
-    brush.text(Anchor::start, {kMargin, 50.0}, 8.5, kMuted, picture_.subtitle);
+    brush.text(Anchor::start, {kMargin, 30.0}, 12.0, kInk, valid_utf8(picture_.title));
+    brush.text(Anchor::start, {kMargin, 50.0}, 8.5, kMuted, valid_utf8(picture_.subtitle));
     if (picture_.places.empty()) {
       paint_cells(brush);
       paint_lines(brush);
@@ -216,7 +215,7 @@ class Painter {
       const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(kBarSteps);
       brush.fill({left, top}, kBarWidth, step, sequential_colour(share));
     }
-    brush.text(Anchor::start, {left, kTop - 9.0}, 8.0, kInk, picture_.unit);  // above the tick at the end
+    brush.text(Anchor::start, {left, kTop - 9.0}, 8.0, kInk, valid_utf8(picture_.unit));  // above the tick at the end
     for (const double tick : linear_ticks(0.0, picture_.high, kMostTicks)) {
       const double y = kTop + bar_height() * (1.0 - tick / picture_.high);
       const double right = left + kBarWidth;
@@ -256,6 +255,30 @@ class Painter {
   double cell_height_ = 0.0;
 };
 
+Result<const PicturePlugin*> load_pictures() {
+  const Result<void*> function =
+      find_plugin_function({"a .png or .gif", "libdermis_pictures.so",
+                            "(Debian: dermis), cairo and giflib (Debian: libcairo2, libgif7), which .svg does not"},
+                           kFindPictures);
+  if (!function) return function.error();
+  const PicturePlugin* found = nullptr;
+  reinterpret_cast<FindPictures>(*function)(found);
+  return found;
+}
+
+/// The colours of the sequential map, and greys.
+std::vector<Colour> film_palette() {
+  constexpr int kMapColours = 208;
+  constexpr int kGreys = 48;
+  std::vector<Colour> palette;
+  for (int i = 0; i < kMapColours; ++i) palette.push_back(sequential_colour(i / (kMapColours - 1.0)));
+  for (int i = 0; i < kGreys; ++i) {
+    const auto grey = static_cast<std::uint8_t>(255 * i / (kGreys - 1));
+    palette.push_back({grey, grey, grey});
+  }
+  return palette;
+}
+
 }  // namespace
 
 double force_scale(double newtons) {
@@ -280,24 +303,22 @@ Drawing frame_drawing(const FramePicture& picture) {
   return {painter.width(), painter.height(), picture.title + ", " + picture.subtitle, std::move(brush).take()};
 }
 
-std::string frame_png(const FramePicture& picture) {
+Result<std::string> frame_png(const FramePicture& picture) {
+  const Result<const PicturePlugin*> plugin = load_pictures();
+  if (!plugin) return plugin.error();
   const Painter painter(picture);
-  PixelBrush brush(painter.width(), painter.height());
-  painter.paint(brush);
-  return brush.png();
+  return (*plugin)->png(
+      {painter.width(), painter.height(), 1, [&](std::size_t, Brush& brush) { painter.paint(brush); }});
 }
 
-std::string frame_film(std::span<const FramePicture> pictures, std::chrono::milliseconds time) {
+Result<std::string> frame_film(std::span<const FramePicture> pictures, std::chrono::milliseconds time) {
   assert(!pictures.empty());
-  std::optional<Gif> film;
-  for (const FramePicture& picture : pictures) {
-    const Painter painter(picture);
-    PixelBrush brush(painter.width(), painter.height());
-    painter.paint(brush);
-    if (!film) film.emplace(brush.width(), brush.height(), time);
-    film->add(brush);
-  }
-  return std::move(*film).take();
+  const Result<const PicturePlugin*> plugin = load_pictures();
+  if (!plugin) return plugin.error();
+  const std::vector<Painter> painters(pictures.begin(), pictures.end());
+  return (*plugin)->gif({painters.front().width(), painters.front().height(), painters.size(),
+                         [&](std::size_t k, Brush& brush) { painters[k].paint(brush); }},
+                        {time, film_palette()});
 }
 
 }  // namespace dermis::out::report

@@ -49,7 +49,7 @@ struct Pixels {
 };
 
 Pixels pixels_of(const FramePicture& picture) {
-  const std::string file = frame_png(picture);
+  const std::string file = frame_png(picture).value();
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   EXPECT_NE(png_image_begin_read_from_memory(&image, file.data(), file.size()), 0) << image.message;
@@ -149,7 +149,7 @@ TEST(FramePicture, texts_are_drawn_whatever_their_bytes) {
 TEST(FramePicture, a_film_has_every_picture_for_its_time_and_plays_for_ever) {
   std::vector<FramePicture> pictures(3, picture_of(4, 4));
   for (std::size_t i = 0; i < 3; ++i) pictures[i].values[5] = 2.5 * static_cast<double>(i);
-  const std::string bytes = frame_film(pictures, std::chrono::milliseconds(40));
+  const std::string bytes = frame_film(pictures, std::chrono::milliseconds(40)).value();
   EXPECT_NE(bytes.find(std::string("\x0bNETSCAPE2.0\x03\x01\0\0\0", 17)), std::string::npos);
   const Film film(bytes);
   const Pixels still = pixels_of(pictures[0]);

@@ -11,6 +11,7 @@
 #include "dermis/bytes/bodies/free_places.hpp"
 #include "dermis/out/report/svg.hpp"
 #include "dermis/touch/frames/contacts.hpp"
+#include "dermis/touch/frames/result.hpp"
 
 namespace dermis::out::report {
 
@@ -40,11 +41,12 @@ struct FramePicture {
 /// For svg_document().
 [[nodiscard]] Drawing frame_drawing(const FramePicture& picture);
 
-/// The bytes of a PNG file. Its texts have the sans-serif face of the machine.
-[[nodiscard]] std::string frame_png(const FramePicture& picture);
+/// The bytes of a PNG file. Its texts have the sans-serif face of the machine. Fails where the plugin that paints, or
+/// cairo, is not there.
+[[nodiscard]] Result<std::string> frame_png(const FramePicture& picture);
 
 /// The bytes of a GIF file that plays for ever. At least one picture, all of one shape and pitch; each is shown for
-/// `time`, in whole hundredths of a second.
-[[nodiscard]] std::string frame_film(std::span<const FramePicture> pictures, std::chrono::milliseconds time);
+/// `time`, in whole hundredths of a second. Fails as frame_png() does.
+[[nodiscard]] Result<std::string> frame_film(std::span<const FramePicture> pictures, std::chrono::milliseconds time);
 
 }  // namespace dermis::out::report

@@ -2,25 +2,23 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
-#include "dermis/out/report/heat_map.hpp"
-#include "out/report/pixel_brush.hpp"
+#include "out/report/picture_plugin.hpp"
+#include "pixel_brush.hpp"
 
 struct GifFileType;
 
 namespace dermis::out::report {
 
-/// A film in the GIF format that plays for ever, encoded by giflib. Its colours are those of the sequential map, and
-/// greys.
+/// A film in the GIF format, encoded by giflib.
 class Gif {
  public:
-  /// All pictures have this size; each is shown for `time`, in whole hundredths of a second.
-  Gif(std::size_t width, std::size_t height, std::chrono::milliseconds time);
+  /// All pictures have this size in pixels.
+  Gif(std::size_t width, std::size_t height, const Film& film);
   Gif(const Gif&) = delete;
   Gif& operator=(const Gif&) = delete;
   ~Gif();

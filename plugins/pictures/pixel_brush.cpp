@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "out/report/pixel_brush.hpp"
+#include "pixel_brush.hpp"
 
 #include <cassert>
 #include <cmath>
-
-#include "dermis/out/report/svg.hpp"
 
 namespace dermis::out::report {
 namespace {
@@ -94,13 +92,12 @@ void PixelBrush::set_colour(Colour colour) {
 }
 
 void PixelBrush::open_text(Anchor anchor, Point place, double size, const std::string& words) {
-  const std::string text = valid_utf8(words);
   cairo_set_font_size(context_.get(), font_size(size));
   cairo_text_extents_t extents{};
-  cairo_text_extents(context_.get(), text.c_str(), &extents);
+  cairo_text_extents(context_.get(), words.c_str(), &extents);
   const double share = anchor == Anchor::start ? 0.0 : anchor == Anchor::middle ? 0.5 : 1.0;
   cairo_move_to(context_.get(), place.x - share * extents.x_advance, place.y);
-  cairo_text_path(context_.get(), text.c_str());
+  cairo_text_path(context_.get(), words.c_str());
 }
 
 }  // namespace dermis::out::report

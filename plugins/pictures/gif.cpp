@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "out/report/gif.hpp"
+#include "gif.hpp"
 
 #include <gif_lib.h>
 
@@ -14,19 +14,6 @@ namespace dermis::out::report {
 namespace {
 
 constexpr std::size_t kColours = 256;
-constexpr std::size_t kMapColours = 208;  // The others are grey.
-
-std::vector<Colour> make_palette() {
-  std::vector<Colour> palette;
-  for (std::size_t i = 0; i < kMapColours; ++i) {
-    palette.push_back(sequential_colour(static_cast<double>(i) / static_cast<double>(kMapColours - 1)));
-  }
-  for (std::size_t i = 0; i < kColours - kMapColours; ++i) {
-    const auto grey = static_cast<std::uint8_t>(255 * i / (kColours - kMapColours - 1));
-    palette.push_back({grey, grey, grey});
-  }
-  return palette;
-}
 
 /// giflib writes to memory: nothing fails.
 void expect([[maybe_unused]] int result) {
@@ -35,8 +22,9 @@ void expect([[maybe_unused]] int result) {
 
 }  // namespace
 
-Gif::Gif(std::size_t width, std::size_t height, std::chrono::milliseconds time)
-    : palette_(make_palette()), time_cs_(static_cast<int>(time.count() / 10)) {
+Gif::Gif(std::size_t width, std::size_t height, const Film& film)
+    : palette_(film.palette), time_cs_(static_cast<int>(film.time.count() / 10)) {
+  assert(palette_.size() <= kColours);
   const auto append = [](GifFileType* file, const GifByteType* bytes, int size) {
     static_cast<std::string*>(file->UserData)
         ->append(reinterpret_cast<const char*>(bytes), static_cast<unsigned>(size));
