@@ -31,7 +31,8 @@ if(DERMIS_SHARED)
   set(DERMIS_SYMBOLS ${PROJECT_SOURCE_DIR}/cmake/shared_symbols.map)
   add_library(dermis_shared SHARED)
   set_target_properties(dermis_shared PROPERTIES OUTPUT_NAME dermis LINKER_LANGUAGE CXX LINK_DEPENDS ${DERMIS_SYMBOLS}
-                                                 LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
+                                                 LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib
+                                                 BUILD_RPATH "$ORIGIN")  # where the plugins are
   target_link_options(dermis_shared PRIVATE -Wl,--version-script=${DERMIS_SYMBOLS} -Wl,-Bsymbolic-functions
                                             -Wl,-z,now -Wl,--no-undefined)
 endif()
