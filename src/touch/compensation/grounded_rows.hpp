@@ -77,10 +77,12 @@ class GroundedRows final : public CrosstalkInversion {
   struct Sources {
     Sources(std::size_t rows, std::size_t stride);
 
-    std::vector<double> ratio;          // e over the supply; empty: none
-    std::vector<double> siemens;        // what e drives into the array, over the supply
-    std::vector<double> column_ratio;   // column voltages then, over the supply
-    std::vector<double> last_ratio;     // the same of the pass before
+    std::vector<double> ratio;         // e over the supply; empty: none
+    std::vector<double> siemens;       // what e drives into the array, over the supply
+    std::vector<double> column_ratio;  // column voltages then, over the supply
+    std::vector<double> last_ratio;    // the same of the pass before
+    std::vector<double> change;        // by a pass
+    AndersonMixing mixing;
     std::vector<double> column_return;  // currents from the rows into the columns then
     std::vector<double> column_sum;     // G^T 1
     std::vector<double> line_ratio;     // row voltages, over the supply [rows]
