@@ -44,7 +44,7 @@ class Engine {
 
   [[nodiscard]] virtual std::string name() const = 0;
   [[nodiscard]] virtual std::string version() const = 0;
-  /// Called before each measurement; parallel_for() has been told already.
+  /// Called before each measurement; parallel_for() heeds the Placement.
   virtual void use_threads(int) {}
 
   virtual std::optional<Run> peaks_epoch(const PeaksProblem&) { return std::nullopt; }

@@ -3,7 +3,6 @@
 #include "harness.hpp"
 
 #include <fmt/core.h>
-#include <sched.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -59,29 +58,6 @@ class OtherLoad {
   double own_ = own_seconds();
 };
 
-/// One thread: on the last core. More: on as many cores as the program was given.
-class Placement {
- public:
-  explicit Placement(int threads) {
-    sched_getaffinity(0, sizeof before_, &before_);
-    if (threads > 1) return;
-    int last = 0;
-    for (int core = 0; core < CPU_SETSIZE; ++core) {
-      if (CPU_ISSET(core, &before_)) last = core;
-    }
-    cpu_set_t one;
-    CPU_ZERO(&one);
-    CPU_SET(last, &one);
-    sched_setaffinity(0, sizeof one, &one);
-  }
-  Placement(const Placement&) = delete;
-  Placement& operator=(const Placement&) = delete;
-  ~Placement() { sched_setaffinity(0, sizeof before_, &before_); }
-
- private:
-  cpu_set_t before_{};
-};
-
 /// Seconds of one step: the mean over as many as fill a sample, after one that is not timed.
 double sample(const Entry& entry, const Work& work, const Effort& effort) {
   entry.engine->use_threads(work.threads);
@@ -120,13 +96,26 @@ void print_row(const nlohmann::ordered_json& row, const Run& run) {
 
 }  // namespace
 
+Placement::Placement(int threads) {
+  sched_getaffinity(0, sizeof before_, &before_);
+  cpu_set_t taken;
+  CPU_ZERO(&taken);
+  for (int core = CPU_SETSIZE - 1; core >= 0 && CPU_COUNT(&taken) < threads; --core) {
+    if (CPU_ISSET(core, &before_)) CPU_SET(core, &taken);
+  }
+  sched_setaffinity(0, sizeof taken, &taken);
+}
+
+Placement::~Placement() {
+  sched_setaffinity(0, sizeof before_, &before_);
+}
+
 void print_header() {
   fmt::print("{:<22}{:>3}  {:<10}{:>10} {:<3}{:>10}{:>10}  {}\n", "work", "thr", "engine", "median", "", "fastest",
              "dermis x", "checked");
 }
 
 void measure(const Work& work, std::vector<Entry> entries, const Effort& effort, nlohmann::ordered_json& rows) {
-  const Placement placement(work.threads);
   const OtherLoad others;
   std::vector<std::vector<double>> samples(entries.size());
   for (int round = 0; round < effort.rounds; ++round) {

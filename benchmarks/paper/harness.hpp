@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <sched.h>
+
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -31,8 +33,20 @@ struct Entry {
   Run run;
 };
 
+/// While it lives, this thread and those that it begins run on so many of its cores, the last ones.
+class Placement {
+ public:
+  explicit Placement(int threads);
+  Placement(const Placement&) = delete;
+  Placement& operator=(const Placement&) = delete;
+  ~Placement();
+
+ private:
+  cpu_set_t before_{};
+};
+
 /// Times the engines in turn, round after round, so that they all meet the same moods of the machine; prints their
-/// medians and appends them to `rows`. One thread runs pinned to one core.
+/// medians and appends them to `rows`.
 void measure(const Work& work, std::vector<Entry> entries, const Effort& effort, nlohmann::ordered_json& rows);
 
 void print_header();

@@ -4,13 +4,12 @@
 //   network_benchmark [--quick] [work ...]
 // Without works: all. --quick runs each only to see that it works, on a small bank; its times mean nothing.
 #include <fmt/core.h>
-#include <tbb/info.h>
-#include <tbb/task_arena.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <thread>
 
 #include "harness.hpp"
 #include "rows.hpp"
@@ -50,7 +49,8 @@ struct Options {
 
 class Program {
  public:
-  explicit Program(Options options) : options_(std::move(options)), cores_(tbb::info::default_concurrency()) {
+  explicit Program(Options options)
+      : options_(std::move(options)), cores_(static_cast<int>(std::thread::hardware_concurrency())) {
     engines_.push_back(dermis_engine());
 #ifdef DERMIS_WITH_LIBTORCH
     engines_.push_back(libtorch_engine());
@@ -132,15 +132,13 @@ class Program {
   template <typename Prepare>
   void compete(const Work& work, Prepare prepare) {
     if (!options_.wants(work.name)) return;
-    // Our threads; those of the peers are their own affair.
-    tbb::task_arena(work.threads).execute([&] {
-      std::vector<Entry> entries;
-      for (const auto& engine : engines_) {
-        engine->use_threads(work.threads);
-        if (std::optional<Run> run = prepare(*engine)) entries.push_back({engine.get(), std::move(*run)});
-      }
-      measure(work, std::move(entries), effort(), rows_);
-    });
+    const Placement placement(work.threads);
+    std::vector<Entry> entries;
+    for (const auto& engine : engines_) {
+      engine->use_threads(work.threads);
+      if (std::optional<Run> run = prepare(*engine)) entries.push_back({engine.get(), std::move(*run)});
+    }
+    measure(work, std::move(entries), effort(), rows_);
   }
 
   [[nodiscard]] Effort effort() const { return options_.quick ? Effort{1, 0.0, 0.0} : Effort{}; }

@@ -54,6 +54,7 @@ class Rules(unittest.TestCase):
         self.write("CMakeLists.txt", "project(dermis VERSION 1.2.3 LANGUAGES CXX)\n")
         self.write("CITATION.cff", "version: 1.2.3\n")
         self.write("CHANGELOG.md", "# Changelog\n\n## [1.2.3] - 2026-01-01\n")
+        self.write("bindings/ros/dermis_msgs/package.xml", "<version>1.2.3</version>\n")
         self.write("include/dermis/touch/frames/frames.hpp", HEADER + "#include <vector>\n")
         self.write("include/dermis/touch/fusion/force.hpp", HEADER + '#include "dermis/touch/frames/frames.hpp"\n')
         self.write(
@@ -186,7 +187,12 @@ class Rules(unittest.TestCase):
     def test_versions_that_differ(self):
         self.write("CITATION.cff", "version: 1.2.2\n")
         self.write("CHANGELOG.md", "# Changelog\n\n## [1.3.0]\n\n## [1.2.3]\n")
-        self.expect("CITATION.cff: says version 1.2.2, CMakeLists.txt 1.2.3", "CHANGELOG.md: says version 1.3.0")
+        self.write("bindings/ros/dermis_msgs/package.xml", "<package/>\n")
+        self.expect(
+            "CITATION.cff: says version 1.2.2, CMakeLists.txt 1.2.3",
+            "CHANGELOG.md: says version 1.3.0",
+            "bindings/ros/dermis_msgs/package.xml: says version none",
+        )
 
 
 if __name__ == "__main__":

@@ -168,7 +168,7 @@ class Mpirun(SmallArray):
         result = dermis(*self.train(self.work / "bank", steps=1), env={**os.environ, "LD_DEBUG": "libs"})
         self.assertEqual(result.returncode, 0)
         loaded = set(re.findall(r"calling init: \S*/(lib\w+)", result.stderr))
-        self.assertIn("libtbb", loaded)
+        self.assertIn("libfmt", loaded)
         self.assertEqual({name for name in loaded if "mpi" in name}, set())
 
     def test_a_plugin_that_is_missing_is_named(self):

@@ -3,7 +3,6 @@
 #include "dermis/paper/network_bank.hpp"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +14,7 @@
 #include "dermis/paper/feed_forward.hpp"
 #include "dermis/touch/frames/random.hpp"
 #include "support/allocation_guard.hpp"
+#include "support/one_core.hpp"
 #include "support/simd_targets.hpp"
 
 namespace dermis::paper {
@@ -433,9 +433,7 @@ TEST(NetworkBank, results_do_not_depend_on_the_number_of_threads) {
     Random random(7);
     const std::size_t networks = 2'200'000 / shape.parameter_count();
     const Problem problem(shape, networks, 64, random);
-    std::vector<std::vector<float>> results;
-    for (const std::size_t threads : {1U, 2U, 4U}) {
-      const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const auto results = [&] {
       NetworkBank bank = problem.bank();
       std::vector<float> all(networks);
       bank.train_step(problem.batch(), {.rule = BankStep::Rule::adam}, all);
@@ -447,10 +445,10 @@ TEST(NetworkBank, results_do_not_depend_on_the_number_of_threads) {
         const auto own = parameters_of(bank, k);
         all.insert(all.end(), own.begin(), own.end());
       }
-      results.push_back(all);
-    }
-    EXPECT_EQ(results[0], results[1]);
-    EXPECT_EQ(results[0], results[2]);
+      return all;
+    };
+    const std::vector<float> on_all_cores = results();
+    support::on_one_core([&] { EXPECT_EQ(results(), on_all_cores); });
   }
 }
 

@@ -19,7 +19,7 @@ namespace dermis::paper {
 }
 
 /// Calls body(item, worker) for all items. A worker, of which there are `workers`, takes one item after the other and
-/// has its work space to itself. Allocates nothing.
+/// has its work space to itself. With one, allocates nothing.
 template <class Body>
 void share_among_workers(std::size_t items, std::size_t workers, const Body& body) {
   if (workers == 1) {

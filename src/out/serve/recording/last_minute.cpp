@@ -3,7 +3,6 @@
 #include "out/serve/recording/last_minute.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "dermis/bytes/files/u16_counts.hpp"
 
@@ -17,20 +16,13 @@ bool is_older(Nanos time, Nanos than, Nanos by) {
   return static_cast<double>(than.count()) - static_cast<double>(time.count()) > static_cast<double>(by.count());
 }
 
-void fill(RawFrame& frame, std::vector<std::uint16_t>& whole, const RawFrame& from, bool is_whole) {
-  frame.time = from.time;
-  frame.temperature_celsius = from.temperature_celsius;
-  frame.sensor_celsius = from.sensor_celsius;
-  frame.supply_v = from.supply_v;
-  frame.acquisition = from.acquisition;
-  frame.counts.clear();
-  whole.clear();
-  if (is_whole) {
-    whole.resize(from.counts.size());
-    std::ranges::transform(from.counts, whole.begin(), [](float count) { return static_cast<std::uint16_t>(count); });
-  } else {
-    frame.counts = from.counts;
-  }
+RawFrame without_counts(const RawFrame& frame) {
+  return {.time = frame.time,
+          .temperature_celsius = frame.temperature_celsius,
+          .supply_v = frame.supply_v,
+          .counts = {},
+          .acquisition = frame.acquisition,
+          .sensor_celsius = frame.sensor_celsius};
 }
 
 }  // namespace
@@ -45,20 +37,24 @@ std::size_t LastMinute::most_frames(std::size_t taxels) const noexcept {
 
 void LastMinute::keep(std::size_t array, const RawFrame& frame) {
   Track& track = tracks_[array];
-  std::deque<Kept>& kept = track.kept;
+  std::pmr::deque<Kept>& kept = track.kept;
   const bool is_whole = bytes::files::fit_u16(frame.counts);
   const std::lock_guard lock(track.mutex);
   if (!kept.empty() && frame.time == kept.back().frame.time) return;  // shown again
   if (!kept.empty() && frame.time < kept.back().frame.time) kept.clear();
   const std::size_t most = most_frames(is_whole ? frame.counts.size() : 2 * frame.counts.size());
-  const auto is_too_old = [&] { return !kept.empty() && is_older(kept.front().frame.time, frame.time, kLongest); };
-  Kept next;
-  while (is_too_old() || kept.size() >= most) {
-    next = std::move(kept.front());  // its room is used again
+  while (!kept.empty() && (kept.size() >= most || is_older(kept.front().frame.time, frame.time, kLongest))) {
     kept.pop_front();
   }
-  fill(next.frame, next.whole, frame, is_whole);
-  kept.push_back(std::move(next));
+  Kept& next = kept.emplace_back(without_counts(frame), decltype(Kept::whole)(&track.room),
+                                 decltype(Kept::fractions)(&track.room));
+  if (!is_whole) {
+    next.fractions.assign(frame.counts.begin(), frame.counts.end());
+    return;
+  }
+  next.whole.resize(frame.counts.size());
+  std::ranges::transform(frame.counts, next.whole.begin(),
+                         [](float count) { return static_cast<std::uint16_t>(count); });
 }
 
 std::vector<RawFrame> LastMinute::frames(std::size_t array, Nanos first, Nanos last) const {
@@ -75,7 +71,8 @@ bool LastMinute::copy_some(const Track& track, Nanos& first, Nanos last, std::ve
   for (std::size_t copied = 0; copied < kFramesAtOnce; ++copied, ++next) {
     if (next == track.kept.end() || next->frame.time > last) return false;
     RawFrame& frame = frames.emplace_back(next->frame);
-    if (!next->whole.empty()) frame.counts.assign(next->whole.begin(), next->whole.end());
+    frame.counts.assign(next->fractions.begin(), next->fractions.end());
+    frame.counts.insert(frame.counts.end(), next->whole.begin(), next->whole.end());
     if (next->frame.time == last) return false;
     first = next->frame.time + Nanos(1);
   }

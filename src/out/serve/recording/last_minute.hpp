@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <memory_resource>
 #include <mutex>
 #include <vector>
 
@@ -30,12 +31,14 @@ class LastMinute {
 
  private:
   struct Kept {
-    RawFrame frame;                    ///< Without its counts, where `whole` has them
-    std::vector<std::uint16_t> whole;  ///< in half the room.
+    RawFrame frame;                         ///< Without its counts;
+    std::pmr::vector<std::uint16_t> whole;  ///< these have half the room
+    std::pmr::vector<float> fractions;      ///< of these.
   };
   struct Track {
     mutable std::mutex mutex;
-    std::deque<Kept> kept;
+    std::pmr::unsynchronized_pool_resource room;  ///< Its own: else frames that come and go leave holes between others.
+    std::pmr::deque<Kept> kept{&room};
   };
 
   [[nodiscard]] std::size_t most_frames(std::size_t taxels) const noexcept;
