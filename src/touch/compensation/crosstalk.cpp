@@ -249,7 +249,7 @@ InversionResult Compensator::invert_possible(const ConditionedFrame& conditioned
     spikes_->forget();
   }
   InversionResult result;
-  const bool is_plenty = inversion_->start_frame();
+  const bool is_plenty = inversion_->start_frame(conditioned.time);
   const bool begins_anew = is_plenty || ++frames_begun_ % kTrial == 0;
   int number = 0;
   for (; number < kMostAttempts && !result.solved; ++number) {

@@ -58,7 +58,7 @@ class FaultInversion {
   /// Frames that follow each other in time give the last values of taxels.
   void start_frame(Nanos time) noexcept {
     missing_.start_frame(time);
-    budget_.start_frame();
+    budget_.start_frame(time);
   }
 
   /// Adds to the standard deviations these of taxels in doubt, and what the others of their lines owe to them.

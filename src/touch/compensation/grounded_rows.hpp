@@ -63,8 +63,8 @@ class GroundedRows final : public CrosstalkInversion {
   [[nodiscard]] bool set_shorted(std::span<const std::size_t> taxels) noexcept override;
   [[nodiscard]] bool set_broken(std::span<const LineFault> faults) noexcept override;
   void hold_film(const FilmConductances& film) noexcept override;
-  bool start_frame() noexcept override {
-    budget_.start_frame();
+  bool start_frame(Nanos time) noexcept override {
+    budget_.start_frame(time);
     return !budget_.is_scarce();
   }
   void start_attempt(double share) noexcept override { budget_.start_attempt(share); }

@@ -3,7 +3,10 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
+
+#include "dermis/touch/frames/frames.hpp"
 
 namespace dermis::touch::compensation {
 
@@ -15,12 +18,15 @@ inline constexpr double kMostLeft = 0.05;
 class StepBudget {
  public:
   /// `most`: of one frame; 0: nothing is ever bounded. So many hard `frames` may follow each other. On average a frame
-  /// may take `each`, and twice what good ones take.
+  /// may take `each`, and twice what good ones take. Frames that come less often than at 1 kHz may take more.
   StepBudget(double most, double each, double frames = 1.0)
       : most_(most), each_(each), most_saved_(frames * most), saved_(most_saved_) {}
 
-  void start_frame() noexcept {
-    saved_ = std::min(most_saved_, std::max(saved_, -kMostOwed * each_) + each_ + kTimes * typical_);
+  void start_frame(Nanos time) noexcept {
+    const double periods = std::chrono::duration<double, std::milli>(time - last_time_).count();
+    last_time_ = time;
+    const double gain = std::clamp(periods, 1.0, kMostPeriods) * each_ + kTimes * typical_;
+    saved_ = std::min(most_saved_, std::max(saved_, -kMostOwed * each_) + gain);
     used_ = 0.0;
     start_attempt(1.0);
   }
@@ -66,6 +72,7 @@ class StepBudget {
  private:
   static constexpr double kTimes = 2.0;
   static constexpr double kMostOwed = 2.0;
+  static constexpr double kMostPeriods = 8.0;
   static constexpr double kShare = 1.0 / 256.0;
   static constexpr double kMostRise = 2.0;
   static constexpr double kScarce = 0.25;
@@ -74,6 +81,7 @@ class StepBudget {
   double each_;
   double most_saved_;
   double saved_;
+  Nanos last_time_{};
   double typical_ = 0.0;
   double used_ = 0.0;
   double left_ = std::numeric_limits<double>::infinity();

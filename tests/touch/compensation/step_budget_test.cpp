@@ -15,7 +15,7 @@ constexpr double kEach = 1.0;
 
 /// Of a frame that goes on as long as it may.
 int steps_of_a_frame(StepBudget& budget, double share = 1.0) {
-  budget.start_frame();
+  budget.start_frame({});
   budget.start_attempt(share);
   int steps = 0;
   while (steps < 10000 && budget.take(1.0)) ++steps;
@@ -24,7 +24,7 @@ int steps_of_a_frame(StepBudget& budget, double share = 1.0) {
 
 void solve_frames(StepBudget& budget, int frames, double work) {
   for (int frame = 0; frame < frames; ++frame) {
-    budget.start_frame();
+    budget.start_frame({});
     ASSERT_TRUE(budget.take(work));
     budget.learn();
   }
@@ -81,7 +81,7 @@ TEST(StepBudget, a_first_attempt_leaves_some_for_others) {
 
 TEST(StepBudget, work_that_is_refused_is_left_to_the_next_attempt) {
   StepBudget budget(kMost, kEach);
-  budget.start_frame();
+  budget.start_frame({});
   EXPECT_FALSE(budget.take(kMost + 1.0));
   EXPECT_TRUE(budget.is_used_up());
   budget.start_attempt(1.0);
@@ -92,7 +92,7 @@ TEST(StepBudget, work_that_had_to_be_done_is_owed_by_the_next_frames) {
   StepBudget budget(kMost, kEach);
   solve_frames(budget, 100, 4.0);
   EXPECT_EQ(steps_of_a_frame(budget), 64);
-  budget.start_frame();
+  budget.start_frame({});
   budget.spend(9.0 + 2.0 * kEach);
   EXPECT_EQ(steps_of_a_frame(budget), 7);
 }

@@ -65,7 +65,7 @@ class CrosstalkInversion {
   [[nodiscard]] virtual InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept = 0;
 
   /// The next calls of invert() are of another frame. Whether frames before have left enough for several attempts.
-  virtual bool start_frame() noexcept { return true; }
+  virtual bool start_frame(Nanos /*time*/) noexcept { return true; }
 
   /// They together may take this share of what is left of the work that the frame may take.
   virtual void start_attempt(double /*share*/) noexcept {}
