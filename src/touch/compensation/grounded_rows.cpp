@@ -182,9 +182,8 @@ void GroundedRows::keep_missing(std::span<const double> ratio, std::span<const d
 }
 
 double GroundedRows::certify(Precision precision) noexcept {
-  const bool settled = sources_.ratio.empty() || follow_sources();
-  const double certificate = assess(state_, precision);
-  return settled ? certificate : std::numeric_limits<double>::infinity();
+  const double left = sources_.ratio.empty() ? 0.0 : follow_sources();
+  return assess(state_, precision) + left;
 }
 
 /// Certificate of the iterate that it ends with.

@@ -126,7 +126,7 @@ class GroundedRows final : public CrosstalkInversion {
   void move_kept(Line line, const JoinedLines::Pair& pair) noexcept;
   void start_anew() noexcept;
   [[nodiscard]] double certify(Precision precision) noexcept;
-  [[nodiscard]] bool follow_sources() noexcept;
+  [[nodiscard]] double follow_sources() noexcept;
   void find_row_currents() noexcept;
   void find_column_ratios() noexcept;
   [[nodiscard]] double current_into_film(std::size_t col) const noexcept;

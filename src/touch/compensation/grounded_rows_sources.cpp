@@ -24,8 +24,9 @@ constexpr double kSourceWork = 0.2;  // of a pass beside a step without mixing
 
 /// Puts into y what the sources drive into the array at the present G, all rows grounded. Eliminating the rows as in
 /// (b) leaves v = diag(w) (e + RL G^T diag(Rd / a) G v) for the columns, a contraction. Where that is a weak one,
-/// Anderson's mixing speeds it up. Whether it settled.
-bool GroundedRows::follow_sources() noexcept {
+/// Anderson's mixing speeds it up. What v still changes by where the work is used up; infinite where it does not
+/// settle.
+double GroundedRows::follow_sources() noexcept {
   int pass = 0;
   double change = std::numeric_limits<double>::infinity();
   sources_.mixing.forget();
@@ -56,7 +57,8 @@ bool GroundedRows::follow_sources() noexcept {
     }
     sources_.siemens[col] = current;
   }
-  return pass < kSourcePasses && !budget_.is_used_up();
+  if (change <= kSourceShare * tolerance_) return 0.0;
+  return pass < kSourcePasses ? change : std::numeric_limits<double>::infinity();
 }
 
 /// G^T diag(Rd / a) G v and G^T 1.

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <vector>
 
 namespace dermis::touch::compensation {
@@ -95,6 +96,22 @@ TEST(StepBudget, work_that_had_to_be_done_is_owed_by_the_next_frames) {
   budget.start_frame({});
   budget.spend(9.0 + 2.0 * kEach);
   EXPECT_EQ(steps_of_a_frame(budget), 7);
+}
+
+TEST(StepBudget, frames_that_come_less_often_take_more) {
+  StepBudget budget(kMost, kEach);
+  for (int frame = 0; frame < 8; ++frame) steps_of_a_frame(budget);
+  const auto steps_after = [&](Nanos since_last) {
+    budget.start_frame(since_last);
+    int steps = 0;
+    while (budget.take(1.0)) ++steps;
+    budget.start_frame({});
+    while (budget.take(1.0)) continue;
+    return steps;
+  };
+  EXPECT_EQ(steps_after(std::chrono::milliseconds(1)), 1);
+  EXPECT_EQ(steps_after(std::chrono::milliseconds(3)), 3);
+  EXPECT_EQ(steps_after(std::chrono::hours(1)), 8);
 }
 
 TEST(StepBudget, what_is_forgotten_bounds_nothing) {
