@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 
 #include "dermis/touch/frames/frames.hpp"
@@ -23,7 +22,8 @@ class StepBudget {
       : most_(most), each_(each), most_saved_(frames * most), saved_(most_saved_) {}
 
   void start_frame(Nanos time) noexcept {
-    const double periods = std::chrono::duration<double, std::milli>(time - last_time_).count();
+    // Times of files can be any: their difference may not be a whole number of 64 bits.
+    const double periods = 1e-6 * (static_cast<double>(time.count()) - static_cast<double>(last_time_.count()));
     last_time_ = time;
     const double gain = std::clamp(periods, 1.0, kMostPeriods) * each_ + kTimes * typical_;
     saved_ = std::min(most_saved_, std::max(saved_, -kMostOwed * each_) + gain);
