@@ -24,8 +24,8 @@ constexpr double kSourceWork = 0.2;  // of a pass beside a step without mixing
 
 /// Puts into y what the sources drive into the array at the present G, all rows grounded. Eliminating the rows as in
 /// (b) leaves v = diag(w) (e + RL G^T diag(Rd / a) G v) for the columns, a contraction. Where that is a weak one,
-/// Anderson's mixing speeds it up. What v still changes by where the work is used up; infinite where it does not
-/// settle.
+/// Anderson's mixing speeds it up. Returns the change of v that is left where the work is used up; infinite where it
+/// does not settle.
 double GroundedRows::follow_sources() noexcept {
   int pass = 0;
   double change = std::numeric_limits<double>::infinity();
