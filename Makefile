@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # CI runs these targets (.ci/run). Each installs what it needs.
 
-.PHONY: build setup demo live python wheels reference test lint numerics sanitize fuzz coverage check-all bench profile docs bare package package-test site campaigns clean
+.PHONY: build setup demo live python wheels wheel-libraries reference test lint numerics sanitize fuzz coverage check-all bench profile docs bare package package-test site campaigns clean
 
 build: setup
 	cmake --preset release
@@ -26,6 +26,12 @@ python: setup
 wheels: setup
 	scripts/setup python
 	scripts/wheels.py
+
+# What wheels for old and small machines are compiled with.
+wheel-libraries: setup
+	scripts/setup wheels
+	packaging/wheels/prefix x86_64
+	packaging/wheels/prefix aarch64
 
 test: setup
 	scripts/setup test

@@ -100,13 +100,16 @@ TRACES = {
     '"--oversubscribe"': "libopenmpi-dev openmpi-bin",
     "#!/usr/bin/python3": "python3",
     '"--zstd"': "zstd",
+    "$triplet-$language-12": "g++-12-aarch64-linux-gnu",
+    "qemu-$arch-static": "qemu-user-static",
     "build/release/tests/": "libgtest-dev libbenchmark-dev",
 }
 # What a bare Debian has, with make, git and sudo, and what bash is made of.
 BARE = set(
-    """apt-config apt-get bash case cat cd cmp command cp date declare dirname do done dpkg-query echo elif else env
-esac exec exit export fi find flock for git grep id if install ldd local ls make mkdir mktemp mount nproc printf
-return rm sed set sh sudo tail tar then touch trap umount while xargs""".split()
+    """apt-cache apt-config apt-get bash case cat cd chmod cksum cmp command cp date declare dirname do done dpkg-query
+echo elif else env esac exec exit export fi find flock for git grep id if install ldd ln local ls make mapfile mkdir
+mktemp mount nproc printf readlink return rm sed set sh shift sudo tail tar then touch tr trap umount uname wait
+while xargs""".split()
 )
 # Our own package and what makes its wheel, what ROS 2 brings to a launch file, what an example asks of PyPI, and what
 # tests/requirements.txt names.
