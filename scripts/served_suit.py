@@ -24,11 +24,13 @@ def make_model(binary, folder, array=ROOT / "examples/chest/array.toml", seed=1)
     return model
 
 
-def write_suit(path, model, arrays, rate):
+def write_suit(path, model, arrays, rate, sources=None):
+    """`sources`: of each array; else they are simulated."""
     tables = []
     for k in range(arrays):
+        source = sources[k] if sources else f"sim:contacts?rate={rate:g}&seed={k + 1}"
         tables.append(
-            f'[[array]]\nname = "array{k}"\nfrom = "sim:contacts?rate={rate:g}&seed={k + 1}"\n'
+            f'[[array]]\nname = "array{k}"\nfrom = "{source}"\n'
             f'model = "{model}"\n'
             f"base_from_array = {{translation_mm = [{170 * (k % 8)}, {170 * (k // 8)}, 0]}}\n"
         )

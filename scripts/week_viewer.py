@@ -25,6 +25,7 @@ MESSAGE_DATA = 1
 IMAGE_BYTES = 2 * ROWS * COLS
 PATIENCE_S = 30
 AGE_S = 2  # a frame that is younger is of now
+SET_S = 60
 
 
 class Stream:
@@ -139,7 +140,15 @@ def ask(port, operation, **fields):
 
 
 def set_parameter(port, name, value):
-    return ask(port, "setParameters", parameters=[{"name": name, "value": value}])
+    """Again where the connection is lost, as it is where the machine is overloaded."""
+    end = time.monotonic() + SET_S
+    while True:
+        try:
+            return ask(port, "setParameters", parameters=[{"name": name, "value": value}])
+        except OSError:
+            if time.monotonic() > end:
+                raise
+            time.sleep(0.5)
 
 
 def parameter(port, name):

@@ -23,23 +23,35 @@ START_S = 60
 ROOM_BYTES = 256 << 10  # that a full disk still has
 
 
-class SetClock:
-    """The UTC clock of a process, which can be set."""
+class Preloaded:
+    """A library of this folder within a process, and the number that they share."""
 
-    def __init__(self, folder):
-        library, file = folder / "stepping_clock.so", folder / "clock"
-        subprocess.run(
-            ["cc", "-O2", "-shared", "-fPIC", "-o", library, ROOT / "scripts/stepping_clock.c", "-ldl"], check=True
-        )
+    def __init__(self, folder, name):
+        library, file = folder / f"{name}.so", folder / name
+        source = ROOT / f"scripts/{name}.c"
+        subprocess.run(["cc", "-O2", "-shared", "-fPIC", "-o", library, source, "-ldl"], check=True)
         file.write_bytes(bytes(8))
         with file.open("r+b") as opened:
             self.place = mmap.mmap(opened.fileno(), 8)
-        self.environment = {"LD_PRELOAD": str(library), "STEPPING_CLOCK": str(file)}
-        self.seconds = 0
+        self.environment = {"LD_PRELOAD": str(library), name.upper(): str(file)}
+
+    @property
+    def number(self):
+        return struct.unpack_from("<q", self.place)[0]
+
+    @number.setter
+    def number(self, number):
+        struct.pack_into("<q", self.place, 0, number)
+
+
+class SetClock(Preloaded):
+    """The UTC clock of a process, which can be set."""
+
+    def __init__(self, folder):
+        super().__init__(folder, "stepping_clock")
 
     def step(self, seconds):
-        self.seconds += seconds
-        struct.pack_into("<q", self.place, 0, round(self.seconds * 1e9))
+        self.number += round(seconds * 1e9)
 
 
 class Disk:
@@ -164,9 +176,13 @@ class Robot:
         self.log = folder / "serve.log"
         self.reports = folder / "sanitizer"
         self.port = free_port()
-        options = f"log_path={self.reports}:exitcode=0"
+        self.heap = None if sanitized else Preloaded(folder, "heap_in_use")
         environment = {**os.environ, **clock.environment}
-        if sanitized:
+        if self.heap:
+            both = ":".join(part.environment["LD_PRELOAD"] for part in (clock, self.heap))
+            environment |= self.heap.environment | {"LD_PRELOAD": both}
+        else:
+            options = f"log_path={self.reports}:exitcode=0"
             leaks = f"suppressions={ROOT / 'tests/leaks_of_others.txt'}:print_suppressions=0"
             environment |= {"ASAN_OPTIONS": options, "UBSAN_OPTIONS": f"{options}:print_stacktrace=1"}
             environment |= {"TSAN_OPTIONS": options, "LSAN_OPTIONS": leaks}
@@ -189,9 +205,10 @@ class Robot:
             time.sleep(0.2)
 
     def memory(self):
-        """[bytes] that are the process's own: heap and stacks."""
+        """[bytes] that are the process's own: heap and stacks; those of the heap that are in use."""
         with open(f"/proc/{self.process.pid}/status") as status:
-            return next(1024 * int(line.split()[1]) for line in status if line.startswith("RssAnon"))
+            own = next(1024 * int(line.split()[1]) for line in status if line.startswith("RssAnon"))
+        return own, self.heap.number if self.heap else 0
 
     def stop(self):
         self.process.send_signal(signal.SIGTERM)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <fmt/core.h>
+#include <malloc.h>
 
 #include <atomic>
 #include <cstdint>
@@ -134,6 +135,7 @@ void place_recordings(const out::serve::SuitPlace& place, out::serve::SessionOpt
 }
 
 Status serve_suit(ServeOptions& options) {
+  ::mallopt(M_ARENA_MAX, 1);  // threads with heaps of their own keep twice the memory, and it grows for days
   if (Status opened = open_folder(options.place); !opened) return opened;
   if (Status found = find_token(options.token_file, options.session.server); !found) return found;
   if (Status possible = check(options); !possible) return possible;

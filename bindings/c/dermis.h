@@ -52,7 +52,7 @@ enum {
   DERMIS_TAXEL_INVALID = 5
 };
 
-/* Of the library that runs, such as "1.2.3". */
+/* The version of the library that runs, such as "1.2.3". */
 const char* dermis_version(void);
 
 /* One line that names the place and the mend: of the last call of this thread that did not return DERMIS_OK or

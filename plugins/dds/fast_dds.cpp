@@ -183,7 +183,7 @@ Sample sample_of(const ReceivedType::Received& bytes, const fast::SampleInfo& in
 /// A thread of Fast DDS that is late leaves messages in its socket until there is no more room.
 void raise_own_priority() {
   thread_local bool is_raised = false;
-  if (!std::exchange(is_raised, true)) raise_thread_priority(ThreadPriority::frames);
+  if (!std::exchange(is_raised, true)) raise_thread_priority();
 }
 
 /// Asks for all messages. A second reader serves writers that send nothing again. It hears the others, too, so both

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
+#include <optional>
 #include <utility>
 
 #include "gif.hpp"
@@ -17,14 +18,14 @@ std::string png_of(const Pictures& pictures) {
 }
 
 std::string gif_of(const Pictures& pictures, const Film& film) {
-  PixelBrush first(pictures.width, pictures.height);
-  Gif gif(first.width(), first.height(), film);
+  std::optional<Gif> gif;
   for (std::size_t picture = 0; picture < pictures.count; ++picture) {
     PixelBrush brush(pictures.width, pictures.height);
     pictures.paint(picture, brush);
-    gif.add(brush);
+    if (!gif) gif.emplace(brush.width(), brush.height(), film);
+    gif->add(brush);
   }
-  return std::move(gif).take();
+  return std::move(*gif).take();
 }
 
 constexpr PicturePlugin kPlugin{.png = png_of, .gif = gif_of};

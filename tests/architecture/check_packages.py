@@ -18,7 +18,7 @@ BRINGS = {
     "ccache": "ccache",
     "nodejs": "node",
     "npm": "npm",
-    "build-essential": "c++ nm objdump dpkg-architecture dpkg-buildpackage",
+    "build-essential": "c++ cc nm objdump dpkg-architecture dpkg-buildpackage",
     "pkg-config": "PkgConfig",
     "libeigen3-dev": "Eigen3",
     "libhwy-dev": "HWY",

@@ -28,9 +28,10 @@ const words = (page, role, text) => page.locator(`[data-role=${role}]`, { hasTex
 
 const served = (command, look) => shown([...command, ...bench.model], "array", look);
 
-/** The bytes that the browser saves when a button is pressed, and their name. */
+/** The bytes that the browser saves when a button is pressed, and their name; newtons beside a table may come first. */
 async function saved(page, role) {
-  const [download] = await Promise.all([page.waitForEvent("download"), part(page, role).click()]);
+  const isAsked = (download) => !download.suggestedFilename().endsWith("-newtons.csv");
+  const [download] = await Promise.all([page.waitForEvent("download", isAsked), part(page, role).click()]);
   return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
 }
 
@@ -48,9 +49,10 @@ it("records under a name, shows the size as it grows, plays the recording and sa
       first,
       { timeout: WAIT_MS },
     );
+    const told = words(page, "notice", new RegExp(`recorded \\d+ frames: ${bench.path("walk.mcap")}`)); // for 8 s
     await part(page, "begin-recording").click();
+    await told;
     await row.getByText("Play it").waitFor();
-    await words(page, "notice", new RegExp(`recorded \\d+ frames: ${bench.path("walk.mcap")}`));
     await page.locator(".recording-list", { hasText: `Folder of the server: ${bench.folder}` }).waitFor();
     await part(page, "begin-recording").click();
     await words(page, "take-words", "walk.mcap is there already");

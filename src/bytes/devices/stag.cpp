@@ -54,7 +54,7 @@ class StagDecoder final : public WindowDecoder {
     const void* const end = std::memchr(bytes.data() + searched, '\n', reach - searched);
     if (end == nullptr) {
       if (reach == longest) return {Verdict::Kind::noise, reach};
-      searched_ = reach;
+      if (!ended) searched_ = reach;
       return {};
     }
     const auto size = static_cast<std::size_t>(static_cast<const std::uint8_t*>(end) - bytes.data()) + 1;

@@ -93,6 +93,11 @@ ConstantPackets::Form::Form(const Layout& of_packets, const Packet& packet, std:
       match(layout, first_packet(layout), array),
       fields(layout, moduli_of(std::get<PacketLayout>(layout.form))) {}
 
+bool ConstantPackets::Form::fits(std::span<const std::uint8_t> packet) {
+  match.begin(0);  // which only checksums ask for
+  return match.read(packet) == PacketMatch::Outcome::whole;
+}
+
 ConstantPackets::ConstantPackets(const std::vector<std::shared_ptr<const Layout>>& layouts, std::size_t array,
                                  FirstMark first)
     : MarkChainDecoder(mark_of(first_packet(*layouts.front())).literal,
@@ -122,15 +127,14 @@ ConstantPackets::Form& ConstantPackets::form_of(std::size_t size) noexcept {
 }
 
 bool ConstantPackets::fits(std::span<const std::uint8_t> packet) {
-  Piece piece;
-  return form_of(packet.size()).match.read(packet, position(), piece) == PacketMatch::Outcome::whole;
+  return form_of(packet.size()).fits(packet);
 }
 
 bool ConstantPackets::read(std::span<const std::uint8_t> packet, RawFrame& frame) {
   Form& form = form_of(packet.size());
+  if (!form.fits(packet)) return false;
   Piece piece;
-  if (form.match.read(packet, position(), piece) != PacketMatch::Outcome::whole) return false;
-  form.match.read_numbers(packet, frame.counts);
+  form.match.read_content(packet, piece, frame.counts);
   form.fields.scale(frame.counts);
   is_sending_ = true;
   return form.fields.write(piece, frame);

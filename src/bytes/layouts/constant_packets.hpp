@@ -42,6 +42,8 @@ class ConstantPackets final : public MarkChainDecoder {
   struct Form {
     Form(const Layout& of_packets, const PacketLayout::Packet& packet, std::size_t array);
 
+    [[nodiscard]] bool fits(std::span<const std::uint8_t> packet);
+
     Layout layout;  ///< That packet without the mark, which may be damaged.
     std::size_t size;
     PacketMatch match;

@@ -85,9 +85,10 @@ PacketDecoder::Found PacketDecoder::next_packet(RawFrame& frame) {
 /// Tries the packets of the layout. One that may be more than the bytes so far keeps those behind it waiting, but not
 /// at the end.
 PacketDecoder::Reading PacketDecoder::read(std::span<const std::uint8_t> bytes) {
-  for (; front_.match < matches_.size(); ++front_.match) {
+  for (; front_.match < matches_.size(); ++front_.match, front_.is_begun = false) {
     PacketMatch& match = matches_[front_.match];
-    const PacketMatch::Outcome outcome = match.read(bytes, window_.position(), piece_);
+    if (!std::exchange(front_.is_begun, true)) match.begin(window_.position());
+    const PacketMatch::Outcome outcome = match.read(bytes);
     if (outcome == PacketMatch::Outcome::whole) return {outcome, &match};
     if (outcome == PacketMatch::Outcome::unfinished && input_.has_ended) continue;
     if (outcome == PacketMatch::Outcome::unfinished) {
@@ -121,9 +122,9 @@ PacketDecoder::Found PacketDecoder::skip(std::size_t bytes) {
   return Found::packet;
 }
 
-PacketDecoder::Found PacketDecoder::take(const PacketMatch& match, std::span<const std::uint8_t> packet,
-                                         std::size_t bytes, RawFrame& frame) {
-  match.read_numbers(packet, numbers_);
+PacketDecoder::Found PacketDecoder::take(PacketMatch& match, std::span<const std::uint8_t> packet, std::size_t bytes,
+                                         RawFrame& frame) {
+  match.read_content(packet, piece_, numbers_);
   drop(bytes);
   const bool is_frame = assembly_.add(piece_, numbers_, bytes, frame);
   if (is_frame) frame_end_ = window_.position();
@@ -140,16 +141,17 @@ PacketDecoder::Found PacketDecoder::next_escaped(RawFrame& frame) {
   if (end == nullptr) return reach == escaped_.longest ? skip(reach) : Found::nothing;
   const auto size = static_cast<std::size_t>(static_cast<const std::uint8_t*>(end) - bytes.data());
   if (size == 0) return skip(1);
-  const PacketMatch* const match =
+  PacketMatch* const match =
       undo_escapes(form_, bytes.first(size), escaped_.plain) ? match_of(escaped_.plain) : nullptr;
   if (match != nullptr) return take(*match, escaped_.plain, size + 1, frame);
   if (counts().frames > 0) assembly_.damage(0);
   return skip(size + 1);
 }
 
-const PacketMatch* PacketDecoder::match_of(std::span<const std::uint8_t> plain) {
+PacketMatch* PacketDecoder::match_of(std::span<const std::uint8_t> plain) {
   for (PacketMatch& match : matches_) {
-    const bool is_whole = match.read(plain, window_.position(), piece_) == PacketMatch::Outcome::whole;
+    match.begin(window_.position());
+    const bool is_whole = match.read(plain) == PacketMatch::Outcome::whole;
     if (is_whole && match.size() == plain.size()) return &match;
     if (is_further(match.fitted())) keep_misfit(match.fitted(), match.misfit());
   }

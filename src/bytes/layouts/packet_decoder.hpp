@@ -42,12 +42,12 @@ class PacketDecoder final : public Decoder {
   /// The outcome of the bytes, and the match of their packet where it is whole.
   struct Reading {
     PacketMatch::Outcome outcome = PacketMatch::Outcome::foreign;
-    const PacketMatch* match = nullptr;
+    PacketMatch* match = nullptr;
   };
 
   [[nodiscard]] Found next_packet(RawFrame& frame);
   [[nodiscard]] Reading read(std::span<const std::uint8_t> bytes);
-  [[nodiscard]] const PacketMatch* match_of(std::span<const std::uint8_t> plain);
+  [[nodiscard]] PacketMatch* match_of(std::span<const std::uint8_t> plain);
   [[nodiscard]] Found next_escaped(RawFrame& frame);
   [[nodiscard]] bool is_followed_by_packet(std::span<const std::uint8_t> rest) const noexcept;
   [[nodiscard]] bool is_further(std::size_t fields) const noexcept;
@@ -55,7 +55,7 @@ class PacketDecoder final : public Decoder {
   [[nodiscard]] std::string without_packet() const;
   void drop(std::size_t bytes);
   Found skip(std::size_t bytes);
-  Found take(const PacketMatch& match, std::span<const std::uint8_t> packet, std::size_t bytes, RawFrame& frame);
+  Found take(PacketMatch& match, std::span<const std::uint8_t> packet, std::size_t bytes, RawFrame& frame);
 
   std::shared_ptr<const Layout> layout_;
   const PacketLayout& form_;
@@ -66,6 +66,7 @@ class PacketDecoder final : public Decoder {
   struct {
     std::size_t needed = 0;  ///< Bytes, before more can be said.
     std::size_t match = 0;   ///< Those before do not fit.
+    bool is_begun = false;   ///< That match has read some of it.
     PacketMatch::Outcome outcome = PacketMatch::Outcome::foreign;
   } front_;  ///< What the window begins with.
   FrameAssembly assembly_;

@@ -88,6 +88,14 @@ void read_numbers(std::span<const std::uint8_t> bytes, const WireType& type, std
   for (std::size_t i = 0; i < count; ++i) values[i] = static_cast<float>(number_of(bits_at(bytes, type, i), type));
 }
 
+/// Whatever its number is, it can be what the field holds, and the size of the packet does not depend on it.
+bool is_remark(const PacketField& field) {
+  if (field.role == Role::temperature || field.role == Role::supply) return true;
+  if (field.role != Role::frame && field.role != Role::flags && field.role != Role::time) return false;
+  if (field.type.kind != WireType::Kind::whole || field.unit < 0.0 || field.offset < 0.0) return false;
+  return 1e9 * (field.unit * std::ldexp(1.0, static_cast<int>(field.type.bits)) + field.offset) < kMostNanos;
+}
+
 }  // namespace
 
 std::size_t bytes_of(const WireType& type, std::size_t count) noexcept {
@@ -115,58 +123,64 @@ PacketMatch::PacketMatch(const Layout& layout, const PacketLayout::Packet& packe
       names_array_(has_role(packet_, Role::array)),
       has_checksum_(has_role(packet_, Role::checksum)) {
   for (std::size_t k = 0; k < layout.arrays.size(); ++k) shares_.push_back(shares_of(packet_, k));
+  // Times depend on those before them.
+  const bool are_times_remarks =
+      std::ranges::all_of(packet_, [](const auto& field) { return field.role != Role::time || is_remark(field); });
   for (const PacketField& field : packet_) {
     const bool is_checksum = field.role == Role::checksum;
     checksums_.push_back(is_checksum ? StreamChecksum(field.checksum, field.type.bits) : StreamChecksum());
+    are_remarks_.push_back(field.role == Role::time ? are_times_remarks : is_remark(field));
   }
 }
 
-PacketMatch::Outcome PacketMatch::read(std::span<const std::uint8_t> bytes, std::uint64_t position, Piece& piece) {
-  piece = {};
-  piece.array = array_;
-  at_ = count_ = 0;
+void PacketMatch::begin(std::uint64_t position) noexcept {
+  so_far_ = {.position = position};
+  piece_ = {.array = array_};
   numbers_.clear();
-  given_count_.reset();
-  end_.reset();
-  for (std::size_t place = 0; place < packet_.size(); ++place) {
-    const Outcome outcome = read_field(place, bytes, position, piece);
-    if (outcome == Outcome::whole) continue;
-    misfit_ = place;
-    return outcome;
-  }
-  misfit_ = packet_.size();
-  return !end_ || *end_ == at_ ? Outcome::whole : Outcome::foreign;
+  remarks_.clear();
 }
 
-void PacketMatch::read_numbers(std::span<const std::uint8_t> bytes, std::vector<float>& numbers) const {
-  numbers.resize(count_);
+PacketMatch::Outcome PacketMatch::read(std::span<const std::uint8_t> bytes) {
+  for (; so_far_.place < packet_.size(); ++so_far_.place) {
+    const Outcome outcome = read_field(bytes);
+    if (outcome != Outcome::whole) return outcome;
+  }
+  return !so_far_.end || *so_far_.end == so_far_.at ? Outcome::whole : Outcome::foreign;
+}
+
+void PacketMatch::read_content(std::span<const std::uint8_t> bytes, Piece& piece, std::vector<float>& numbers) {
+  for (const auto& [at, field] : remarks_) {
+    static_cast<void>(use(*field, number_of(bits_at(bytes.subspan(at), field->type, 0), field->type)));
+  }
+  piece = piece_;
+  numbers.resize(so_far_.count);
   std::size_t read = 0;
   for (const Numbers& part : numbers_) {
-    layouts::read_numbers(bytes.subspan(part.at), *part.type, part.count, numbers.data() + read);
+    read_numbers(bytes.subspan(part.at), *part.type, part.count, numbers.data() + read);
     read += part.count;
   }
 }
 
-PacketMatch::Outcome PacketMatch::read_field(std::size_t place, std::span<const std::uint8_t> bytes,
-                                             std::uint64_t position, Piece& piece) {
-  const PacketField& field = packet_[place];
-  const std::span<const std::uint8_t> rest = bytes.subspan(at_);
+PacketMatch::Outcome PacketMatch::read_field(std::span<const std::uint8_t> bytes) {
+  const PacketField& field = packet_[so_far_.place];
+  const std::span<const std::uint8_t> rest = bytes.subspan(so_far_.at);
   if (field.role == Role::literal) return read_literal(field, rest);
-  if (field.role == Role::values) return read_values(field, rest, piece);
+  if (field.role == Role::values) return read_values(field, rest);
   const std::size_t size = field.role == Role::skip ? field.count : bytes_of(field.type, 1);
-  if (rest.size() < size) return unfinished(at_ + size);
-  const std::size_t begin = at_;
-  at_ += size;
+  if (rest.size() < size) return unfinished(so_far_.at + size);
+  const std::size_t begin = so_far_.at;
+  so_far_.at += size;
   if (field.role == Role::skip) return Outcome::whole;
+  if (are_remarks_[so_far_.place]) return remarks_.push_back({begin, &field}), Outcome::whole;
   const std::uint64_t bits = bits_at(rest, field.type, 0);
   if (field.role == Role::checksum) {
-    return checksums_[place](bytes.first(begin), position) == bits ? Outcome::whole : Outcome::damaged;
+    return checksums_[so_far_.place](bytes.first(begin), so_far_.position) == bits ? Outcome::whole : Outcome::damaged;
   }
-  return use(field, number_of(bits, field.type), piece) ? Outcome::whole : Outcome::foreign;
+  return use(field, number_of(bits, field.type)) ? Outcome::whole : Outcome::foreign;
 }
 
 PacketMatch::Outcome PacketMatch::unfinished(std::size_t needed) noexcept {
-  needed_ = needed;
+  so_far_.needed = needed;
   return Outcome::unfinished;
 }
 
@@ -175,71 +189,71 @@ PacketMatch::Outcome PacketMatch::read_literal(const PacketField& field, std::sp
   if (!std::equal(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size), field.literal.begin())) {
     return Outcome::foreign;
   }
-  if (size < field.literal.size()) return unfinished(at_ + size + 1);
-  at_ += size;
+  if (size < field.literal.size()) return unfinished(so_far_.at + size + 1);
+  so_far_.at += size;
   return Outcome::whole;
 }
 
-PacketMatch::Outcome PacketMatch::read_values(const PacketField& field, std::span<const std::uint8_t> bytes,
-                                              const Piece& piece) {
-  const std::size_t array = names_array_ ? piece.array : field.array;
+PacketMatch::Outcome PacketMatch::read_values(const PacketField& field, std::span<const std::uint8_t> bytes) {
+  const std::size_t array = names_array_ ? piece_.array : field.array;
   const std::size_t taxels = layout_.arrays[array].shape.taxel_count();
-  const std::size_t count = count_of(field, array, piece);
-  if (count > taxels || (array == array_ && count > taxels - count_)) return Outcome::foreign;
+  const std::size_t count = count_of(field, array);
+  if (count > taxels || (array == array_ && count > taxels - so_far_.count)) return Outcome::foreign;
   const std::size_t size = bytes_of(field.type, count);
-  if (bytes.size() < size) return unfinished(at_ + size);
+  if (bytes.size() < size) return unfinished(so_far_.at + size);
   if (array == array_) {
-    numbers_.push_back({at_, count, &field.type});
-    count_ += count;
+    numbers_.push_back({so_far_.at, count, &field.type});
+    so_far_.count += count;
   }
-  at_ += size;
+  so_far_.at += size;
   return Outcome::whole;
 }
 
 /// As many as the packet says, or as its array has left.
-std::size_t PacketMatch::count_of(const PacketField& field, std::size_t array, const Piece& piece) const noexcept {
+std::size_t PacketMatch::count_of(const PacketField& field, std::size_t array) const noexcept {
   const FrameShape& shape = layout_.arrays[array].shape;
-  if (given_count_) return static_cast<std::size_t>(std::min<std::uint64_t>(*given_count_, SIZE_MAX / 128));
+  if (so_far_.given_count)
+    return static_cast<std::size_t>(std::min<std::uint64_t>(*so_far_.given_count, SIZE_MAX / 128));
   if (field.count > 0) return field.count;
-  if (piece.col) return 1;
-  if (piece.row) return shape.cols / shares_[field.array];
-  const std::size_t first = std::min<std::uint64_t>(piece.first.value_or(0), shape.taxel_count());
+  if (piece_.col) return 1;
+  if (piece_.row) return shape.cols / shares_[field.array];
+  const std::size_t first = std::min<std::uint64_t>(piece_.first.value_or(0), shape.taxel_count());
   return (shape.taxel_count() - first) / shares_[field.array];
 }
 
 /// False where the number cannot be what the field holds.
-bool PacketMatch::use(const PacketField& field, double number, Piece& piece) {
+bool PacketMatch::use(const PacketField& field, double number) {
   const double value = field.unit * number + field.offset;
   if (field.role == Role::temperature) {
-    piece.add_temperature(value);
+    piece_.add_temperature(value);
     return true;
   }
   if (field.role == Role::supply) {
-    if (std::isfinite(value) && value > 0.0) piece.supply_v = value;
+    if (std::isfinite(value) && value > 0.0) piece_.supply_v = value;
     return true;
   }
   if (field.role == Role::time) {
     // In this order, whole units of up to 100 days are exact.
     const double nanos = std::round(1e9 * field.unit * number + 1e9 * field.offset);
     if (!(nanos >= 0.0 && nanos < kMostNanos)) return false;
-    piece.set_time(static_cast<std::uint64_t>(nanos), field.unit);
+    piece_.set_time(static_cast<std::uint64_t>(nanos), field.unit);
     return true;
   }
   if (!(value >= 0.0 && value < kMostNanos)) return false;
   const auto whole = static_cast<std::uint64_t>(value);
   switch (field.role) {
-    case Role::row: piece.row = whole; break;
-    case Role::col: piece.col = whole; break;
-    case Role::first: piece.first = whole; break;
-    case Role::frame: piece.frame = whole; break;
-    case Role::flags: piece.flags = whole; break;
-    case Role::count: given_count_ = whole; break;
-    case Role::length: end_ = at_ + whole; break;
+    case Role::row: piece_.row = whole; break;
+    case Role::col: piece_.col = whole; break;
+    case Role::first: piece_.first = whole; break;
+    case Role::frame: piece_.frame = whole; break;
+    case Role::flags: piece_.flags = whole; break;
+    case Role::count: so_far_.given_count = whole; break;
+    case Role::length: so_far_.end = so_far_.at + whole; break;
     case Role::array: {
       const auto found = std::find_if(layout_.arrays.begin(), layout_.arrays.end(),
                                       [&](const LayoutArray& array) { return array.id == whole; });
       if (found == layout_.arrays.end()) return false;
-      piece.array = static_cast<std::size_t>(found - layout_.arrays.begin());
+      piece_.array = static_cast<std::size_t>(found - layout_.arrays.begin());
       break;
     }
     default: break;
@@ -248,8 +262,8 @@ bool PacketMatch::use(const PacketField& field, double number, Piece& piece) {
 }
 
 std::string PacketMatch::misfit() const {
-  if (misfit_ == packet_.size()) return "the length that it says is not its own";
-  return "layout.packet[" + std::to_string(misfit_) + "] does not fit";
+  if (so_far_.place == packet_.size()) return "the length that it says is not its own";
+  return "layout.packet[" + std::to_string(so_far_.place) + "] does not fit";
 }
 
 }  // namespace dermis::bytes::layouts

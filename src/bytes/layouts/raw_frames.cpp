@@ -33,9 +33,10 @@ RawFrames::RawFrames(std::shared_ptr<const Layout> layout, std::size_t array)
 
 Verdict RawFrames::judge(std::span<const std::uint8_t> bytes, bool /*ended*/, RawFrame& frame) {
   if (bytes.size() < size_) return is_idle() ? Verdict{Verdict::Kind::noise, bytes.size()} : Verdict{};
+  match_.begin(position());
+  if (match_.read(bytes) != PacketMatch::Outcome::whole) return {Verdict::Kind::damaged, size_};
   Piece piece;
-  if (match_.read(bytes, position(), piece) != PacketMatch::Outcome::whole) return {Verdict::Kind::damaged, size_};
-  match_.read_numbers(bytes, frame.counts);
+  match_.read_content(bytes, piece, frame.counts);
   fields_.scale(frame.counts);
   is_sending_ = true;
   return {fields_.write(piece, frame) ? Verdict::Kind::frame : Verdict::Kind::damaged, size_};

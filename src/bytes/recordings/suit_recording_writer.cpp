@@ -157,7 +157,7 @@ void SuitRecordingWriter::Implementation::seal_chunk() {
 }
 
 void SuitRecordingWriter::Implementation::write_chunks(const std::stop_token& stop) {
-  raise_thread_priority(ThreadPriority::recording);
+  raise_thread_priority();
   std::unique_lock lock(mutex_);
   while (status_ && !stop.stop_requested()) {
     const auto has_work = [this] { return waiting_chunks_ > 0; };

@@ -7,9 +7,8 @@
 
 namespace dermis {
 
-void raise_thread_priority(ThreadPriority priority) noexcept {
-  const int nice = priority == ThreadPriority::frames ? -10 : -5;
-  static_cast<void>(::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), nice));
+void raise_thread_priority() noexcept {
+  static_cast<void>(::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), -10));
 }
 
 }  // namespace dermis

@@ -80,7 +80,7 @@ CanBus::~CanBus() {
 }
 
 void CanBus::run() {
-  raise_thread_priority(ThreadPriority::frames);
+  raise_thread_priority();
   while (!stop_) {
     if (socket_ < 0) come_back();
     pollfd ready{socket_, POLLIN, 0};

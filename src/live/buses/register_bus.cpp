@@ -70,7 +70,7 @@ RegisterBus::~RegisterBus() {
 
 /// All arrays that somebody reads, once a round.
 void RegisterBus::run() {
-  raise_thread_priority(ThreadPriority::frames);
+  raise_thread_priority();
   std::vector<std::size_t> planned;
   std::vector<RegisterRead> reads;
   Nanos due = steady_now();

@@ -44,7 +44,7 @@ void WorkLoop::stop() {
 }
 
 void WorkLoop::run() {
-  raise_thread_priority(ThreadPriority::frames);
+  raise_thread_priority();
   pause_ = std::min(static_cast<std::int64_t>(members_.size()) * kPauseForArray, kLongestPause);
   bool has_work = false;
   while (!is_stopping() && has_any()) {

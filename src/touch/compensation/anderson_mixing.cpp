@@ -3,7 +3,8 @@
 #include "touch/compensation/anderson_mixing.hpp"
 
 #include <algorithm>
-#include <numeric>
+
+#include "dermis/touch/frames/processor_clones.hpp"
 
 namespace dermis::touch::compensation {
 namespace {
@@ -11,11 +12,15 @@ namespace {
 constexpr double kPlainShare = 0.5;   // of the residual that the span does not explain, in a step
 constexpr double kDependent = 1e-14;  // a change with less of its square outside of the span of newer ones adds nothing
 
-double dot(const double* a, const double* b, std::size_t size) {
-  return std::inner_product(a, a + size, b, 0.0);
+DERMIS_PROCESSOR_CLONES double dot(const double* a, const double* b, std::size_t size) {
+  double sum = 0.0;
+#pragma omp simd reduction(+ : sum)
+  for (std::size_t k = 0; k < size; ++k) sum += a[k] * b[k];
+  return sum;
 }
 
-void subtract(double factor, const double* from, double* to, std::size_t size) {
+DERMIS_PROCESSOR_CLONES void subtract(double factor, const double* from, double* to, std::size_t size) {
+#pragma omp simd
   for (std::size_t k = 0; k < size; ++k) to[k] -= factor * from[k];
 }
 

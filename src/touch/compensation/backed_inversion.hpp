@@ -29,9 +29,9 @@ class BackedInversion final : public CrosstalkInversion {
     std::copy(kept_.begin(), kept_.end(), siemens.begin());
     return thorough_->invert(ratio, siemens);
   }
-  bool start_frame() noexcept override {
-    const bool is_quick = quick_->start_frame();
-    return thorough_->start_frame() && is_quick;
+  bool start_frame(Nanos time) noexcept override {
+    const bool is_quick = quick_->start_frame(time);
+    return thorough_->start_frame(time) && is_quick;
   }
   void start_attempt(double share) noexcept override {
     quick_->start_attempt(share);

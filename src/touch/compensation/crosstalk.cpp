@@ -16,6 +16,7 @@
 #include "touch/compensation/sagging_supply.hpp"
 #include "touch/compensation/shared_errors.hpp"
 #include "touch/compensation/spikes.hpp"
+#include "touch/compensation/step_budget.hpp"
 #include "touch/compensation/supply_error.hpp"
 #include "touch/compensation/transposed.hpp"
 #include "touch/compensation/virtual_ground.hpp"
@@ -28,7 +29,6 @@ constexpr double kToleranceCounts = 0.01;
 constexpr int kMostAttempts = 3;
 constexpr double kFirstShare = 0.6;             // of the work of a frame: of its first attempt
 constexpr int kTrial = 64;                      // of so many frames one begins with all readings again
-constexpr double kMostDoubt = 0.01;             // residual of a frame that is cut short and has forces, as a ratio
 constexpr double kGoodEnoughSigmas = 0.3;       // of a reading: where the steps of a frame are used up
 constexpr double kFaultToleranceCounts = 0.05;  // around an inversion that is right to kToleranceCounts
 
@@ -249,7 +249,7 @@ InversionResult Compensator::invert_possible(const ConditionedFrame& conditioned
     spikes_->forget();
   }
   InversionResult result;
-  const bool is_plenty = inversion_->start_frame();
+  const bool is_plenty = inversion_->start_frame(conditioned.time);
   const bool begins_anew = is_plenty || ++frames_begun_ % kTrial == 0;
   int number = 0;
   for (; number < kMostAttempts && !result.solved; ++number) {
@@ -260,7 +260,7 @@ InversionResult Compensator::invert_possible(const ConditionedFrame& conditioned
     if (number > solving_attempt_ && !is_plenty) break;
     result = attempt(conditioned, conductance, number == 0);
   }
-  solving_attempt_ = result.solved ? number - 1 : 0;
+  solving_attempt_ = result.solved ? number - 1 : (solving_attempt_ + 1) % kMostAttempts;
   if (std::all_of(conductance.taxels.begin(), conductance.taxels.end(), is_invalid)) result.solved = false;
   return result;
 }
@@ -274,7 +274,7 @@ InversionResult Compensator::attempt(const ConditionedFrame& conditioned, Conduc
     inversion_->start_attempt(kFirstShare);
     result = invert(conditioned, conductance);
   }
-  result.solved = result.solved || (result.cut_short && result.residual_ratio <= kMostDoubt);
+  result.solved = result.solved || (result.cut_short && result.residual_ratio <= kMostLeft);
   return result;
 }
 

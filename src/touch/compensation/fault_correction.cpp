@@ -41,6 +41,12 @@ void FaultInversion::solve_circuits(std::span<const double> siemens) noexcept {
 /// T' from both circuits at the present conductances; how far it is from the T' that led to them. The step is
 /// Anderson's of depth 1: along the last change of T' as far as makes the difference smallest, were it linear.
 double FaultInversion::correct(bool first) noexcept {
+  if (!crossings_.are_corrected) {  // their readings stay what they are
+    for (const std::size_t taxel : crossings_.taxels) {
+      correction_.healthy_ratio[taxel] = equivalent_[taxel];
+      correction_.faulty_ratio[taxel] = measured_[taxel];
+    }
+  }
   double change = 0.0;
   double sum = 0.0;  // not a number where any difference is none; max() would drop it
   double along = 0.0;

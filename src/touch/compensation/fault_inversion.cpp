@@ -14,10 +14,12 @@
 namespace dermis::touch::compensation {
 namespace {
 
-constexpr double kMostRounds = 12.0;     // of a frame
+constexpr double kMostRounds = 12.0;     // of a frame,
+constexpr double kRounds = 3.0;          // and of each on average
 constexpr std::size_t kMixingDepth = 8;  // likewise
 constexpr double kLeastChange = 2e-5;    // by an estimate, of the voltages of others
 constexpr int kEstimateRounds = 3;       // the estimate from a taxel's neighbours hardly depends on it
+constexpr double kEstimateWork = 6.0;    // to estimate a line of taxels, in rounds of a correction
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();  // a reading that is not used
 constexpr double kShortSiemens = 20.0;                                 // of a shorted crossing that is kept
 constexpr double kOpenSiemens = 1e-9;                                  // of a taxel that is counted elsewhere
@@ -52,7 +54,7 @@ FaultInversion::FaultInversion(const ArrayDescription& array, double tolerance_r
       measured_(array.taxel_count()),
       equivalent_(array.taxel_count()),
       lines_(array.rows, array.cols),
-      budget_(kMostRounds),
+      budget_(kMostRounds, kRounds),
       correction_(array.taxel_count()) {
   if (film_.any()) mixing_.emplace(array.taxel_count(), kMixingDepth);
   if (is_modelled(array)) circuits_ = Circuits{LumpedCircuit(array), LumpedCircuit(array)};
@@ -250,10 +252,10 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
   std::copy(measured_.begin(), measured_.end(), equivalent_.begin());
   if (!lines_are_faulty_ || lines_are_solved_) return keep_estimates(healthy, siemens);
   start_circuits();
-  budget_.start_frame();
   keep_crossings(siemens);
   InversionResult result = healthy.invert(equivalent_, siemens);
   if (!circuits_) return result;
+  result.residual_ratio = std::numeric_limits<double>::infinity();  // of the circuit with faults
   for (bool is_first = true; budget_.take(1.0); is_first = false) {
     missing_.estimate(siemens);
     for (const std::size_t taxel : crossings_.in_first) siemens[taxel] = kOpenSiemens;
@@ -261,16 +263,17 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
     result.residual_ratio = misfit(siemens);
     if (correct(is_first) <= tolerance_) {
       keep_shift();
-      budget_.learn();
       return result;
     }
     keep_crossings(siemens);
     const InversionResult inverted = healthy.invert(equivalent_, siemens);
     result.solved = inverted.solved;
-    if (inverted.cut_short) break;
+    if (!inverted.cut_short) continue;
+    result.residual_ratio += inverted.residual_ratio;
+    break;
   }
   correction_.has_shift = false;
-  if (result.solved && result.residual_ratio <= kMostLeft) keep_shift();
+  if (result.residual_ratio <= kMostLeft) keep_shift();
   return {false, result.residual_ratio, true};
 }
 
@@ -279,17 +282,24 @@ InversionResult FaultInversion::keep_estimates(CrosstalkInversion& healthy, std:
   const bool has_start = start_missing(healthy, siemens);
   keep_crossings(siemens);
   InversionResult result = healthy.invert(equivalent_, siemens);
+  double missing_lines = 0.0;
   for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) {
-    if (missing_.is_missing(taxel)) equivalent_[taxel] = kNothing;
+    if (!missing_.is_missing(taxel)) continue;
+    equivalent_[taxel] = kNothing;
+    missing_lines += 1.0 / static_cast<double>(array_.cols);
   }
-  const bool are_fresh = has_start && missing_.are_fresh(measured_);
-  for (int round = are_fresh ? kEstimateRounds : 1; round < kEstimateRounds && !result.cut_short; ++round) {
+  const double work = kEstimateWork * std::min(missing_lines, 1.0);
+  bool are_judged = has_start && missing_.are_fresh(measured_);
+  for (int round = are_judged ? kEstimateRounds : 1; round < kEstimateRounds && !result.cut_short; ++round) {
+    if (!budget_.take(work)) break;
     if (round == 1) missing_.note_readings(measured_);
+    are_judged = true;
     if (missing_.improve(siemens, !lines_are_solved_) <= kLeastChange && has_start) break;
     keep_crossings(siemens);
     result = healthy.invert(equivalent_, siemens);
   }
-  missing_.keep_estimates(siemens, result.solved);
+  if (!are_judged) missing_.doubt_estimates();
+  missing_.keep_estimates(siemens, result.solved || (result.cut_short && result.residual_ratio <= kMostLeft));
   return result;
 }
 

@@ -56,7 +56,10 @@ class FaultInversion {
   [[nodiscard]] bool concerns(std::span<const TaxelStatus> taxels) noexcept;
 
   /// Frames that follow each other in time give the last values of taxels.
-  void start_frame(Nanos time) noexcept { missing_.start_frame(time); }
+  void start_frame(Nanos time) noexcept {
+    missing_.start_frame(time);
+    budget_.start_frame(time);
+  }
 
   /// Adds to the standard deviations these of taxels in doubt, and what the others of their lines owe to them.
   void add_doubt(std::span<const float> doubt_siemens, std::span<const double> siemens,

@@ -16,8 +16,11 @@
 namespace dermis::touch::compensation {
 namespace {
 
-constexpr double kMostSteps = 600.0;  // of a frame where steps are bounded
-constexpr double kMixedWork = 10.0;   // of a mixed step beside a plain one
+constexpr double kMostSteps = 300.0;   // of a frame where steps are bounded
+constexpr double kWorkOfLines = 96.0;  // over the lines whose currents a step sums up: what a frame may take on average
+constexpr double kStartWork = 1.0;     // before the first step,
+constexpr double kKeptWork = 4.0;      // and for a line of kept taxels, with what they take elsewhere
+constexpr double kMixedWork = 5.0;     // of a mixed step beside a plain one
 constexpr int kPlainSteps = 24;
 constexpr double kShrinks = 0.95;  // of the certificate in a step; what shrinks less is left to the mixing
 constexpr int kFilmSteps = 4;      // under a film, whose first change may lead uphill
@@ -43,6 +46,8 @@ GroundedRows::Sources::Sources(std::size_t rows, std::size_t stride)
     : siemens(stride),
       column_ratio(stride),
       last_ratio(stride),
+      change(stride),
+      mixing(stride, kMixingDepth),
       column_return(stride),
       column_sum(stride),
       line_ratio(rows) {}
@@ -52,7 +57,7 @@ GroundedRows::Mixing::Mixing(std::size_t size)
 
 GroundedRows::GroundedRows(const ArrayDescription& array, double tolerance_ratio, const InversionOptions& options)
     : tolerance_(tolerance_ratio),
-      budget_(options.is_bounded ? kMostSteps : 0.0),
+      budget_(options.is_bounded ? kMostSteps : 0.0, kWorkOfLines / static_cast<double>(array.cols)),
       state_(array.rows, array.cols, array.readout.idle_columns),
       reading_siemens_(state_.stride),
       offset_siemens_(state_.stride),
@@ -98,6 +103,8 @@ double GroundedRows::siemens_per_ratio() const noexcept {
 InversionResult GroundedRows::invert(std::span<const double> ratio, std::span<double> siemens) noexcept {
   std::swap(state_.estimate, last_estimate_);
   load(ratio, siemens);
+  const double kept_lines = static_cast<double>(state_.kept.size()) / static_cast<double>(state_.cols);
+  budget_.spend(kStartWork + kKeptWork * std::min(kept_lines, 1.0));
   estimate_from_readings(state_);
   if (state_.film) state_.film->precision = first_precision_;
   if (has_last_) {
@@ -110,7 +117,7 @@ InversionResult GroundedRows::invert(std::span<const double> ratio, std::span<do
   if (!(certificate <= tolerance_)) certificate = iterate_with_mixing(certificate, 0);
   if (!(certificate <= std::max(tolerance_, kRounded))) certificate = iterate_with_mixing(certificate, kDampedSteps);
   const bool solved = certificate <= std::max(tolerance_, kRounded);
-  if (solved && (is_broken_ || state_.kept.empty())) budget_.learn();
+  if (solved && !is_broken_ && state_.kept.empty()) budget_.learn();
   is_unfinished_ = !solved && budget_.is_used_up() && certificate <= kMostLeft;
   if (!solved && !is_unfinished_) start_anew();
   has_last_ = solved || is_unfinished_;
@@ -175,9 +182,8 @@ void GroundedRows::keep_missing(std::span<const double> ratio, std::span<const d
 }
 
 double GroundedRows::certify(Precision precision) noexcept {
-  const bool settled = sources_.ratio.empty() || follow_sources();
-  const double certificate = assess(state_, precision);
-  return settled ? certificate : std::numeric_limits<double>::infinity();
+  const double left = sources_.ratio.empty() ? 0.0 : follow_sources();
+  return assess(state_, precision) + left;
 }
 
 /// Certificate of the iterate that it ends with.

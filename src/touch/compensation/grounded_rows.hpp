@@ -63,8 +63,8 @@ class GroundedRows final : public CrosstalkInversion {
   [[nodiscard]] bool set_shorted(std::span<const std::size_t> taxels) noexcept override;
   [[nodiscard]] bool set_broken(std::span<const LineFault> faults) noexcept override;
   void hold_film(const FilmConductances& film) noexcept override;
-  bool start_frame() noexcept override {
-    budget_.start_frame();
+  bool start_frame(Nanos time) noexcept override {
+    budget_.start_frame(time);
     return !budget_.is_scarce();
   }
   void start_attempt(double share) noexcept override { budget_.start_attempt(share); }
@@ -77,10 +77,12 @@ class GroundedRows final : public CrosstalkInversion {
   struct Sources {
     Sources(std::size_t rows, std::size_t stride);
 
-    std::vector<double> ratio;          // e over the supply; empty: none
-    std::vector<double> siemens;        // what e drives into the array, over the supply
-    std::vector<double> column_ratio;   // column voltages then, over the supply
-    std::vector<double> last_ratio;     // the same of the pass before
+    std::vector<double> ratio;         // e over the supply; empty: none
+    std::vector<double> siemens;       // what e drives into the array, over the supply
+    std::vector<double> column_ratio;  // column voltages then, over the supply
+    std::vector<double> last_ratio;    // the same of the pass before
+    std::vector<double> change;        // by a pass
+    AndersonMixing mixing;
     std::vector<double> column_return;  // currents from the rows into the columns then
     std::vector<double> column_sum;     // G^T 1
     std::vector<double> line_ratio;     // row voltages, over the supply [rows]
@@ -124,7 +126,7 @@ class GroundedRows final : public CrosstalkInversion {
   void move_kept(Line line, const JoinedLines::Pair& pair) noexcept;
   void start_anew() noexcept;
   [[nodiscard]] double certify(Precision precision) noexcept;
-  [[nodiscard]] bool follow_sources() noexcept;
+  [[nodiscard]] double follow_sources() noexcept;
   void find_row_currents() noexcept;
   void find_column_ratios() noexcept;
   [[nodiscard]] double current_into_film(std::size_t col) const noexcept;

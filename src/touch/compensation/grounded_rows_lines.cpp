@@ -49,7 +49,6 @@ bool GroundedRows::add_shorted(std::size_t row, std::size_t col) noexcept {
 bool GroundedRows::set_broken(std::span<const LineFault> faults) noexcept {
   if (faults.empty() && !is_broken_) return true;
   start_anew();
-  budget_.forget();
   mend_lines();
   const auto breaks = [&](const LineFault& fault) { return break_line(fault); };
   const auto joins = [&](const LineFault& fault) { return join_lines(fault); };

@@ -16,28 +16,34 @@ namespace dermis::touch::compensation {
 namespace {
 
 constexpr double kSourceShare = 1e-3;  // of the tolerance, to which the sources' column voltages are found
-constexpr int kSourcePasses = 200;
+constexpr int kPlainPasses = 6;
+constexpr int kSourcePasses = 60;
 constexpr double kSourceWork = 0.2;  // of a pass beside a step without mixing
 
 }  // namespace
 
 /// Puts into y what the sources drive into the array at the present G, all rows grounded. Eliminating the rows as in
-/// (b) leaves v = diag(w) (e + RL G^T diag(Rd / a) G v) for the columns, a contraction. Whether it settled.
-bool GroundedRows::follow_sources() noexcept {
+/// (b) leaves v = diag(w) (e + RL G^T diag(Rd / a) G v) for the columns, a contraction. Where that is a weak one,
+/// Anderson's mixing speeds it up. Returns the change of v that is left where the work is used up; infinite where it
+/// does not settle.
+double GroundedRows::follow_sources() noexcept {
   int pass = 0;
   double change = std::numeric_limits<double>::infinity();
-  double last_change = change;
+  sources_.mixing.forget();
   do {
-    last_change = change;
     change = 0.0;
     find_row_currents();
     std::swap(sources_.last_ratio, sources_.column_ratio);
     find_column_ratios();
     for (std::size_t col = 0; col < state_.cols; ++col) {
-      change = std::max(change, std::abs(sources_.column_ratio[col] - sources_.last_ratio[col]));
+      sources_.change[col] = sources_.column_ratio[col] - sources_.last_ratio[col];
+      change = std::max(change, std::abs(sources_.change[col]));
     }
-  } while (change > kSourceShare * tolerance_ && change < last_change && ++pass < kSourcePasses &&
-           budget_.take(kSourceWork));
+    if (pass >= kPlainPasses) {
+      sources_.column_ratio = sources_.last_ratio;
+      sources_.mixing.advance(sources_.column_ratio, sources_.change);
+    }
+  } while (change > kSourceShare * tolerance_ && ++pass < kSourcePasses && budget_.take(kSourceWork));
   find_row_currents();
   for (std::size_t col = 0; col < state_.cols; ++col) {
     const double current =
@@ -51,7 +57,8 @@ bool GroundedRows::follow_sources() noexcept {
     }
     sources_.siemens[col] = current;
   }
-  return pass < kSourcePasses && !budget_.is_used_up();
+  if (change <= kSourceShare * tolerance_) return 0.0;
+  return pass < kSourcePasses ? change : std::numeric_limits<double>::infinity();
 }
 
 /// G^T diag(Rd / a) G v and G^T 1.

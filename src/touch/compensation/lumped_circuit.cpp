@@ -6,6 +6,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "dermis/touch/frames/processor_clones.hpp"
+
 namespace dermis::touch::compensation {
 namespace {
 
@@ -168,23 +170,26 @@ void LumpedCircuit::add_probes(std::size_t first) noexcept {
   }
 }
 
-void LumpedCircuit::factorise() noexcept {
+DERMIS_PROCESSOR_CLONES void LumpedCircuit::factorise() noexcept {
   for (std::size_t i = 0; i < nodes_; ++i) {
     double* const row = &matrix_[i * nodes_];
     for (std::size_t j = 0; j <= i; ++j) {
       const double* const above = &matrix_[j * nodes_];
-      double sum = row[j];
-      for (std::size_t k = 0; k < j; ++k) sum -= row[k] * above[k];
+      double before = 0.0;
+#pragma omp simd reduction(+ : before)
+      for (std::size_t k = 0; k < j; ++k) before += row[k] * above[k];
+      const double sum = row[j] - before;
       row[j] = i == j ? std::sqrt(std::max(sum, kLeakSiemens)) : sum / above[j];
     }
   }
 }
 
-void LumpedCircuit::substitute(std::size_t columns) noexcept {
+DERMIS_PROCESSOR_CLONES void LumpedCircuit::substitute(std::size_t columns) noexcept {
   const auto subtract = [&](std::size_t to, std::size_t from, double factor) {
     if (factor == 0.0) return;
     double* const target = &right_[to * right_columns_];
     const double* const source = &right_[from * right_columns_];
+#pragma omp simd
     for (std::size_t column = 0; column < columns; ++column) target[column] -= factor * source[column];
   };
   const auto divide = [&](std::size_t node) {

@@ -27,7 +27,7 @@ constexpr double kMostRise = 1.0;          // of the logarithm above both neighb
 constexpr double kUnloadedScatter = 0.02;  // at least, of the middle of a line
 constexpr double kShiftByPressed = 1.0;    // of that middle where a third is pressed, in median deviations
 constexpr std::size_t kFewest = 4;         // taxels that are evidence
-constexpr std::size_t kMostCompared = 64;  // likewise: of more, some spread over them tell as much
+constexpr std::size_t kMostCompared = 32;  // likewise: of more, some spread over them tell as much
 constexpr int kSteps = 8;
 constexpr double kLeastChange = 1e-4;  // of a logarithm
 
@@ -99,6 +99,7 @@ MissingTaxels::MissingTaxels(const ArrayDescription& array, const ReferenceCondu
     const double ohm = is_driven ? array.readout.drive_ohm[line] : sensed_line(array.readout, line).rho;
     load_siemens_.push_back(ohm > 0.0 ? 1.0 / ohm : 0.0);
   }
+  lacking_.resize(load_siemens_.size());
 }
 
 DERMIS_PROCESSOR_CLONES bool MissingTaxels::mark(std::span<const TaxelStatus> taxels,
@@ -173,6 +174,14 @@ void MissingTaxels::note_readings(std::span<const double> ratio) noexcept {
   std::copy(ratio.begin(), ratio.end(), estimated_of_.begin());
 }
 
+void MissingTaxels::doubt_estimates() noexcept {
+  for (std::size_t taxel = 0; taxel < missing_.size(); ++taxel) {
+    if (!is_missing(taxel)) continue;
+    const double before = estimated_[taxel] > 0.0 ? doubt_[taxel] : kDoubtOfEstimate;
+    doubt_[taxel] = held(taxel) ? kDoubtOfHeld : std::min(std::hypot(before, kDoubtOfHeld), kDoubtOfEstimate);
+  }
+}
+
 void MissingTaxels::keep_estimates(std::span<const double> siemens, bool are_solved) noexcept {
   for (std::size_t taxel = 0; taxel < missing_.size(); ++taxel) {
     estimated_[taxel] = is_missing(taxel) && are_solved ? siemens[taxel] : 0.0;
@@ -226,22 +235,37 @@ double MissingTaxels::improve(std::span<double> siemens, bool lines_tell) noexce
 
 /// By the neighbours, and by the others of the line.
 void MissingTaxels::weigh(std::span<double> siemens) noexcept {
-  if (sharing_axis_ && !unloaded_siemens_.empty()) find_rises(siemens);
+  const bool lines_tell = sharing_axis_ && !unloaded_siemens_.empty();
+  if (lines_tell) find_lacking(siemens);
   estimate(siemens);
-  std::optional<Middle> whole;
   for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
     if (!is_missing(taxel)) continue;
     const std::optional<double> before = held(taxel);
     siemens[taxel] = before.value_or(siemens[taxel]);
     doubt_[taxel] = before ? kDoubtOfHeld : kDoubtOfEstimate;
-    if (!sharing_axis_ || unloaded_siemens_.empty()) continue;
+    if (!lines_tell) continue;
     const std::size_t line = line_of(array_, *sharing_axis_, taxel);
-    if (!whole) whole = change_of_unloaded(std::nullopt, 0);
-    const std::optional<Middle> of_line = change_of_unloaded(sharing_axis_, line);
-    if (!whole || !of_line || load_siemens_[line] == 0.0) continue;
-    const Middle lacking{of_line->value - whole->value, std::hypot(of_line->sigma, whole->sigma)};
-    improve(taxel, taken_[taxel], lacking, load_siemens_[line], siemens);
+    if (lacking_[line]) improve(taxel, taken_[taxel], *lacking_[line], load_siemens_[line], siemens);
   }
+}
+
+/// On each line with missing taxels.
+void MissingTaxels::find_lacking(std::span<const double> siemens) noexcept {
+  find_rises(siemens);
+  std::fill(lacking_.begin(), lacking_.end(), std::nullopt);
+  const std::optional<Middle> whole = change_of_unloaded(std::nullopt, 0);
+  for (std::size_t line = 0; whole && line < lacking_.size(); ++line) {
+    if (load_siemens_[line] == 0.0 || !any_is_missing(line)) continue;
+    const std::optional<Middle> of_line = change_of_unloaded(sharing_axis_, line);
+    if (of_line) lacking_[line] = {of_line->value - whole->value, std::hypot(of_line->sigma, whole->sigma)};
+  }
+}
+
+bool MissingTaxels::any_is_missing(std::size_t line) const noexcept {
+  for (std::size_t k = 0; k < line_length(array_, *sharing_axis_); ++k) {
+    if (is_missing(taxel_on_line(array_, *sharing_axis_, line, k))) return true;
+  }
+  return false;
 }
 
 DERMIS_PROCESSOR_CLONES void MissingTaxels::find_rises(std::span<const double> siemens) noexcept {

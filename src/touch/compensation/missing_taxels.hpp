@@ -43,6 +43,9 @@ class MissingTaxels {
   /// nothing.
   double improve(std::span<double> siemens, bool lines_tell = true) noexcept;
 
+  /// There is no time for that: the estimates are those of the last frame.
+  void doubt_estimates() noexcept;
+
   /// At these readings the estimates were made.
   void note_readings(std::span<const double> ratio) noexcept;
 
@@ -76,6 +79,8 @@ class MissingTaxels {
   [[nodiscard]] std::optional<double> logarithm(std::span<const double> values, std::size_t taxel,
                                                 double floor) const noexcept;
   [[nodiscard]] std::optional<Middle> change_of_unloaded(std::optional<Axis> axis, std::size_t line) noexcept;
+  void find_lacking(std::span<const double> siemens) noexcept;
+  [[nodiscard]] bool any_is_missing(std::size_t line) const noexcept;
   void weigh(std::span<double> siemens) noexcept;
   void find_rises(std::span<const double> siemens) noexcept;
   void improve(std::size_t taxel, double taken, const Middle& lacking, double load_siemens,
@@ -95,11 +100,12 @@ class MissingTaxels {
   std::vector<double> estimated_;         // in the last frame; 0: it was not [taxels]
   Nanos last_time_{};
   std::optional<Nanos> estimated_at_;
-  std::vector<double> estimated_of_;  // readings [taxels]
-  std::vector<double> doubt_;         // [taxels]
-  std::vector<double> taken_;         // [taxels]
-  std::vector<double> rises_;         // over the unloaded conductances; 0 where it tells nothing [taxels]
-  std::vector<double> sorted_;        // [taxels]
+  std::vector<double> estimated_of_;            // readings [taxels]
+  std::vector<double> doubt_;                   // [taxels]
+  std::vector<double> taken_;                   // [taxels]
+  std::vector<double> rises_;                   // over the unloaded conductances; 0 where it tells nothing [taxels]
+  std::vector<double> sorted_;                  // [taxels]
+  std::vector<std::optional<Middle>> lacking_;  // of the lines of missing taxels [lines]
 };
 
 }  // namespace dermis::touch::compensation

@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kMaxSteps = 80;
 constexpr double kMostWork = 320.0;              // of a frame where steps are bounded: solutions of the circuit
+constexpr double kWork = 5.0;                    // of each on average
 constexpr double kHardFrames = 64.0;             // that may follow each other, as presses of one frame do
 constexpr double kFilmWork = 4.0;                // times as much under a film
 constexpr double kLongestStep = 2.0;             // of x: a factor of e^2 where x is a logarithm
@@ -41,7 +42,8 @@ NewtonInversion::NewtonInversion(const ArrayDescription& array, CircuitModel mod
       driver_errors_(array, options.counts_driver_errors),
       noise_(make_newton_noise(circuit_, equations_, driver_errors_, options)),
       tolerance_(tolerance_ratio),
-      budget_(options.is_bounded ? (circuit_.has_film() ? kFilmWork : 1.0) * kMostWork : 0.0, kHardFrames),
+      budget_(options.is_bounded ? (circuit_.has_film() ? kFilmWork : 1.0) * kMostWork : 0.0,
+              (circuit_.has_film() ? kFilmWork : 1.0) * kWork, kHardFrames),
       most_steps_(options.most_steps.value_or(std::numeric_limits<int>::max())),
       last_x_(array.taxel_count()),
       change_(array.taxel_count()),

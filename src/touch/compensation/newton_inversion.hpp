@@ -43,8 +43,8 @@ class NewtonInversion final : public CrosstalkInversion {
                   const InversionOptions& options);
 
   [[nodiscard]] InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept override;
-  bool start_frame() noexcept override {
-    budget_.start_frame();
+  bool start_frame(Nanos time) noexcept override {
+    budget_.start_frame(time);
     return !budget_.is_scarce();
   }
   void start_attempt(double share) noexcept override { budget_.start_attempt(share); }

@@ -200,8 +200,7 @@ void PossibleReadings::judge(std::span<const double> ratio, double sigma_ratio, 
   for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
     if (is_clean(driven, ratio, verdicts)) continue;
     bad_lines += judge_driven(driven, ratio, sigma_ratio, verdicts) > most_bad(heads_.size()) ? 1 : 0;
-  }
-  if (2 * bad_lines > drive_ohm_.size()) {
+    if (2 * bad_lines <= drive_ohm_.size()) continue;
     std::fill(verdicts.begin(), verdicts.end(), ReadingVerdict::unknown);
     return;
   }

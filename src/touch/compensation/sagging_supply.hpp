@@ -27,7 +27,7 @@ class SaggingSupply final : public CrosstalkInversion {
 
   [[nodiscard]] InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept override;
   void hold_film(const FilmConductances& film) noexcept override;
-  bool start_frame() noexcept override { return ideal_->start_frame(); }
+  bool start_frame(Nanos time) noexcept override { return ideal_->start_frame(time); }
   void start_attempt(double share) noexcept override { ideal_->start_attempt(share); }
   void forget() noexcept override;
   void propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept override;

@@ -59,7 +59,7 @@ class Transposed final : public CrosstalkInversion {
     film_.between_cols = film.between_rows;
     inversion_->hold_film(film_);
   }
-  bool start_frame() noexcept override { return inversion_->start_frame(); }
+  bool start_frame(Nanos time) noexcept override { return inversion_->start_frame(time); }
   void start_attempt(double share) noexcept override { inversion_->start_attempt(share); }
   void forget() noexcept override { inversion_->forget(); }
   void propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept override {

@@ -428,6 +428,22 @@ TEST(DeviceSource, reads_files_to_their_end) {
   expect_end(*source);
 }
 
+TEST(DeviceSource, a_damaged_part_of_a_file_is_passed_over_at_any_pace) {
+  const std::vector<RawFrame> frames = random_frames(2, 9);
+  std::vector<std::uint8_t> bytes = encoded({frames[0]});
+  bytes.resize(140'000);
+  const std::vector<std::uint8_t> behind = encoded({frames[1]});
+  bytes.insert(bytes.end(), behind.begin(), behind.end());
+  const BytesInFile file(bytes);
+  DeviceOptions options;
+  options.received = [](std::span<const std::uint8_t> chunk) {
+    if (chunk.front() == 0 && chunk.back() == 0) std::this_thread::sleep_for(5100ms);  // the one in the middle
+  };
+  const auto source = open(file.uri("protocol=dermis"), options);
+  expect_frames(*source, frames);
+  expect_end(*source);
+}
+
 TEST(DeviceSource, stops_by_the_flag) {
   const auto device = target("pty:");
   std::atomic<bool> stop = false;

@@ -19,7 +19,7 @@ TEST(ThreadPriority, rises_for_the_calling_thread_alone_where_that_is_allowed) {
   const int before = nice_of_this_thread();
   int raised = 0;
   std::thread([&] {
-    raise_thread_priority(ThreadPriority::frames);
+    raise_thread_priority();
     raised = nice_of_this_thread();
   }).join();
   EXPECT_TRUE(raised == -10 || raised == before) << raised;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <ostream>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "dermis/touch/frames/random.hpp"
+#include "support/inversion_campaign.hpp"
 #include "support/nodal_array.hpp"
 #include "support/reference_array.hpp"
 
@@ -398,6 +400,27 @@ TEST(Compensator, a_good_frame_after_a_bad_one_is_good) {
   EXPECT_EQ(conductance.status, FrameStatus::ok);
   EXPECT_EQ(conductance.taxels, good.taxels);
   EXPECT_EQ(conductance.siemens, compensate(array, good).siemens);
+}
+
+TEST(Compensator, bad_readings_of_a_tenth_of_the_taxels_leave_most_frames_their_conductances) {
+  constexpr int kFrames = 400;
+  const ArrayDescription array = support::reference_array(16, 16);
+  Random random(1);
+  std::vector<double> siemens(array.taxel_count());
+  for (double& value : siemens) value = 1.0 / random.log_uniform(2e3, 5e5);
+  const std::vector<double> good = support::model_ratios(array, siemens);
+  auto compensator = Compensator::create(array);
+  ASSERT_TRUE(compensator);
+  ConductanceFrame conductance;
+  int solved = 0;
+  for (int k = 0; k < kFrames; ++k) {
+    ConditionedFrame frame = make_frame(good);
+    frame.time = std::chrono::milliseconds(k);
+    for (double& ratio : frame.ratio) ratio = random.uniform() < 0.1 ? random.uniform() : ratio;
+    compensator->process(frame, conductance);
+    solved += has(conductance.status, FrameStatus::not_converged) ? 0 : 1;
+  }
+  EXPECT_GE(solved, kFrames * 9 / 10);
 }
 
 }  // namespace

@@ -4,13 +4,9 @@
 
 namespace dermis {
 
-/// Threads that go before the rest of the process and other programs.
-enum class ThreadPriority {
-  frames,     ///< Acquires frames: nice -10.
-  recording,  ///< Writes them: nice -5, so that it has its share however busy the first are.
-};
-
-/// Of the calling thread, and of those that it starts from now on. Nothing changes where the system does not allow it.
-void raise_thread_priority(ThreadPriority priority) noexcept;
+/// The calling thread, and those that it starts from now on, go before the rest of the process and other programs
+/// (nice -10). Who acquires frames and who writes them have the same share, so neither starves the other. Nothing
+/// changes where the system does not allow it.
+void raise_thread_priority() noexcept;
 
 }  // namespace dermis

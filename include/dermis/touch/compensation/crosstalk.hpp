@@ -64,8 +64,8 @@ class CrosstalkInversion {
   /// best attempt. Allocates nothing.
   [[nodiscard]] virtual InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept = 0;
 
-  /// The next calls of invert() are of another frame. Whether frames before have left enough for several attempts.
-  virtual bool start_frame() noexcept { return true; }
+  /// The next calls of invert() are of the frame at `time`. Whether those before have left enough for several attempts.
+  virtual bool start_frame(Nanos /*time*/) noexcept { return true; }
 
   /// They together may take this share of what is left of the work that the frame may take.
   virtual void start_attempt(double /*share*/) noexcept {}

@@ -2,8 +2,10 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -92,15 +94,22 @@ class HealthPart final : public Part {
 
   void report_want_of_time() {
     std::uint64_t skipped = 0;
-    for (std::size_t k = 0; k < host_.suit.arrays.size(); ++k) skipped += host_.live.statistics(k).skipped;
+    std::uint64_t most = 0;
+    std::string_view array;
+    for (std::size_t k = 0; k < host_.suit.arrays.size(); ++k) {
+      const std::uint64_t of_array = host_.live.statistics(k).skipped;
+      skipped += of_array;
+      if (of_array > most) array = host_.suit.arrays[k].name;
+      most = std::max(most, of_array);
+    }
     const std::uint64_t not_streamed = host_.topics.frames_not_streamed();
     const bool is_more =
         skipped != std::exchange(skipped_, skipped) || not_streamed != std::exchange(not_streamed_, not_streamed);
     if (!is_more) return;
     host_.tell_error(
-        fmt::format("the machine does not follow: {} frames have no contacts, {} that were due are not "
+        fmt::format("the machine does not follow: {} frames have no contacts{}, {} that were due are not "
                     "streamed; all are acquired",
-                    skipped, not_streamed));
+                    skipped, most > 0 ? fmt::format(" ({} of array '{}')", most, array) : "", not_streamed));
   }
 
   Host& host_;
