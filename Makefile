@@ -99,7 +99,9 @@ docs: setup
 
 package: setup
 	scripts/setup package
+	scripts/setup wheels
 	scripts/package
+	scripts/package arm64
 
 # The README's first command where nothing is installed. .ci/all does all of them, as root too.
 bare: setup

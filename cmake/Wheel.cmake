@@ -3,7 +3,7 @@
 # Libraries and modules find each other in the folder of the package; the command finds it beside its own folder.
 get_property(modules GLOBAL PROPERTY DERMIS_PYTHON_MODULES)
 set(libraries ${modules})
-foreach(library dermis_shared dermis_libhdf5 dermis_cairo)
+foreach(library ${DERMIS_PYTHON_LIBRARIES})
   if(TARGET ${library})
     list(APPEND libraries ${library})
   endif()

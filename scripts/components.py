@@ -10,6 +10,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
+# Those that packages are in: this machine's, and those that wheels are compiled for (packaging/wheels/prefix).
+CACHE = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+DEBIANS = (Path("/"), *sorted((CACHE / "dermis/wheels").glob("*")))
 
 
 @dataclass(frozen=True)
@@ -32,8 +35,8 @@ def files_of(build, targets):
     return outside | {os.path.realpath(name) for name in outside}
 
 
-def debian_packages(files, root=Path("/")):
-    """The sources of those of Debian below `root`."""
+def debian_packages(files, root):
+    """The sources of those of a Debian below `root`."""
     query = ["dpkg-query", f"--admindir={root / 'var/lib/dpkg'}"]
     names = sorted("/" + str(Path(name).relative_to(root)) for name in files if Path(name).is_relative_to(root))
     owners = subprocess.run(
@@ -42,6 +45,8 @@ def debian_packages(files, root=Path("/")):
     packages = sorted(
         {owner.split(":")[0] for line in owners.splitlines() for owner in line.split(": ")[0].split(", ")}
     )
+    if not packages:
+        return []
     show = ["-W", "-f", "${Package} ${source:Package} ${source:Version}\n", *packages]
     sources = {}
     for line in subprocess.run([*query, *show], check=True, capture_output=True, text=True).stdout.splitlines():
@@ -62,4 +67,5 @@ def npm_packages():
 
 
 def components(build, targets):
-    return [*debian_packages(files_of(build, targets)), *npm_packages()]
+    files = files_of(build, targets)
+    return [*(part for root in DEBIANS for part in debian_packages(files, root)), *npm_packages()]

@@ -70,6 +70,16 @@ class Machine:
         ]
 
 
+def emulate(architecture):
+    """Has the kernel run its programs by qemu, as systemd-binfmt does."""
+    kernel = Path("/proc/sys/fs/binfmt_misc")
+    if not (kernel / "register").exists():
+        subprocess.run(["mount", "-t", "binfmt_misc", "binfmt_misc", kernel], check=True)
+    name = f"qemu-{architecture}"
+    if not (kernel / name).exists():
+        (kernel / "register").write_text(Path(f"/usr/lib/binfmt.d/{name}.conf").read_text().strip())
+
+
 def make_image(name, suite, packages, architecture=None):
     """The archive of what machines begin with, made anew when a week old, with this machine's settings of apt and its
     certificates."""

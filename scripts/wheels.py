@@ -51,8 +51,8 @@ def make_wheel(architecture, headers):
     """Returns its path."""
     subprocess.run([TOOLS / "prefix", architecture], check=True, stdout=sys.stderr)
     folder = ROOT / f"build/wheel_{architecture}"
-    toolchain = (f"-DCMAKE_TOOLCHAIN_FILE={TOOLS / 'toolchain.cmake'}", f"-DDERMIS_WHEEL_ARCH={architecture}")
-    contents = build_backend.build(folder, headers.values(), *toolchain)
+    options = (f"CMAKE_TOOLCHAIN_FILE={TOOLS / 'toolchain.cmake'}", f"DERMIS_WHEEL_ARCH={architecture}", "DERMIS_BUILD_MODBUS=ON")
+    contents = build_backend.build(folder, headers.values(), *(f"-D{option}" for option in options))
     licenses = {part.name: part.license.encode() for part in components.components(folder, TARGETS)}
     tag = f"py3-none-manylinux_{GLIBC}_{architecture}"
     return WHEELS / build_backend.pack_wheel(contents, WHEELS, tag, licenses, build_backend.pythons_of(headers))

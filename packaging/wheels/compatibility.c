@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-// Static libraries of Debian 12 ask for names of glibc 2.32 to 2.36. glibc 2.31 has them not.
+// dermis and static libraries of Debian 12 ask for names of glibc 2.32 to 2.36. glibc 2.31 has them not.
+#include <dirent.h>
+#include <errno.h>
+#include <spawn.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,6 +28,19 @@ HIDDEN uint32_t arc4random(void) {
   uint32_t bits;
   arc4random_buf(&bits, sizeof bits);
   return bits;
+}
+
+/// All files that are open now: one that another thread opens until the child is there is not closed.
+HIDDEN int posix_spawn_file_actions_addclosefrom_np(posix_spawn_file_actions_t* actions, int from) {
+  DIR* folder = opendir("/proc/self/fd");
+  if (folder == NULL) return errno;
+  int failure = 0;
+  for (struct dirent* entry = readdir(folder); failure == 0 && entry != NULL; entry = readdir(folder)) {
+    const int file = atoi(entry->d_name);
+    if (file >= from && file != dirfd(folder)) failure = posix_spawn_file_actions_addclose(actions, file);
+  }
+  closedir(folder);
+  return failure;
 }
 
 /// What archives of Debian use in place of the streams of glibc (make_archives of prefix).

@@ -66,13 +66,14 @@ class Models {
   };
 
   Result<Known> read(const SuitArray& array, const Notice& notice) {
-    const std::string& path = array.model;
-    const auto known = read_.find(path);
+    const bool is_named = !array.model.empty();
+    const std::string& place = is_named ? array.model : array.from;
+    const auto known = read_.find(place);
     if (known != read_.end()) return known->second;
-    Result<ModelOrArray> read = path.empty() ? array_of_source(array.from, notice) : read_model_or_array(path);
+    Result<ModelOrArray> read = is_named ? read_model_or_array(place) : array_of_source(place, notice);
     if (!read) return read.error();
     Known fresh{std::make_shared<const touch::pipeline::Model>(std::move(read->model)), std::move(read->array)};
-    read_[path] = fresh;
+    read_[place] = fresh;
     return fresh;
   }
 
