@@ -99,7 +99,7 @@ def make_image(name, suite, packages, architecture=None):
                 "mmdebstrap",
                 "--quiet",
                 "--variant=minbase",
-                *([f"--architectures={architecture}"] if architecture else []),
+                *([f"--architectures={architecture}", "--skip=check/qemu"] if architecture else []),  # emulate() sees to it
                 f"--include={','.join(packages)}",
                 f"--aptopt={settings}",
                 f"--customize-hook=copy-in {CERTIFICATES} {CERTIFICATES.parent}",
@@ -107,6 +107,8 @@ def make_image(name, suite, packages, architecture=None):
                 f'--customize-hook=printf "{HOSTS}" >"$1/etc/hosts"',
                 suite,
                 made,
+                # Of other processors a mirror may lack what was mended last.
+                *([f"deb http://deb.debian.org/debian {suite} main"] if architecture else []),
             ],
             check=True,
         )

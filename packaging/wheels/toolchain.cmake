@@ -24,6 +24,11 @@ if(NOT host STREQUAL DERMIS_WHEEL_ARCH)
   set(CMAKE_CROSSCOMPILING_EMULATOR ${root}/bin/run)
 endif()
 
+# Of the static library of C++, each shared object keeps what it uses.
+foreach(kind EXE MODULE SHARED)
+  set(CMAKE_${kind}_LINKER_FLAGS_INIT -Wl,--gc-sections)
+endforeach()
+
 set(CMAKE_SYSROOT ${root})
 set(CMAKE_FIND_ROOT_PATH ${root})
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)

@@ -20,7 +20,6 @@ import support
 MACHINES = {  # release of Debian, architecture, its name for wheels
     "debian_11": ("bullseye", None, "x86_64"),
     "debian_11_arm64": ("bullseye", "arm64", "aarch64"),
-    "debian_12_arm64": ("bookworm", "arm64", "aarch64"),
 }
 FOLDER = Path(sys.argv.pop(2)).resolve()
 WANTED = [sys.argv.pop() for _ in sys.argv[2:]] or list(MACHINES)

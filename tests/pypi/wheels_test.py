@@ -97,7 +97,7 @@ class Wheels(bare.BareTest):
         bare.run(inside, *pip, "--target", self.work / "target", WHEEL)
         self.assert_has_the_command(inside, self.work / "target/bin/dermis", PYTHONPATH=self.work / "target")
         user = {"PYTHONUSERBASE": self.work / "user"}
-        bare.run(python, *pip, "--user", "--ignore-installed", WHEEL, **user)
+        bare.run(python, "-m", "pip", "install", "--quiet", "--user", "--ignore-installed", WHEEL, **user)
         self.assertEqual(bare.run(python, "-m", "dermis", "--version", **user), f"{build_backend.version()}\n")
         self.assert_has_the_command(python, self.work / "user/bin/dermis", **user)
 
