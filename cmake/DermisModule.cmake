@@ -5,8 +5,12 @@ add_library(dermis_build_flags INTERFACE)
 target_compile_features(dermis_build_flags INTERFACE cxx_std_20)
 target_compile_options(dermis_build_flags INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Werror)
 # Every x86 processor since 2008 has at least SSE4: one instruction set less to compile each kernel for. Under the
-# sanitizers the portable kernels have its four lanes, and AVX2 stands for what is wider.
+# sanitizers the portable kernels have its four lanes, and AVX2 stands for what is wider. Vectors of SVE have no size that
+# an array of them could have: arm64 has NEON.
 set(DERMIS_INSTRUCTION_SETS_LEFT_OUT HWY_SSSE3)
+if(CMAKE_SYSTEM_PROCESSOR STREQUAL aarch64)
+  set(DERMIS_INSTRUCTION_SETS_LEFT_OUT "(HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128)")
+endif()
 if(DERMIS_SANITIZE)
   set(DERMIS_INSTRUCTION_SETS_LEFT_OUT "(HWY_SSSE3|HWY_SSE4|HWY_AVX3)")
 endif()

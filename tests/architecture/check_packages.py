@@ -13,6 +13,7 @@ from pathlib import Path
 
 # Packages, and the names of what they bring: for cmake to find, commands, modules of Python.
 BRINGS = {
+    "autoconf": "autoreconf",
     "python3": "Python3 python3",
     "cmake": "cmake ctest",
     "ccache": "ccache",
@@ -102,13 +103,14 @@ TRACES = {
     '"--zstd"': "zstd",
     "$triplet-$language-12": "g++-12-aarch64-linux-gnu",
     "qemu-$arch-static": "qemu-user-static",
+    "autoreconf --install": "automake libtool",
     "build/release/tests/": "libgtest-dev libbenchmark-dev",
 }
 # What a bare Debian has, with make, git and sudo, and what bash is made of.
 BARE = set(
     """apt-cache apt-config apt-get bash case cat cd chmod cksum cmp command compgen cp date declare dirname do done
-dpkg dpkg-query echo elif else env esac exec exit export fi find flock for git grep gzip id if install ldd ln
-local ls make mapfile mkdir mktemp mount nproc printf readlink return rm sed set sh sha256sum shift sudo tail
+dpkg dpkg-deb dpkg-query echo elif else env esac exec exit export fi find flock for git grep gzip id if install ldd ln
+local ls make mapfile mkdir mktemp mount nproc printf readlink return rm sed set sh sha256sum shift sort sudo tail
 tar then touch tr trap umount uname wait while xargs""".split()
 )
 # Our own package and what makes its wheel, what ROS 2 brings to a launch file, what an example asks of PyPI, and what

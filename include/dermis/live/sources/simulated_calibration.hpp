@@ -19,7 +19,7 @@ struct SimulatedCalibration {
   std::vector<Load> loads{};
 };
 
-/// The scene "uniform" on the array and the material of the URI of a simulation, whatever its own scene: of all scenes
+/// The scene "uniform" on the array and the material of the URI of a simulation, whatever its own scene. Of all scenes
 /// for calibrations it has the fewest frames. Fails where open_source() refuses that array or that material.
 [[nodiscard]] Result<SimulatedCalibration> simulate_calibration(const bytes::devices::SourceUri& uri);
 
