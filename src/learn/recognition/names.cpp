@@ -14,7 +14,7 @@ using Json = nlohmann::json;
 
 bool is_control(char c) {
   constexpr char kDelete = 0x7F;
-  return (c >= 0 && c < ' ') || c == kDelete;
+  return static_cast<unsigned char>(c) < ' ' || c == kDelete;
 }
 
 /// Whether JSON gives it back unchanged.
