@@ -30,11 +30,11 @@ if(DERMIS_SANITIZE)
 endif()
 
 # With DERMIS_SHARED, src and viewer are one library, which the command and the Python package share. Calls within it are as
-# quick as in a program.
+# quick as in a program. Its name has the version, so that none takes that of another.
 if(DERMIS_SHARED)
   set(DERMIS_SYMBOLS ${PROJECT_SOURCE_DIR}/cmake/shared_symbols.map)
   add_library(dermis_shared SHARED)
-  set_target_properties(dermis_shared PROPERTIES OUTPUT_NAME dermis LINKER_LANGUAGE CXX LINK_DEPENDS ${DERMIS_SYMBOLS}
+  set_target_properties(dermis_shared PROPERTIES OUTPUT_NAME dermis-${PROJECT_VERSION} LINKER_LANGUAGE CXX LINK_DEPENDS ${DERMIS_SYMBOLS}
                                                  LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib
                                                  BUILD_RPATH "$ORIGIN")  # where the plugins are
   target_link_options(dermis_shared PRIVATE -Wl,--version-script=${DERMIS_SYMBOLS} -Wl,-Bsymbolic-functions

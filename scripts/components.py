@@ -6,8 +6,10 @@ the build's own lists."""
 import json
 import os
 import subprocess
+import sys
 from dataclasses import dataclass
 from pathlib import Path
+from urllib.parse import quote
 
 ROOT = Path(__file__).resolve().parent.parent
 # Those that packages are in: this machine's, and those that wheels are compiled for (packaging/wheels/prefix).
@@ -25,12 +27,14 @@ class Component:
 
 def files_of(build, targets):
     """Those from outside of this folder that the targets were made of, with what links among them lead to."""
-    inputs = ["ninja", "-C", build, "-t", "inputs", *targets]
-    headers = ["ninja", "-C", build, "-t", "deps"]
-    lines = "".join(
-        subprocess.run(list_, check=True, capture_output=True, text=True).stdout for list_ in (inputs, headers)
-    )
-    names = {line.strip() for line in lines.splitlines() if line.lstrip().startswith("/")}
+
+    def told(tool, *of):
+        said = subprocess.run(["ninja", "-C", build, "-t", tool, *of], check=True, capture_output=True, text=True)
+        return [line.strip() for line in said.stdout.splitlines()]
+
+    inputs = told("inputs", *targets)
+    headers = told("deps", *(name for name in inputs if name.endswith(".o")))
+    names = {line for line in [*inputs, *headers] if line.startswith("/")}
     outside = {name for name in map(os.path.normpath, names) if not Path(name).is_relative_to(ROOT)}
     return outside | {os.path.realpath(name) for name in outside}
 
@@ -39,12 +43,11 @@ def debian_packages(files, root):
     """The sources of those of a Debian below `root`."""
     query = ["dpkg-query", f"--admindir={root / 'var/lib/dpkg'}"]
     names = sorted("/" + str(Path(name).relative_to(root)) for name in files if Path(name).is_relative_to(root))
-    owners = subprocess.run(
-        [*query, "-S", *names], capture_output=True, text=True
-    ).stdout  # fails where one has no owner
-    packages = sorted(
-        {owner.split(":")[0] for line in owners.splitlines() for owner in line.split(": ")[0].split(", ")}
-    )
+    asked = subprocess.run([*query, "-S", *names], capture_output=True, text=True)
+    if asked.returncode > 1:  # 1: one has no owner
+        sys.exit(asked.stderr)
+    owners = [owner for line in asked.stdout.splitlines() for owner in line.split(": ")[0].split(", ")]
+    packages = sorted({owner.split(":")[0] for owner in owners})
     if not packages:
         return []
     show = ["-W", "-f", "${Package} ${source:Package} ${source:Version}\n", *packages]
@@ -52,7 +55,7 @@ def debian_packages(files, root):
     for line in subprocess.run([*query, *show], check=True, capture_output=True, text=True).stdout.splitlines():
         package, name, version = line.split()
         text = (root / "usr/share/doc" / package / "copyright").read_text()
-        sources[name] = Component(name, version, text, f"pkg:deb/debian/{name}@{version}?arch=source")
+        sources[name] = Component(name, version, text, f"pkg:deb/debian/{name}@{quote(version, safe='')}?arch=source")
     return list(sources.values())
 
 

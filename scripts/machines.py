@@ -99,7 +99,9 @@ def make_image(name, suite, packages, architecture=None):
                 "mmdebstrap",
                 "--quiet",
                 "--variant=minbase",
-                *([f"--architectures={architecture}", "--skip=check/qemu"] if architecture else []),  # emulate() sees to it
+                *(
+                    [f"--architectures={architecture}", "--skip=check/qemu"] if architecture else []
+                ),  # emulate() sees to it
                 f"--include={','.join(packages)}",
                 f"--aptopt={settings}",
                 f"--customize-hook=copy-in {CERTIFICATES} {CERTIFICATES.parent}",

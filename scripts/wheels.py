@@ -51,7 +51,11 @@ def make_wheel(architecture, headers):
     """Returns its path."""
     subprocess.run([TOOLS / "prefix", architecture], check=True, stdout=sys.stderr)
     folder = ROOT / f"build/wheel_{architecture}"
-    options = (f"CMAKE_TOOLCHAIN_FILE={TOOLS / 'toolchain.cmake'}", f"DERMIS_WHEEL_ARCH={architecture}", "DERMIS_BUILD_MODBUS=ON")
+    options = (
+        f"CMAKE_TOOLCHAIN_FILE={TOOLS / 'toolchain.cmake'}",
+        f"DERMIS_WHEEL_ARCH={architecture}",
+        "DERMIS_BUILD_MODBUS=ON",
+    )
     contents = build_backend.build(folder, headers.values(), *(f"-D{option}" for option in options))
     licenses = {part.name: part.license.encode() for part in components.components(folder, TARGETS)}
     tag = f"py3-none-manylinux_{GLIBC}_{architecture}"
@@ -60,6 +64,8 @@ def make_wheel(architecture, headers):
 
 def main():
     WHEELS.mkdir(parents=True, exist_ok=True)
+    for old in WHEELS.glob("dermis-*"):
+        old.unlink()
     add_tools()
     headers = find_headers()
     made = [make_wheel(architecture, headers) for architecture in sys.argv[1:] or ARCHITECTURES]

@@ -122,11 +122,13 @@ def pack_wheel(contents, wheel_directory, tag, licenses=None, pythons=">=3.9"):
     record = "".join(record_line(name, content) for name, content in files.items()) + f"{info()}/RECORD,,\n"
     files[f"{info()}/RECORD"] = record.encode()
     name = f"dermis-{version()}-{tag}.whl"
-    with zipfile.ZipFile(os.path.join(wheel_directory, name), "w", zipfile.ZIP_DEFLATED, compresslevel=9) as wheel:
+    path = os.path.join(wheel_directory, name)
+    with zipfile.ZipFile(path + ".part", "w", zipfile.ZIP_DEFLATED, compresslevel=9) as wheel:
         for place, content in files.items():
             entry = zipfile.ZipInfo(place)  # of 1980
             entry.external_attr = (0o100755 if place in programs else 0o100644) << 16
             wheel.writestr(entry, content, zipfile.ZIP_DEFLATED, 9)
+    os.replace(path + ".part", path)
     return name
 
 

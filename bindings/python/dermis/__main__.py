@@ -11,7 +11,7 @@ ABOVE = (1, 2, 4)
 
 
 def command():
-    folders = enumerate(Path(__file__).resolve().parents)
+    folders = enumerate(Path(__file__).absolute().parents)
     places = [folder / "bin/dermis" for above, folder in folders if above in ABOVE]
     there = next((place for place in places if os.access(place, os.X_OK)), None)
     return there or sys.exit(f"dermis: {places[-1]} is not there: install the command, too")

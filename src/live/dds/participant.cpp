@@ -8,7 +8,8 @@ namespace dermis::live::dds {
 
 Result<std::unique_ptr<Participant>> open_participant(const PublisherOptions& options) {
   const Result<void*> function = find_plugin_function(
-      {"DDS", "libdermis_dds.so", "of a build with DERMIS_BUILD_DDS, and Fast DDS (Debian: libfastrtps2.9)"},
+      {"DDS", "libdermis_dds.so",
+       "of a build with DERMIS_BUILD_DDS or of the Debian package dermis, and Fast DDS (Debian: libfastrtps2.9)"},
       kOpenParticipant);
   if (!function) return function.error();
   Result<std::unique_ptr<Participant>> opened{std::unique_ptr<Participant>()};

@@ -11,7 +11,9 @@ namespace {
 
 Result<void*> find_function(const char* name) {
   return find_plugin_function(
-      {"NATS", "libdermis_nats.so", "of a build with DERMIS_BUILD_NATS, and its library (Debian: libnats3.4)"}, name);
+      {"NATS", "libdermis_nats.so",
+       "of a build with DERMIS_BUILD_NATS or of the Debian package dermis, and its library (Debian: libnats3.4)"},
+      name);
 }
 
 /// A user who has no password is not shown: a token of NATS may stand there.

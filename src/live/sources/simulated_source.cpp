@@ -237,7 +237,7 @@ Result<SimulatedCalibration> simulate_calibration(const bytes::devices::SourceUr
   if (!array) return array.error();
   learn::simulation::SimulationOptions options;
   const Result<learn::simulation::RubberOptions> rubber = rubber_of(uri);
-  if (!rubber) return rubber.error();
+  if (!rubber) return bad_input("'" + uri.text + "': " + rubber.error().message);
   options.rubber = *rubber;
   auto simulator = learn::simulation::Simulator::create(*array, options, "uniform", uri.seed);
   if (!simulator) return bad_input("'" + uri.text + "': " + simulator.error().message);

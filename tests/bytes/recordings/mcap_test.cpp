@@ -315,7 +315,12 @@ TEST(Mcap, a_long_index_takes_no_memory_and_no_file_that_others_see) {
       (*writer)->add_message({channel, i, 1000U + i, 1000U + i, data});
       EXPECT_TRUE((*writer)->close_chunk());
     }
-    return ::mallinfo2().uordblks + ::mallinfo2().hblkhd;
+#if __GLIBC_PREREQ(2, 33)
+    const auto heap = ::mallinfo2();
+#else
+    const auto heap = ::mallinfo();
+#endif
+    return static_cast<std::size_t>(heap.uordblks) + static_cast<std::size_t>(heap.hblkhd);
   };
   const std::size_t early = bytes_in_use_after(5'000);
   EXPECT_LE(bytes_in_use_after(20'000), early + std::size_t{64} * 1024);
