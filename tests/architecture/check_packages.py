@@ -14,6 +14,7 @@ from pathlib import Path
 # Packages, and the names of what they bring: for cmake to find, commands, modules of Python.
 BRINGS = {
     "autoconf": "autoreconf",
+    "ninja-build": "ninja",
     "python3": "Python3 python3",
     "cmake": "cmake ctest",
     "ccache": "ccache",
