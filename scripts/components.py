@@ -43,6 +43,8 @@ def debian_packages(files, root):
     """The sources of those of a Debian below `root`."""
     query = ["dpkg-query", f"--admindir={root / 'var/lib/dpkg'}"]
     names = sorted("/" + str(Path(name).relative_to(root)) for name in files if Path(name).is_relative_to(root))
+    if not names:
+        return []
     asked = subprocess.run([*query, "-S", *names], capture_output=True, text=True)
     if asked.returncode > 1:  # 1: one has no owner
         sys.exit(asked.stderr)
