@@ -239,7 +239,7 @@ class Everyday(workspace.CalibratedArray):
     def test_a_wait_that_asyncio_gives_up_is_over_at_once(self):
         async def give_up():
             with dermis.open("tcp-listen://127.0.0.1:0") as source, self.assertRaises(asyncio.TimeoutError):
-                await asyncio.wait_for(anext(source), 0.1)
+                await asyncio.wait_for(source.__anext__(), 0.1)
 
         asyncio.run(give_up())
         self.assertFalse([thread for thread in threading.enumerate() if "asyncio" in thread.name])
