@@ -68,7 +68,7 @@ TEST(FrameQueue, loses_nothing_for_a_recorder_and_counts_the_waits) {
     ASSERT_EQ(queue.pop(frame, std::chrono::seconds(60)), FrameQueue::Pop::frame);
     ASSERT_EQ(frame.time.count(), number);
   }
-  EXPECT_EQ(queue.pop(frame, Nanos{}), FrameQueue::Pop::end);
+  EXPECT_EQ(queue.pop(frame, std::chrono::seconds(60)), FrameQueue::Pop::end);
   writer.join();
   EXPECT_EQ(queue.statistics().dropped, 0U);
   EXPECT_GT(queue.statistics().longest_wait, Nanos{});
