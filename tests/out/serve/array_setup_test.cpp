@@ -43,7 +43,7 @@ class ArraySetupTest : public testing::Test {
 TEST_F(ArraySetupTest, writes_the_array_that_a_client_describes) {
   const auto setup = ArraySetup::create("sim:idle?rate=100&rows=3&cols=4", any_port(), {});
   ASSERT_TRUE(setup) << setup.error().message;
-  const std::atomic<bool> stop = false;
+  std::atomic<bool> stop = false;
   DescribedArray described;
   std::thread work([&] { described = (*setup)->run(stop); });
 
@@ -61,6 +61,7 @@ TEST_F(ArraySetupTest, writes_the_array_that_a_client_describes) {
             std::string::npos);
   EXPECT_NE(answer(R"({"name":"mat","rows":3,"cols":4,"pitch_um":8000,"adc_bits":10})").find("mat/array.toml"),
             std::string::npos);
+  stop = HasFailure();  // nobody is served then
   work.join();
 
   EXPECT_EQ(described.from, "sim:idle?rate=100&rows=3&cols=4");
@@ -162,10 +163,11 @@ TEST_F(ArraySetupTest, serves_an_array_from_last_time_at_the_source_that_a_clien
   EXPECT_EQ(client.call("/source/open", R"({"simulation":"contacts"})"), R"({"from":"sim:contacts?rate=100"})");
   EXPECT_EQ(client.call("/array/use", R"({"file":"unrelated.toml"})"), "file: is none of the arrays of this folder");
   EXPECT_EQ(client.call("/array/use", R"({"file":"other.toml"})"), "rows and cols are not those of the frames");
-  const std::atomic<bool> stop = false;
+  std::atomic<bool> stop = false;
   DescribedArray described;
   std::thread work([&] { described = (*setup)->run(stop); });
   EXPECT_EQ(client.call("/array/use", R"({"file":"old.toml"})"), R"({"file":"old.toml"})");
+  stop = HasFailure();  // nobody is served then
   work.join();
   EXPECT_EQ(described.from, "sim:contacts?rate=100");
   EXPECT_EQ(described.model, "old.toml");
@@ -187,10 +189,11 @@ TEST_F(ArraySetupTest, finds_an_array_of_last_time_by_one_call) {
   const std::string known = client.call("/array/known", "{}");
   EXPECT_NE(known.find(R"("file":"mat/array.toml","name":"mat")"), std::string::npos) << known;
   EXPECT_NE(known.find(R"("from":"sim:contacts?rate=100")"), std::string::npos) << known;
-  const std::atomic<bool> stop = false;
+  std::atomic<bool> stop = false;
   DescribedArray described;
   std::thread work([&] { described = (*setup)->run(stop); });
   EXPECT_EQ(client.call("/array/use", R"({"file":"mat/array.toml"})"), R"({"file":"mat/array.toml"})");
+  stop = HasFailure();  // nobody is served then
   work.join();
   EXPECT_EQ(described.from, "sim:contacts?rate=100");
   EXPECT_EQ(described.model, "mat/array.toml");
@@ -275,10 +278,11 @@ TEST_F(ArraySetupTest, listens_to_the_port_that_a_client_chooses) {
   EXPECT_NE(client.call("/source/list", "{}").find(board.name()), std::string::npos);
   EXPECT_EQ(client.call("/source/open", R"({"port":")" + board.name() + R"(","baud":115200})"),
             R"({"from":"serial://)" + board.name() + R"(?baud=115200"})");
-  const std::atomic<bool> stop = false;
+  std::atomic<bool> stop = false;
   DescribedArray described;
   std::thread work([&] { described = (*setup)->run(stop); });
   client.call("/array/describe", R"({"name":"board","rows":2,"cols":3,"pitch_um":8000,"adc_bits":10})");
+  stop = HasFailure();  // nobody is served then
   work.join();
   EXPECT_EQ(described.from, "serial://" + board.name() + "?baud=115200");
 }
