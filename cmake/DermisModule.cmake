@@ -10,8 +10,7 @@ target_compile_options(dermis_build_flags INTERFACE -Wall -Wextra -Wpedantic -Wc
 set(DERMIS_INSTRUCTION_SETS_LEFT_OUT HWY_SSSE3)
 if(CMAKE_SYSTEM_PROCESSOR STREQUAL aarch64)
   set(DERMIS_INSTRUCTION_SETS_LEFT_OUT "(HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128)")
-endif()
-if(DERMIS_SANITIZE)
+elseif(DERMIS_SANITIZE)
   set(DERMIS_INSTRUCTION_SETS_LEFT_OUT "(HWY_SSSE3|HWY_SSE4|HWY_AVX3)")
 endif()
 target_compile_definitions(dermis_build_flags INTERFACE HWY_DISABLED_TARGETS=${DERMIS_INSTRUCTION_SETS_LEFT_OUT})
@@ -74,6 +73,11 @@ function(compile_together target)
       set_source_files_properties(${source} PROPERTIES UNITY_GROUP batch_${batch})
     endif()
   endforeach()
+endfunction()
+
+# keep_inside(<plugin>): of static libraries it keeps what it uses, and shows none of it.
+function(keep_inside plugin)
+  target_link_options(${plugin} PRIVATE -Wl,--exclude-libs,ALL -Wl,--gc-sections -Wl,--as-needed)
 endfunction()
 
 # checked_modules(<variable> <targets>): with those of checked libraries in the place of their modules.

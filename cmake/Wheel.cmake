@@ -2,12 +2,7 @@
 # The component "wheel" of an installation is what a wheel holds, at its places there (bindings/python/build_backend.py).
 # Libraries and modules find each other in the folder of the package; the command finds it beside its own folder.
 get_property(modules GLOBAL PROPERTY DERMIS_PYTHON_MODULES)
-set(libraries ${modules})
-foreach(library ${DERMIS_PYTHON_LIBRARIES})
-  if(TARGET ${library})
-    list(APPEND libraries ${library})
-  endif()
-endforeach()
+set(libraries ${modules} ${DERMIS_PYTHON_LIBRARIES})
 if(DERMIS_SHARED)
   set_target_properties(${libraries} PROPERTIES INSTALL_RPATH "$ORIGIN")
   # Of a Python or a virtual environment, of pip --user, of Fedora, of Debian's root, of pip --target.
