@@ -35,6 +35,7 @@ wheel-libraries: setup
 
 test: setup
 	scripts/setup test
+	scripts/setup browser
 	cmake --preset release
 	cmake --build --preset release
 	ctest --preset release
@@ -47,6 +48,7 @@ numerics: setup
 
 sanitize: numerics
 	scripts/setup test
+	scripts/setup browser
 	scripts/setup fuzz
 	cmake --preset asan
 	cmake --build --preset asan
@@ -113,6 +115,7 @@ package-test: package
 site: setup
 	scripts/setup test
 	scripts/setup site
+	scripts/setup browser
 	$(MAKE) build
 	scripts/site
 
