@@ -84,7 +84,7 @@ class Server::Implementation final : public browser::PageLink {
     MessageKind kind = MessageKind::event;
   };
 
-  /// What was published since the last time.
+  /// Queues for the client all that was published since the last time.
   void hand_out();
 
   const ServerOptions options_;

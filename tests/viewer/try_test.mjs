@@ -9,7 +9,7 @@ import { createServer } from "node:http";
 import { tmpdir } from "node:os";
 import { extname, join } from "node:path";
 import { after, before, describe, it } from "node:test";
-import { gzipSync } from "node:zlib";
+import { gunzipSync, gzipSync } from "node:zlib";
 import { assertUnhurt, becomes, eventually, openBrowser, openPage, part, tareAnyway } from "./harness.mjs";
 
 const CONTENT_TYPES = {
@@ -61,6 +61,19 @@ after(async () => {
   if (folder) rmSync(folder, { recursive: true, force: true });
 });
 
+/** Waits until the page is kept for offline. */
+async function kept(page) {
+  await page.evaluate(async () => {
+    const { active } = await navigator.serviceWorker.ready;
+    while (active.state !== "activated")
+      await new Promise((changed) => active.addEventListener("statechange", changed));
+  });
+}
+
+function change(path, text, by) {
+  packed.set(path, gzipSync(gunzipSync(packed.get(path)).toString().replace(text, by)));
+}
+
 describe("the page of site/try", () => {
   it("shows newtons and contacts of a simulated sheet, and asks for nothing but its own files", async () => {
     const page = await openPage(browser, "about:blank");
@@ -103,11 +116,7 @@ describe("the page of site/try", () => {
   it("needs no network once it was shown", async () => {
     const page = await openPage(browser, `${url}#/array`);
     await becomes(page, "live");
-    await page.evaluate(async () => {
-      const { active } = await navigator.serviceWorker.ready;
-      while (active.state !== "activated")
-        await new Promise((changed) => active.addEventListener("statechange", changed));
-    });
+    await kept(page);
     isOnline = false;
     await page.reload();
     await becomes(page, "live");
@@ -115,6 +124,31 @@ describe("the page of site/try", () => {
     isOnline = true;
     assertUnhurt(page);
     await page.close();
+  });
+
+  it("has all files of one version, and the next one when no page is open", async () => {
+    const context = await browser.newContext();
+    const page = await openPage(context, url);
+    await becomes(page, "live");
+    await kept(page);
+    await page.reload(); // now it is of the version that is kept
+    await becomes(page, "live");
+    change("/index.html", "</head>", '<meta name="next"></head>');
+    change("/offline.js", "dermis-try-", "dermis-try-next-");
+    await page.evaluate(async () => (await navigator.serviceWorker.ready).update());
+    await eventually(page, async () => (await navigator.serviceWorker.ready).waiting !== null);
+    await page.reload();
+    await becomes(page, "live");
+    const next = page.locator("meta[name=next]");
+    assert.equal(await next.count(), 0);
+    for (let found = 0; found === 0; found = await next.count()) {
+      await page.goto("about:blank");
+      await page.waitForTimeout(200);
+      await page.goto(url);
+    }
+    await becomes(page, "live");
+    assertUnhurt(page);
+    await context.close();
   });
 
   it("says in one line why it cannot begin", async () => {
