@@ -36,6 +36,7 @@ release: wheels package site
 
 test: setup
 	scripts/setup test
+	scripts/setup browser
 	cmake --preset release
 	cmake --build --preset release
 	ctest --preset release
@@ -48,6 +49,7 @@ numerics: setup
 
 sanitize: numerics
 	scripts/setup test
+	scripts/setup browser
 	scripts/setup fuzz
 	cmake --preset asan
 	cmake --build --preset asan
@@ -116,6 +118,7 @@ package-test: package
 site: setup
 	scripts/setup test
 	scripts/setup site
+	scripts/setup browser
 	$(MAKE) build
 	scripts/site
 

@@ -90,6 +90,8 @@ TRACES = {
     "cmake --preset": "ninja-build",
     "cmake --preset asan": "clang-16 libclang-rt-16-dev",
     "cmake --preset lint": "cyclonedds-dev cyclonedds-tools",
+    "cmake --preset browser": "clang-16 llvm-16 lld-16 wasi-libc libc++-16-dev-wasm32 libc++abi-16-dev-wasm32"
+    " libclang-rt-16-dev-wasm32",
     "#include <clang/": "libclang-16-dev llvm-16-dev",
     '"mypy.stubtest"': "mypy",
     '"-m", "venv"': "python3-venv",
@@ -109,10 +111,10 @@ TRACES = {
 }
 # What a bare Debian has, with make, git and sudo, and what bash is made of.
 BARE = set(
-    """apt-cache apt-config apt-get bash case cat cd chmod cksum cmp command compgen cp date declare dirname do done
-dpkg dpkg-deb dpkg-query echo elif else env esac exec exit export fi find flock for git grep gzip id if install ldd ln
-local ls make mapfile mkdir mktemp mount nproc printf readlink return rm sed set sh sha256sum shift sort sudo tail
-tar then touch tr trap umount uname wait while xargs""".split()
+    """apt-cache apt-config apt-get bash case cat cd chmod cksum cmp command compgen cp cut date declare dirname do
+done dpkg dpkg-deb dpkg-query echo elif else env esac exec exit export fi find flock for git grep gzip id if install
+ldd ln local ls make mapfile mkdir mktemp mount mv nproc printf readlink realpath return rm sed set sh sha256sum
+shift sort sudo tail tar then touch tr trap umount uname wait while xargs""".split()
 )
 # Our own package and what makes its wheel, what ROS 2 brings to a launch file, what an example asks of PyPI, and what
 # tests/requirements.txt names.

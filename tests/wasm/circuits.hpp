@@ -12,9 +12,9 @@
 // Models of every circuit as plain structs, for the program that is compiled for this machine and for WebAssembly.
 namespace dermis::wasm {
 
-inline constexpr std::size_t kLines = 8;
+inline constexpr std::size_t kLines = 16;
 
-/// "grounded_rows", "floating_rows", "virtual_ground", "flexitac" or "none"; empty: any other name.
+/// "grounded_rows", "floating_rows", "floating_lines", "virtual_ground", "flexitac" or "none"; empty: any other name.
 inline std::optional<ArrayDescription> described_array(std::string_view circuit) {
   ArrayDescription array;
   array.rows = kLines;
@@ -24,6 +24,9 @@ inline std::optional<ArrayDescription> described_array(std::string_view circuit)
   array.readout.supply_v = 5.0;
   if (circuit == "floating_rows") {
     array.readout.idle_rows = IdleRows::floating;
+  } else if (circuit == "floating_lines") {
+    array.readout.idle_rows = IdleRows::floating;
+    array.readout.idle_columns = IdleColumns::floating;
   } else if (circuit == "virtual_ground") {
     array.readout.circuit = Circuit::transimpedance;
   } else if (circuit == "flexitac") {
@@ -66,7 +69,7 @@ inline touch::pipeline::Model model_of(const ArrayDescription& array) {
     const auto set = [&](std::size_t parameter, float value) {
       networks.parameters[parameter * taxels + taxel] = value;
     };
-    const float own = 0.01F * static_cast<float>(taxel);
+    const float own = 0.01F * static_cast<float>(taxel % 64);
     set(networks.shape.bias(0), -0.5F + own);
     set(networks.shape.weight(0, 0), 0.4F);
     set(networks.shape.weight(0, 2), 0.2F);

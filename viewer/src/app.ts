@@ -7,6 +7,7 @@ import { LiveData } from "./live/live_data";
 import { DiagnosticLevel, type HealthStatus } from "./messages/statistics";
 import { makeArraySetup } from "./setup/array_setup";
 import { Signal } from "./signal";
+import type { Endpoint } from "./stream/endpoint";
 import { Stream } from "./stream/stream";
 import { Suit } from "./suit";
 import { TakeDialog } from "./take/take_dialog";
@@ -27,17 +28,17 @@ const LEVELS = ["good", "warn", "bad"] as const;
 /** The whole page: its parts, its address, its keys, and the one loop that draws. */
 export class App implements ViewContext {
   readonly suit = new Suit();
-  readonly stream = new Stream(new URL(window.location.href), (suit) => this.#described(suit));
+  readonly stream: Stream;
   readonly paused = new Signal(false);
-  readonly live = new LiveData(this.stream, this.suit, this.paused);
+  readonly live: LiveData;
   readonly theme = new Theme();
   readonly display = new DisplayStatistics();
   readonly #views: readonly View[];
   readonly #bar: Bar;
-  readonly #transport = new Transport(this.stream, this.live.marks);
+  readonly #transport: Transport;
   readonly #help = makeHelp();
-  readonly #thresholds = makeThresholds(this.stream);
-  readonly #take = new TakeDialog(this);
+  readonly #thresholds: HTMLDialogElement;
+  readonly #take: TakeDialog;
   readonly #room = element("main");
   readonly #notice = element("p", {
     class: "notice message",
@@ -51,8 +52,13 @@ export class App implements ViewContext {
   readonly #drawNext = (nowMs: number): void => this.#draw(nowMs);
   #noticeTimer = 0;
 
-  constructor() {
+  constructor(endpoint: Endpoint) {
+    this.stream = new Stream(endpoint, (suit) => this.#described(suit));
+    this.live = new LiveData(this.stream, this.suit, this.paused);
     this.stream.connect(); // the server answers while the views are made
+    this.#transport = new Transport(this.stream, this.live.marks);
+    this.#thresholds = makeThresholds(this.stream);
+    this.#take = new TakeDialog(this);
     this.#views = VIEWS.map((create) => create(this));
     this.#bar = new Bar(this, this.#views, {
       toggleRecording: () => this.#toggle("/recording"),

@@ -5,9 +5,10 @@ import "./styles/tokens.css";
 import "./styles/page.css";
 import "./styles/controls.css";
 import { App } from "./app";
+import { ServerEndpoint } from "./stream/endpoint";
 
 try {
-  new App().begin();
+  new App(new ServerEndpoint(new URL(window.location.href))).begin();
 } catch (error) {
   // A blank page says nothing: a browser without WebGL 2, for one, gets this line.
   const line = document.createElement("p");

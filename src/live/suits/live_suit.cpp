@@ -54,6 +54,14 @@ class LiveSuit::Implementation {
     for (WorkLoop& loop : loops_) loop.start();
   }
 
+  void work() {
+    for (const auto& worker : workers_) {
+      if (worker->readiness()) worker->acquire();
+      while (worker->process()) {
+      }
+    }
+  }
+
   void stop() {
     for (WorkLoop& loop : loops_) loop.ask_to_stop();
     for (WorkLoop& loop : loops_) loop.stop();
@@ -105,6 +113,10 @@ LiveSuit::~LiveSuit() {
 
 void LiveSuit::start() {
   implementation_->start();
+}
+
+void LiveSuit::work() {
+  implementation_->work();
 }
 
 void LiveSuit::stop() {

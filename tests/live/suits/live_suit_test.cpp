@@ -469,6 +469,23 @@ TEST(LiveSuit, arrays_that_can_be_polled_share_a_thread_a_core) {
   }
 }
 
+TEST(LiveSuit, works_off_all_that_has_come_on_the_thread_that_asks_where_there_is_no_other) {
+  const SharedModel model = model_of(6, 6);
+  auto source = std::make_unique<PolledSource>(model);
+  source->at_once = 7;
+  Collector collector;
+  const auto suit = LiveSuit::create(arrays_of(array_of("a", std::move(source), model)), options_with(collector));
+  ASSERT_TRUE(suit) << suit.error().message;
+  (*suit)->work();
+  EXPECT_EQ(collector.of(0).frames, 7U);
+  (*suit)->work();
+  EXPECT_EQ(collector.of(0).frames, 14U);
+  while (!(*suit)->ended()) (*suit)->work();
+  EXPECT_EQ(collector.of(0).frames, 1000U);
+  EXPECT_EQ(collector.of(0).thread, std::this_thread::get_id());
+  EXPECT_EQ((*suit)->statistics(0).skipped, 0U);
+}
+
 TEST(LiveSuit, a_machine_that_does_not_follow_acquires_every_frame_and_finds_contacts_in_the_newest) {
   const SharedModel model = model_of(6, 6);
   auto source = std::make_unique<PolledSource>(model);

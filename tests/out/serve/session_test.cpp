@@ -20,6 +20,7 @@
 #include "dermis/bytes/recordings/mcap.hpp"
 #include "dermis/bytes/recordings/suit_recording.hpp"
 #include "dermis/bytes/ros_messages/live_messages.hpp"
+#include "dermis/live/sources/open_source.hpp"
 #include "out/serve/named_touches.hpp"
 #include "out/serve/session_at_work.hpp"
 #include "out/serve/small_suit.hpp"
@@ -113,6 +114,25 @@ TEST(Session, streams_every_topic_of_all_arrays) {
                                            "/health",      "/statistics",       "/tf"};
   client.subscribe(topics);
   for (const std::string& topic : topics) EXPECT_FALSE(client.next_message(topic).bytes.empty()) << topic;
+}
+
+TEST(Session, works_in_pieces_where_it_has_one_thread) {
+  const std::atomic<bool> never = false;
+  ServedSuit suit = small_suit({"sheet"}, never);
+  auto source = live::sources::open_source(fmt::format("sim:touches?rate=200&rows={}&cols={}", kRows, kCols));
+  ASSERT_TRUE(source) << source.error().message;
+  suit.arrays[0].source = *std::move(source);
+  const std::unique_ptr<Session> session = session_of(std::move(suit), options_with());
+  std::atomic<bool> stop = false;
+  std::thread works([&] {
+    for (; !stop; std::this_thread::sleep_for(std::chrono::milliseconds(1))) session->work();
+  });
+  StreamClient client(session->port());
+  const std::vector<std::string> topics = {"/sheet/force", "/contacts", "/suit/points", "/health", "/statistics"};
+  client.subscribe(topics);
+  for (const std::string& topic : topics) EXPECT_FALSE(client.next_message(topic).bytes.empty()) << topic;
+  stop = true;
+  works.join();
 }
 
 TEST(Session, moves_the_body_as_its_clients_say) {

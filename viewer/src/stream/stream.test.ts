@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { Backoff } from "./backoff";
+import { ServerEndpoint } from "./endpoint";
 import { Stream } from "./stream";
 
 class FakeSocket {
@@ -60,7 +61,7 @@ function last(): FakeSocket {
 }
 
 async function connected(address = "http://host:8080/?token=secret#/array"): Promise<Stream> {
-  const stream = new Stream(new URL(address), () => undefined);
+  const stream = new Stream(new ServerEndpoint(new URL(address)), () => undefined);
   stream.connect();
   await vi.advanceTimersByTimeAsync(1);
   return stream;

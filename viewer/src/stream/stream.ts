@@ -3,6 +3,7 @@
 import { Signal } from "../signal";
 import type { SuitDescription } from "../suit";
 import { Backoff } from "./backoff";
+import type { Endpoint, Socket } from "./endpoint";
 import * as protocol from "./protocol";
 import { ServiceCalls } from "./service_calls";
 
@@ -37,7 +38,7 @@ const SILENCE_OF_A_CALL_MS = 60000; // it may look for a layout for a while, and
 const TAKEN_MS = 50;
 
 /**
- * The connection to the server: comes back by itself with back-off, and subscribes to the same topics again. Nothing is
+ * The connection to the other end: comes back by itself with back-off, and subscribes to the same topics again. Nothing is
  * asked of the server that nobody follows.
  */
 export class Stream {
@@ -54,7 +55,7 @@ export class Stream {
   /** Log time of the newest message [s]; undefined: none has come yet. */
   latestTimeS: number | undefined;
 
-  readonly #base: URL;
+  readonly #endpoint: Endpoint;
   readonly #onSuit: (suit: SuitDescription) => void;
   readonly #backoff = new Backoff();
   readonly #topics = new Map<string, Topic>();
@@ -62,7 +63,7 @@ export class Stream {
   readonly #channels = new Map<string, number>();
   readonly #calls = new ServiceCalls();
   #token: string;
-  #socket: WebSocket | undefined;
+  #socket: Socket | undefined;
   #timer = 0;
   #attempts = 0;
   #liveSinceMs = 0;
@@ -71,10 +72,10 @@ export class Stream {
   #taken = 0;
   #takenTimer = 0;
 
-  constructor(base: URL, onSuit: (suit: SuitDescription) => void) {
-    this.#base = base;
+  constructor(endpoint: Endpoint, onSuit: (suit: SuitDescription) => void) {
+    this.#endpoint = endpoint;
     this.#onSuit = onSuit;
-    this.#token = base.searchParams.get("token") ?? "";
+    this.#token = endpoint.token;
   }
 
   /** Begins to connect; also at once where it waits for the next attempt. */
@@ -142,13 +143,13 @@ export class Stream {
 
   /** A file that /suit.json names. */
   async fetchFile(path: string): Promise<ArrayBuffer> {
-    const response = await fetch(this.#address(path));
+    const response = await this.#endpoint.fetch(path, this.#token);
     if (!response.ok) throw new Error(`the server answers ${response.status}`);
     return response.arrayBuffer();
   }
 
   #fetchSuit(): Promise<Response> {
-    return fetch(this.#address("suit.json"), { signal: AbortSignal.timeout(5000), cache: "no-store" });
+    return this.#endpoint.fetch("suit.json", this.#token, { signal: AbortSignal.timeout(5000), cache: "no-store" });
   }
 
   async #attempt(): Promise<void> {
@@ -172,25 +173,15 @@ export class Stream {
     }
   }
 
-  #address(path: string): URL {
-    const address = new URL(path, this.#base);
-    address.search = this.#token === "" ? "" : `?${new URLSearchParams({ token: this.#token })}`;
-    address.hash = "";
-    return address;
-  }
-
   /** While the description of the suit is on its way. Messages wait for the call of the answer. */
   #open(): () => void {
-    const address = this.#address("./");
-    address.protocol = address.protocol.replace("http", "ws");
-    const socket = new WebSocket(address, protocol.SUBPROTOCOLS);
-    socket.binaryType = "arraybuffer";
+    const socket = this.#endpoint.open(this.#token);
     const early: (string | ArrayBuffer)[] = [];
-    socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => early.push(event.data);
+    socket.onmessage = (event) => early.push(event.data);
     this.#socket = socket;
     return () => {
       if (socket.readyState >= WebSocket.CLOSING) throw new Error("the connection was closed");
-      socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => this.#receive(event.data);
+      socket.onmessage = (event) => this.#receive(event.data);
       socket.onclose = () => this.#retry();
       this.#lastMessageMs = performance.now();
       this.#watch();

@@ -98,6 +98,9 @@ class LiveSuit {
 
   /// Once.
   void start();
+  /// In the place of start(), where there is one thread: takes the frames that have come, finds the contacts in all of
+  /// them, and does not wait. Sources that can only be waited for have no part in it.
+  void work();
   /// Waits for the threads. Each ends with its present or next frame. So stop a source that may wait long first
   /// (DeviceOptions::stop).
   void stop();

@@ -45,6 +45,10 @@ class Session {
   /// where it could not be written. Call it once.
   [[nodiscard]] Status run(const std::atomic<bool>& stop);
 
+  /// In the place of run(), where there is one thread: does what is due now. Call it again and again, at least 30 times
+  /// a second.
+  void work();
+
  private:
   class Implementation;
   explicit Session(std::unique_ptr<Implementation> implementation);

@@ -5,7 +5,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cctype>
 #include <functional>
 #include <future>
 #include <map>
@@ -26,6 +25,7 @@
 #include "dermis/touch/pipeline/model.hpp"
 #include "out/serve/recognition/live_recognition.hpp"
 #include "out/serve/recognition/suit_recognition.hpp"
+#include "out/serve/session/topic_name.hpp"
 #include "out/serve/suit/model_or_array.hpp"
 
 namespace dermis::out::serve {
@@ -33,16 +33,6 @@ namespace {
 
 using live::sources::SourceKind;
 using live::sources::SourceName;
-
-/// A name that topics may have, as suit.toml asks for.
-std::string topic_name(const std::string& name) {
-  std::string topic;
-  for (const char letter : name) {
-    topic += std::isalnum(static_cast<unsigned char>(letter)) != 0 ? letter : '_';
-  }
-  const bool begins_with_letter = !topic.empty() && std::isalpha(static_cast<unsigned char>(topic.front())) != 0;
-  return begins_with_letter ? topic : "array_" + topic;
-}
 
 using Notice = std::function<void(const std::string&)>;
 
@@ -335,20 +325,6 @@ bool describes_its_array(const SourceName& from) {
   if (from.kind != SourceKind::recording) return false;
   const Result<bytes::recordings::FrameNotes> notes = bytes::recordings::read_frame_notes(from.text);
   return notes && !notes->array_toml.empty();
-}
-
-Result<ServedSuit> suit_of_one(std::unique_ptr<FrameSource> source, touch::pipeline::Model model) {
-  Result<ArraySurface> surface = ArraySurface::create(model.array);
-  if (!surface) return surface.error();
-  ArrayDescription description = model.array;
-  std::string name = topic_name(description.name);
-  ServedSuit suit;
-  suit.arrays.push_back({.name = std::move(name),
-                         .source = std::move(source),
-                         .model = std::make_shared<const touch::pipeline::Model>(std::move(model)),
-                         .surface = *std::move(surface),
-                         .description = std::move(description)});
-  return suit;
 }
 
 Result<ServedSuit> played_suit(const ServedSuit& suit, const std::string& recording) {

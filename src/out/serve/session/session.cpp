@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <string>
@@ -52,6 +53,7 @@ class Session::Implementation {
   /// Begins to answer clients and, where one is wanted, a recording.
   [[nodiscard]] Status start();
   [[nodiscard]] Status run(const std::atomic<bool>& stop);
+  void work();
   [[nodiscard]] std::uint16_t port() const noexcept { return server_->port(); }
 
  private:
@@ -68,6 +70,8 @@ class Session::Implementation {
   std::unique_ptr<live::suits::LiveSuit> live_;
   std::optional<Host> host_;
   PartList parts_;
+  std::chrono::steady_clock::time_point next_tick_{};  // of work()
+  std::int64_t ticks_ = 0;
 };
 
 Status Session::Implementation::make(const SessionOptions& options) {
@@ -103,7 +107,7 @@ std::unique_ptr<SuitRecorder> Session::Implementation::make_recorder(const std::
 }
 
 Status Session::Implementation::make_parts() {
-  for (PartMaker* const make : kPartMakers) {
+  for (PartMaker* const make : part_makers()) {
     Result<std::unique_ptr<Part>> part = make(*host_);
     if (!part) return part.error();
     if (*part) parts_.add(*std::move(part));
@@ -146,6 +150,15 @@ Status Session::Implementation::run(const std::atomic<bool>& stop) {
   return recorder_->end();
 }
 
+/// A page that slept does not make up for the ticks of that time.
+void Session::Implementation::work() {
+  live_->work();
+  const auto now = std::chrono::steady_clock::now();
+  if (now < next_tick_) return;
+  next_tick_ = std::max(now, next_tick_ + Nanos(1'000'000'000 / Part::kTicksPerSecond));
+  parts_.tick(ticks_++);
+}
+
 Session::Implementation::~Implementation() {
   if (suit_.playback) suit_.playback->stop();
   if (live_) live_->stop();
@@ -170,6 +183,10 @@ std::uint16_t Session::port() const noexcept {
 
 Status Session::run(const std::atomic<bool>& stop) {
   return implementation_->run(stop);
+}
+
+void Session::work() {
+  implementation_->work();
 }
 
 }  // namespace dermis::out::serve

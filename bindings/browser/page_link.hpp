@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "dermis/touch/frames/result.hpp"
+#include "out/websocket/outgoing_queue.hpp"
+
+namespace dermis::browser {
+
+/// The end of the server for the one page that has it: in the place of connections.
+class PageLink {
+ public:
+  PageLink() = default;
+  virtual ~PageLink() = default;
+  PageLink(const PageLink&) = delete;
+  PageLink& operator=(const PageLink&) = delete;
+
+  /// A client begins anew; what waited for the last one is gone.
+  virtual void connect() = 0;
+  /// A message of the client. Errors: it does not speak the protocol.
+  [[nodiscard]] virtual Status receive(std::span<const std::uint8_t> bytes, bool is_text) = 0;
+  /// The next message for the client; empty: none waits.
+  [[nodiscard]] virtual std::optional<out::websocket::OutgoingMessage> next() = 0;
+  /// "/suit.json"; null: there is none of that name.
+  [[nodiscard]] virtual const std::string* document(const std::string& path) const = 0;
+};
+
+/// That of the server that was made last; null: there is none.
+[[nodiscard]] PageLink* page_link() noexcept;
+
+}  // namespace dermis::browser

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "out/serve/parts/part_makers.hpp"
+
+namespace dermis::out::serve {
+
+/// Those that need neither files nor threads.
+std::span<PartMaker* const> part_makers() {
+  static constexpr PartMaker* kMakers[] = {make_frame_topics, make_health, make_live_settings, make_tares};
+  return kMakers;
+}
+
+}  // namespace dermis::out::serve

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+import { element } from "../dom";
+import "../styles/tokens.css";
+import "../styles/page.css";
+import "../styles/controls.css";
+import "./try.css";
+import { App } from "../app";
+import { errorText } from "../format";
+import { ModuleEndpoint } from "./module_endpoint";
+
+function showInstead(text: string): void {
+  document.body.replaceChildren(element("p", { role: "alert" }, text));
+}
+
+const ABOUT =
+  "A simulated sheet. dermis runs in this page: no byte leaves this machine, and once it was shown it needs no network.";
+
+/** Not before the page is at work. Nor where it may not be kept: then it needs its network. */
+function keepForOffline(): void {
+  navigator.serviceWorker?.register("offline.js").catch(() => undefined);
+}
+
+try {
+  const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
+  const addressOf = (file: string): string => new URL(file, document.baseURI).href;
+  const app = new App(new ModuleEndpoint(worker, addressOf("dermis.wasm"), addressOf("sheet.model"), showInstead));
+  document.body.append(
+    element("aside", { class: "about", "aria-label": "About this page", "data-role": "about" }, ABOUT),
+  );
+  app.begin();
+  app.stream.connection.follow(({ kind }) => {
+    if (kind === "live") keepForOffline();
+  });
+} catch (error) {
+  showInstead(errorText(error));
+  throw error;
+}

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+
+/** The functions of the module (bindings/browser/module.cpp). */
+interface Exports {
+  readonly memory: WebAssembly.Memory;
+  _initialize(): void;
+  dermis_room(size: number): number;
+  dermis_answer(): number;
+  dermis_answer_size(): number;
+  dermis_begin_simulation(size: number): number;
+  dermis_connect(): void;
+  dermis_receive(size: number, isText: number): number;
+  dermis_work(): void;
+  dermis_next(): number;
+  dermis_document(size: number): number;
+}
+
+const NEXT_IS_TEXT = 1;
+const utf8 = new TextEncoder();
+
+/** dermis in this thread: the server of `dermis serve` for one client. Not for the page's own thread, which it holds up. */
+export class Module {
+  readonly #exports: Exports;
+
+  private constructor(instance: WebAssembly.Instance) {
+    this.#exports = instance.exports as unknown as Exports;
+  }
+
+  static async load(source: WebAssembly.Module): Promise<Module> {
+    let memory: WebAssembly.Memory | undefined;
+    const system = systemOf(() => memory!);
+    const instance = await WebAssembly.instantiate(source, { wasi_snapshot_preview1: system });
+    const module = new Module(instance);
+    memory = module.#exports.memory;
+    module.#exports._initialize();
+    return module;
+  }
+
+  /** Fails with the line of the module. */
+  beginSimulation(model: Uint8Array): void {
+    if (this.#exports.dermis_begin_simulation(this.#put(model)) === 0) throw new Error(this.#text());
+  }
+
+  connect(): void {
+    this.#exports.dermis_connect();
+  }
+
+  receive(message: string | Uint8Array): void {
+    const isText = typeof message === "string";
+    const bytes = isText ? utf8.encode(message) : message;
+    if (this.#exports.dermis_receive(this.#put(bytes), isText ? 1 : 0) === 0) throw new Error(this.#text());
+  }
+
+  work(): void {
+    this.#exports.dermis_work();
+  }
+
+  /** The next message for the client. */
+  next(): string | ArrayBuffer | undefined {
+    const kind = this.#exports.dermis_next();
+    if (kind === 0) return undefined;
+    return kind === NEXT_IS_TEXT ? this.#text() : this.#answer().slice().buffer;
+  }
+
+  document(path: string): string | undefined {
+    return this.#exports.dermis_document(this.#put(utf8.encode(path))) === 0 ? undefined : this.#text();
+  }
+
+  #put(bytes: Uint8Array): number {
+    const place = this.#exports.dermis_room(bytes.length);
+    new Uint8Array(this.#exports.memory.buffer, place, bytes.length).set(bytes);
+    return bytes.length;
+  }
+
+  #answer(): Uint8Array<ArrayBuffer> {
+    const { memory, dermis_answer, dermis_answer_size } = this.#exports;
+    return new Uint8Array(memory.buffer as ArrayBuffer, dermis_answer(), dermis_answer_size());
+  }
+
+  #text(): string {
+    return new TextDecoder().decode(this.#answer());
+  }
+}
+
+const OK = 0;
+const NO_SUCH_FILE = 8; // EBADF
+const REALTIME = 0;
+
+/** The functions of WASI that the module calls: its clocks, and what it is random by. It has no files. */
+function systemOf(memory: () => WebAssembly.Memory): WebAssembly.ModuleImports {
+  const view = (): DataView => new DataView(memory().buffer);
+  const functions: Record<string, (...numbers: number[]) => number> = {
+    clock_time_get: (clock, _precision, place) => {
+      const sinceMs = clock === REALTIME ? performance.timeOrigin + performance.now() : performance.now();
+      view().setBigUint64(place!, BigInt(Math.round(sinceMs * 1e6)), true);
+      return OK;
+    },
+    random_get: (place, size) => {
+      crypto.getRandomValues(new Uint8Array(memory().buffer as ArrayBuffer, place, size));
+      return OK;
+    },
+    environ_sizes_get: (count, size) => {
+      view().setUint32(count!, 0, true);
+      view().setUint32(size!, 0, true);
+      return OK;
+    },
+    environ_get: () => OK,
+    proc_exit: (status) => {
+      throw new Error(`dermis has ended with ${status}`);
+    },
+  };
+  return new Proxy(functions, { get: (known, name: string) => known[name] ?? (() => NO_SUCH_FILE) });
+}

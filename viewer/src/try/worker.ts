@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+import { errorText } from "../format";
+import { Module } from "./module";
+import type { Answer, Question } from "./module_endpoint";
+
+const WORK_MS = 5;
+
+let client: MessagePort | undefined;
+let begun: Promise<Module> | undefined;
+
+async function bytesOf(address: string): Promise<ArrayBuffer> {
+  const response = await fetch(address);
+  if (!response.ok) throw new Error(`${address}: ${response.status}`);
+  return response.arrayBuffer();
+}
+
+async function begin(module: string, model: string): Promise<Module> {
+  const [code, modelFile] = await Promise.all([bytesOf(module), bytesOf(model)]);
+  const made = await Module.load(await WebAssembly.compile(code));
+  made.beginSimulation(new Uint8Array(modelFile));
+  setInterval(() => {
+    made.work();
+    send(made);
+  }, WORK_MS);
+  return made;
+}
+
+function send(module: Module): void {
+  for (let message = module.next(); message !== undefined; message = module.next()) {
+    client?.postMessage(message, typeof message === "string" ? [] : [message]);
+  }
+}
+
+async function connect(port: MessagePort): Promise<void> {
+  const module = await begun!;
+  client = port;
+  port.onmessage = ({ data }: MessageEvent<string | Uint8Array>) => {
+    module.receive(data);
+    send(module);
+  };
+  module.connect();
+  send(module);
+}
+
+async function answer(id: number, path: string): Promise<void> {
+  let answered: Answer;
+  try {
+    answered = { id, document: (await begun!).document(path) };
+  } catch (error) {
+    answered = { id, failure: errorText(error) };
+  }
+  postMessage(answered);
+}
+
+addEventListener("message", ({ data }: MessageEvent<Question>) => {
+  if ("module" in data) begun = begin(data.module, data.model);
+  else if ("port" in data)
+    connect(data.port).catch(() => undefined); // the question for suit.json tells why
+  else void answer(data.id, data.path);
+});
