@@ -37,10 +37,10 @@ enum class SingleLines {
 /// How the lines of a protocol are written.
 struct RowSyntax {
   /// `line` ends with '\n'. The first numbers of a row go into `values`, as many as have a place there.
-  ParsedLine (*parse)(std::span<const std::uint8_t> line, std::span<float> values);
+  ParsedLine (*parse)(std::span<const std::uint8_t> line, std::span<float> values) = nullptr;
   /// The shape that a line announces; null where the protocol has no such lines.
-  std::optional<FrameShape> (*announced_shape)(std::span<const std::uint8_t> line);
-  SingleLines single_lines;
+  std::optional<FrameShape> (*announced_shape)(std::span<const std::uint8_t> line) = nullptr;
+  SingleLines single_lines = SingleLines::never;
   /// Takes a line of any number of values for a frame, as one row; otherwise it must be square where its shape is not
   /// known.
   bool any_size = false;
