@@ -10,8 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "bindings/browser/fit_link.hpp"
 #include "bindings/browser/page_link.hpp"
 #include "dermis/bytes/models/model_file.hpp"
+#include "dermis/learn/calibration/uncalibrated_model.hpp"
 #include "dermis/out/serve/served_suit.hpp"
 #include "dermis/out/serve/session.hpp"
 #include "live/sources/simulated_source.hpp"
@@ -22,6 +24,8 @@ namespace {
 
 using namespace dermis;  // NOLINT(google-build-using-namespace)
 
+constexpr const char* kContacts = "contacts";
+constexpr const char* kRehearsal = "rehearsal";
 constexpr double kSimulatedHz = 100.0;
 constexpr std::size_t kSimulatedFrames = 600;  // of the scene, at 100 Hz
 
@@ -45,24 +49,28 @@ std::string text_of(std::size_t size) {
   return {reinterpret_cast<const char*>(module().room.data()), size};
 }
 
-Result<out::serve::ServedSuit> simulated(const std::string& model_file) {
+Result<out::serve::ServedSuit> simulated(const std::string& model_file, const std::string& scene) {
   Result<touch::pipeline::Model> model = bytes::models::model_from_bytes(model_file, "the model");
   if (!model) return model.error();
+  if (scene == kRehearsal) model = learn::calibration::uncalibrated_model(ArrayDescription(model->array));
   bytes::devices::SourceUri uri;
-  uri.text = "sim:contacts";
+  uri.text = "sim:" + scene;
   uri.transport = bytes::devices::Transport::simulation;
-  uri.path = "contacts";
+  uri.path = scene;
   uri.rate_hz = kSimulatedHz;
   uri.frames = kSimulatedFrames;
   live::sources::SourceOptions options;
   options.array = &model->array;
+  options.guide = std::make_shared<live::sources::GuideVoice>();
   Result<std::unique_ptr<FrameSource>> source = live::sources::open_simulation(uri, options);
   if (!source) return source.error();
-  return out::serve::suit_of_one(*std::move(source), *std::move(model));
+  Result<out::serve::ServedSuit> suit = out::serve::suit_of_one(*std::move(source), *std::move(model));
+  if (suit) suit->guide = options.guide;
+  return suit;
 }
 
-Status begin(const std::string& model_file) {
-  Result<out::serve::ServedSuit> suit = simulated(model_file);
+Status begin(const std::string& model_file, const std::string& scene) {
+  Result<out::serve::ServedSuit> suit = simulated(model_file, scene);
   if (!suit) return suit.error();
   Result<std::unique_ptr<out::serve::Session>> session = out::serve::Session::create(*std::move(suit));
   if (!session) return session.error();
@@ -86,10 +94,11 @@ DERMIS_EXPORT(dermis_answer_size) std::size_t dermis_answer_size() {
   return module().answer.size();
 }
 
-/// A simulated sheet with the model whose bytes are in the room. 0: it could not begin, and the answer says why.
-DERMIS_EXPORT(dermis_begin_simulation) int dermis_begin_simulation(std::size_t size) {
+/// A simulated sheet with the model whose bytes are in the room; or that of a rehearsal, under a hand that obeys the
+/// guide of a calibration. 0: it could not begin, and the answer says why.
+DERMIS_EXPORT(dermis_begin_simulation) int dermis_begin_simulation(std::size_t size, int is_rehearsal) {
   module().session.reset();
-  const Status begun = begin(text_of(size));
+  const Status begun = begin(text_of(size), is_rehearsal != 0 ? kRehearsal : kContacts);
   answer(begun ? "" : begun.error().message);
   return begun ? 1 : 0;
 }
@@ -130,4 +139,21 @@ DERMIS_EXPORT(dermis_document) int dermis_document(std::size_t size) {
   const std::string* const document = link != nullptr ? link->document(text_of(size)) : nullptr;
   if (document != nullptr) answer(*document);
   return document != nullptr ? 1 : 0;
+}
+
+/// In a copy of the module: the fit that fits.begin() asks for. Its outcome becomes the answer.
+DERMIS_EXPORT(dermis_fit) void dermis_fit() {
+  if (auto* const link = browser::fit_link()) answer(link->run());
+}
+/// The answer of dermis_fit() in the copy, in the room.
+DERMIS_EXPORT(dermis_fit_done) void dermis_fit_done(std::size_t size) {
+  if (auto* const link = browser::fit_link()) link->accept(text_of(size));
+}
+/// The share of it that is done.
+DERMIS_EXPORT(dermis_fit_share) void dermis_fit_share(double share) {
+  if (auto* const link = browser::fit_link()) link->accept_share(share);
+}
+/// The copy has ended without an answer; why is in the room.
+DERMIS_EXPORT(dermis_fit_failed) void dermis_fit_failed(std::size_t size) {
+  if (auto* const link = browser::fit_link()) link->fail(text_of(size));
 }

@@ -19,6 +19,6 @@ target_compile_definitions(others_fmt_fmt-header-only INTERFACE FMT_HEADER_ONLY)
 target_include_directories(others_Eigen3_Eigen SYSTEM INTERFACE /usr/include/eigen3)
 
 # Sources that need a file system or more than one thread.
-set(DERMIS_LEFT_OUT "files/(output_place|unfinished_file|process_outputs|kept_copy|atomic_file)\\.cpp|calibration/parallel\\.cpp")
+set(DERMIS_LEFT_OUT "files/(output_place|unfinished_file|process_outputs|kept_copy|atomic_file)\\.cpp|calibration/(parallel|guided/guide_fitter)\\.cpp")
 # A size has 32 bits there, and numbers of 64 bits that are within bounds become one. Not each loop becomes a vector.
 target_compile_options(dermis_build_flags INTERFACE -Wno-shorten-64-to-32 -Wno-c++11-narrowing -Wno-pass-failed)

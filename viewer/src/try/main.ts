@@ -24,7 +24,10 @@ function keepForOffline(): void {
 try {
   const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
   const addressOf = (file: string): string => new URL(file, document.baseURI).href;
-  const app = new App(new ModuleEndpoint(worker, addressOf("dermis.wasm"), addressOf("sheet.model"), showInstead));
+  const isRehearsal = new URLSearchParams(location.search).has("rehearsal");
+  const app = new App(
+    new ModuleEndpoint(worker, addressOf("dermis.wasm"), addressOf("sheet.model"), isRehearsal, showInstead),
+  );
   document.body.append(
     element("aside", { class: "about", "aria-label": "About this page", "data-role": "about" }, ABOUT),
   );

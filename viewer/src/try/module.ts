@@ -8,38 +8,87 @@ interface Exports {
   dermis_room(size: number): number;
   dermis_answer(): number;
   dermis_answer_size(): number;
-  dermis_begin_simulation(size: number): number;
+  dermis_begin_simulation(size: number, isRehearsal: number): number;
   dermis_connect(): void;
   dermis_receive(size: number, isText: number): number;
   dermis_work(): void;
   dermis_next(): number;
   dermis_document(size: number): number;
+  dermis_fit(): void;
+  dermis_fit_done(size: number): void;
+  dermis_fit_share(share: number): void;
+  dermis_fit_failed(size: number): void;
+}
+
+/** Does the fits of a module, each in a copy of it. */
+export interface Fitter {
+  begin(module: Module): void;
+  /** The fit is not wanted any more. */
+  end(): void;
+}
+
+/** A module as it stands, for another worker to go on with. */
+export interface Copy {
+  code: WebAssembly.Module;
+  memory: ArrayBuffer;
 }
 
 const NEXT_IS_TEXT = 1;
+const PAGE_BYTES = 65536;
 const utf8 = new TextEncoder();
 
 /** dermis in this thread: the server of `dermis serve` for one client. Not for the page's own thread, which it holds up. */
 export class Module {
+  readonly #code: WebAssembly.Module;
   readonly #exports: Exports;
 
-  private constructor(instance: WebAssembly.Instance) {
+  private constructor(code: WebAssembly.Module, instance: WebAssembly.Instance) {
+    this.#code = code;
     this.#exports = instance.exports as unknown as Exports;
   }
 
-  static async load(source: WebAssembly.Module): Promise<Module> {
-    let memory: WebAssembly.Memory | undefined;
-    const system = systemOf(() => memory!);
-    const instance = await WebAssembly.instantiate(source, { wasi_snapshot_preview1: system });
-    const module = new Module(instance);
-    memory = module.#exports.memory;
+  static async load(code: WebAssembly.Module, fitter: Fitter): Promise<Module> {
+    const module: Module = await Module.#make(code, {
+      begin: () => fitter.begin(module),
+      end: () => fitter.end(),
+      tell_share: () => undefined,
+    });
     module.#exports._initialize();
     return module;
   }
 
+  /** The fit that the module asks for, whose copy it is. Returns its outcome; fails where the module does. */
+  static async fit({ code, memory }: Copy, tellShare: (share: number) => void): Promise<Uint8Array<ArrayBuffer>> {
+    const nothing = (): void => undefined;
+    const module = await Module.#make(code, { begin: nothing, end: nothing, tell_share: tellShare });
+    module.#resume(memory);
+    module.#exports.dermis_fit();
+    return module.#answer().slice();
+  }
+
+  static async #make(code: WebAssembly.Module, fits: WebAssembly.ModuleImports): Promise<Module> {
+    let memory: WebAssembly.Memory | undefined;
+    const system = systemOf(() => memory!);
+    const module = new Module(code, await WebAssembly.instantiate(code, { wasi_snapshot_preview1: system, fits }));
+    memory = module.#exports.memory;
+    return module;
+  }
+
+  /** Goes on where the module stood that had this memory. */
+  #resume(from: ArrayBuffer): void {
+    const { memory } = this.#exports;
+    memory.grow((from.byteLength - memory.buffer.byteLength) / PAGE_BYTES);
+    new Uint8Array(memory.buffer).set(new Uint8Array(from));
+  }
+
+  copy(): Copy {
+    return { code: this.#code, memory: this.#exports.memory.buffer.slice(0) as ArrayBuffer };
+  }
+
   /** Fails with the line of the module. */
-  beginSimulation(model: Uint8Array): void {
-    if (this.#exports.dermis_begin_simulation(this.#put(model)) === 0) throw new Error(this.#text());
+  beginSimulation(model: Uint8Array, isRehearsal: boolean): void {
+    const begun = this.#exports.dermis_begin_simulation(this.#put(model), isRehearsal ? 1 : 0);
+    if (begun === 0) throw new Error(this.#text());
   }
 
   connect(): void {
@@ -65,6 +114,18 @@ export class Module {
 
   document(path: string): string | undefined {
     return this.#exports.dermis_document(this.#put(utf8.encode(path))) === 0 ? undefined : this.#text();
+  }
+
+  fitDone(outcome: Uint8Array): void {
+    this.#exports.dermis_fit_done(this.#put(outcome));
+  }
+
+  fitShare(share: number): void {
+    this.#exports.dermis_fit_share(share);
+  }
+
+  fitFailed(why: string): void {
+    this.#exports.dermis_fit_failed(this.#put(utf8.encode(why)));
   }
 
   #put(bytes: Uint8Array): number {

@@ -3,7 +3,7 @@
 import type { Endpoint, Socket } from "../stream/endpoint";
 
 /** The page asks its worker to begin with these files, to take a client, or for a document. */
-export type Question = { module: string; model: string } | { port: MessagePort } | { id: number; path: string };
+export type Question = { module: string; model: string; isRehearsal: boolean } | { port: MessagePort } | { id: number; path: string };
 export type Answer = { id: number; document?: string | undefined; failure?: string };
 
 /** dermis in a worker of the page, in the place of a server. */
@@ -14,8 +14,11 @@ export class ModuleEndpoint implements Endpoint {
   readonly #asked = new Map<number, (answer: Answer) => void>();
   #lastId = 0;
 
-  /** `module` and `model`: addresses of the files to begin with. `failed` is told why that could not be. */
-  constructor(worker: Worker, module: string, model: string, failed: (why: string) => void) {
+  /**
+   * `module` and `model`: addresses of the files to begin with. `isRehearsal`: with a hand that obeys the guide of a
+   * calibration. `failed` is told why that could not be.
+   */
+  constructor(worker: Worker, module: string, model: string, isRehearsal: boolean, failed: (why: string) => void) {
     this.#worker = worker;
     this.#failed = failed;
     worker.onmessage = ({ data }: MessageEvent<Answer>) => {
@@ -23,7 +26,7 @@ export class ModuleEndpoint implements Endpoint {
       this.#asked.delete(data.id);
     };
     worker.onerror = ({ message }) => failed(message);
-    this.#ask({ module, model });
+    this.#ask({ module, model, isRehearsal });
   }
 
   async fetch(path: string): Promise<Response> {

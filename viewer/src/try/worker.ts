@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { errorText } from "../format";
+import { Fits } from "./fits";
 import { Module } from "./module";
 import type { Answer, Question } from "./module_endpoint";
 
@@ -15,10 +16,10 @@ async function bytesOf(address: string): Promise<ArrayBuffer> {
   return response.arrayBuffer();
 }
 
-async function begin(module: string, model: string): Promise<Module> {
+async function begin(module: string, model: string, isRehearsal: boolean): Promise<Module> {
   const [code, modelFile] = await Promise.all([bytesOf(module), bytesOf(model)]);
-  const made = await Module.load(await WebAssembly.compile(code));
-  made.beginSimulation(new Uint8Array(modelFile));
+  const made = await Module.load(await WebAssembly.compile(code), new Fits());
+  made.beginSimulation(new Uint8Array(modelFile), isRehearsal);
   setInterval(() => {
     made.work();
     send(made);
@@ -54,7 +55,7 @@ async function answer(id: number, path: string): Promise<void> {
 }
 
 addEventListener("message", ({ data }: MessageEvent<Question>) => {
-  if ("module" in data) begun = begin(data.module, data.model);
+  if ("module" in data) begun = begin(data.module, data.model, data.isRehearsal);
   else if ("port" in data)
     connect(data.port).catch(() => undefined); // the question for suit.json tells why
   else void answer(data.id, data.path);
