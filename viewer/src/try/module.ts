@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
+import type { Files } from "./files";
+import { systemOf } from "./system";
 
 /** The functions of the module (bindings/browser/module.cpp). */
 interface Exports {
@@ -27,12 +29,10 @@ export class Module {
     this.#exports = instance.exports as unknown as Exports;
   }
 
-  static async load(source: WebAssembly.Module): Promise<Module> {
-    let memory: WebAssembly.Memory | undefined;
-    const system = systemOf(() => memory!);
-    const instance = await WebAssembly.instantiate(source, { wasi_snapshot_preview1: system });
-    const module = new Module(instance);
-    memory = module.#exports.memory;
+  static async load(source: WebAssembly.Module, files: Files): Promise<Module> {
+    const system = systemOf(files);
+    const module = new Module(await WebAssembly.instantiate(source, system.imports));
+    system.memory = module.#exports.memory;
     module.#exports._initialize();
     return module;
   }
@@ -81,34 +81,4 @@ export class Module {
   #text(): string {
     return new TextDecoder().decode(this.#answer());
   }
-}
-
-const OK = 0;
-const NO_SUCH_FILE = 8; // EBADF
-const REALTIME = 0;
-
-/** The functions of WASI that the module calls: its clocks, and what it is random by. It has no files. */
-function systemOf(memory: () => WebAssembly.Memory): WebAssembly.ModuleImports {
-  const view = (): DataView => new DataView(memory().buffer);
-  const functions: Record<string, (...numbers: number[]) => number> = {
-    clock_time_get: (clock, _precision, place) => {
-      const sinceMs = clock === REALTIME ? performance.timeOrigin + performance.now() : performance.now();
-      view().setBigUint64(place!, BigInt(Math.round(sinceMs * 1e6)), true);
-      return OK;
-    },
-    random_get: (place, size) => {
-      crypto.getRandomValues(new Uint8Array(memory().buffer as ArrayBuffer, place, size));
-      return OK;
-    },
-    environ_sizes_get: (count, size) => {
-      view().setUint32(count!, 0, true);
-      view().setUint32(size!, 0, true);
-      return OK;
-    },
-    environ_get: () => OK,
-    proc_exit: (status) => {
-      throw new Error(`dermis has ended with ${status}`);
-    },
-  };
-  return new Proxy(functions, { get: (known, name: string) => known[name] ?? (() => NO_SUCH_FILE) });
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { errorText } from "../format";
+import { Files } from "./files";
 import { Module } from "./module";
 import type { Answer, Question } from "./module_endpoint";
 
@@ -17,7 +18,7 @@ async function bytesOf(address: string): Promise<ArrayBuffer> {
 
 async function begin(module: string, model: string): Promise<Module> {
   const [code, modelFile] = await Promise.all([bytesOf(module), bytesOf(model)]);
-  const made = await Module.load(await WebAssembly.compile(code));
+  const made = await Module.load(await WebAssembly.compile(code), new Files());
   made.beginSimulation(new Uint8Array(modelFile));
   setInterval(() => {
     made.work();
