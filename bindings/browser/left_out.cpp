@@ -5,7 +5,6 @@
 // hear.
 #include <utility>
 
-#include "dermis/bytes/files/output_place.hpp"
 #include "dermis/live/dds/publisher.hpp"
 #include "dermis/live/sources/source_name.hpp"
 #include "out/serve/health/kept_zero.hpp"
@@ -26,10 +25,6 @@ class bytes::recordings::SuitRecordingWriter::Implementation {};
 bytes::recordings::SuitRecordingWriter::~SuitRecordingWriter() = default;
 
 void bytes::recordings::SuitRecordingReader::seek(Nanos /*time*/) {}
-
-Status bytes::files::check_readable(const std::string& /*path*/) {
-  return not_in_a_page();
-}
 
 namespace out::serve {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
-// The functions of libc++ that a library without threads lacks, for its one thread. Nothing waits there: it traps. So
-// does what throws, as the module has no exceptions.
+// The functions of libc++ that a library without threads lacks, for its one thread. A wait for another thread traps; a
+// pause is none. What throws traps, as the module has no exceptions.
 #include <condition_variable>
 #include <mutex>
 #include <shared_mutex>
@@ -44,9 +44,7 @@ void thread::detach() {}
 unsigned thread::hardware_concurrency() noexcept {
   return 1;
 }
-void this_thread::sleep_for(const chrono::nanoseconds&) {
-  __builtin_trap();
-}
+void this_thread::sleep_for(const chrono::nanoseconds&) {}
 
 _LIBCPP_END_NAMESPACE_STD
 

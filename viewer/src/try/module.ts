@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
+import { Files } from "./files";
+import { systemOf } from "./system";
 
 /** The functions of the module (bindings/browser/module.cpp). */
 interface Exports {
@@ -47,8 +49,8 @@ export class Module {
     this.#exports = instance.exports as unknown as Exports;
   }
 
-  static async load(code: WebAssembly.Module, fitter: Fitter): Promise<Module> {
-    const module: Module = await Module.#make(code, {
+  static async load(code: WebAssembly.Module, files: Files, fitter: Fitter): Promise<Module> {
+    const module: Module = await Module.#make(code, files, {
       begin: () => fitter.begin(module),
       end: () => fitter.end(),
       tell_share: () => undefined,
@@ -60,17 +62,16 @@ export class Module {
   /** The fit that the module asks for, whose copy it is. Returns its outcome; fails where the module does. */
   static async fit({ code, memory }: Copy, tellShare: (share: number) => void): Promise<Uint8Array<ArrayBuffer>> {
     const nothing = (): void => undefined;
-    const module = await Module.#make(code, { begin: nothing, end: nothing, tell_share: tellShare });
+    const module = await Module.#make(code, new Files(), { begin: nothing, end: nothing, tell_share: tellShare });
     module.#resume(memory);
     module.#exports.dermis_fit();
     return module.#answer().slice();
   }
 
-  static async #make(code: WebAssembly.Module, fits: WebAssembly.ModuleImports): Promise<Module> {
-    let memory: WebAssembly.Memory | undefined;
-    const system = systemOf(() => memory!);
-    const module = new Module(code, await WebAssembly.instantiate(code, { wasi_snapshot_preview1: system, fits }));
-    memory = module.#exports.memory;
+  static async #make(code: WebAssembly.Module, files: Files, fits: WebAssembly.ModuleImports): Promise<Module> {
+    const system = systemOf(files);
+    const module = new Module(code, await WebAssembly.instantiate(code, { ...system.imports, fits }));
+    system.memory = module.#exports.memory;
     return module;
   }
 
@@ -142,34 +143,4 @@ export class Module {
   #text(): string {
     return new TextDecoder().decode(this.#answer());
   }
-}
-
-const OK = 0;
-const NO_SUCH_FILE = 8; // EBADF
-const REALTIME = 0;
-
-/** The functions of WASI that the module calls: its clocks, and what it is random by. It has no files. */
-function systemOf(memory: () => WebAssembly.Memory): WebAssembly.ModuleImports {
-  const view = (): DataView => new DataView(memory().buffer);
-  const functions: Record<string, (...numbers: number[]) => number> = {
-    clock_time_get: (clock, _precision, place) => {
-      const sinceMs = clock === REALTIME ? performance.timeOrigin + performance.now() : performance.now();
-      view().setBigUint64(place!, BigInt(Math.round(sinceMs * 1e6)), true);
-      return OK;
-    },
-    random_get: (place, size) => {
-      crypto.getRandomValues(new Uint8Array(memory().buffer as ArrayBuffer, place, size));
-      return OK;
-    },
-    environ_sizes_get: (count, size) => {
-      view().setUint32(count!, 0, true);
-      view().setUint32(size!, 0, true);
-      return OK;
-    },
-    environ_get: () => OK,
-    proc_exit: (status) => {
-      throw new Error(`dermis has ended with ${status}`);
-    },
-  };
-  return new Proxy(functions, { get: (known, name: string) => known[name] ?? (() => NO_SUCH_FILE) });
 }

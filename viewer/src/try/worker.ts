@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { errorText } from "../format";
+import { Files } from "./files";
 import { Fits } from "./fits";
 import { Module } from "./module";
 import type { Answer, Question } from "./module_endpoint";
@@ -18,7 +19,7 @@ async function bytesOf(address: string): Promise<ArrayBuffer> {
 
 async function begin(module: string, model: string, isRehearsal: boolean): Promise<Module> {
   const [code, modelFile] = await Promise.all([bytesOf(module), bytesOf(model)]);
-  const made = await Module.load(await WebAssembly.compile(code), new Fits());
+  const made = await Module.load(await WebAssembly.compile(code), new Files(), new Fits());
   made.beginSimulation(new Uint8Array(modelFile), isRehearsal);
   setInterval(() => {
     made.work();
