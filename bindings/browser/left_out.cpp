@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "dermis/live/dds/publisher.hpp"
-#include "dermis/live/sources/source_name.hpp"
 #include "out/serve/health/kept_zero.hpp"
 #include "out/serve/recording/recorded_arrays.hpp"
 #include "out/serve/recording/recordings_folder.hpp"
@@ -76,14 +75,6 @@ std::string absolute_path(const std::string& path) {
 }
 
 }  // namespace out::serve
-
-Result<live::sources::SourceName> live::sources::SourceName::parse(const std::string& /*text*/) {
-  return not_in_a_page();
-}
-
-bool live::sources::SourceName::hears(std::uint32_t /*domain*/, std::string_view /*topic*/) const {
-  return false;
-}
 
 namespace live::dds {
 

@@ -25,6 +25,8 @@ void condition_variable::notify_all() noexcept {}
 void condition_variable::wait(unique_lock<mutex>&) noexcept {
   __builtin_trap();
 }
+void condition_variable::__do_timed_wait(unique_lock<mutex>&,
+                                         chrono::time_point<chrono::system_clock, chrono::nanoseconds>) noexcept {}
 
 __shared_mutex_base::__shared_mutex_base() = default;
 void __shared_mutex_base::lock() {}

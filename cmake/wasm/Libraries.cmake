@@ -9,7 +9,8 @@ set(CMAKE_EXECUTABLE_SUFFIX .wasm)
 set(CMAKE_CXX_COMPILE_OPTIONS_PIC)  # one module, which nothing else is linked with
 
 # The libraries of others as headers alone: Debian's are for its own processors.
-foreach(library fmt::fmt fmt::fmt-header-only hwy::hwy Eigen3::Eigen nlohmann_json::nlohmann_json tomlplusplus::tomlplusplus)
+foreach(library fmt::fmt fmt::fmt-header-only hwy::hwy Eigen3::Eigen nlohmann_json::nlohmann_json tomlplusplus::tomlplusplus
+        Boost::headers)
   string(REPLACE :: _ target others_${library})
   add_library(${target} INTERFACE)
   add_library(${library} ALIAS ${target})
@@ -19,7 +20,7 @@ target_compile_definitions(others_fmt_fmt-header-only INTERFACE FMT_HEADER_ONLY)
 target_compile_definitions(others_tomlplusplus_tomlplusplus INTERFACE TOML_EXCEPTIONS=0)
 target_include_directories(others_Eigen3_Eigen SYSTEM INTERFACE /usr/include/eigen3)
 
-# Sources that need more than one thread.
-set(DERMIS_LEFT_OUT "calibration/(parallel|guided/guide_fitter)\\.cpp")
+# Sources that need ports, sockets, or more than one thread.
+set(DERMIS_LEFT_OUT "calibration/(parallel|guided/guide_fitter)\\.cpp|devices/(byte_stream|descriptor_stream|serial_.*|frame_queue|recorder)\\.cpp")
 # A size has 32 bits there, and numbers of 64 bits that are within bounds become one. Not each loop becomes a vector.
 target_compile_options(dermis_build_flags INTERFACE -Wno-shorten-64-to-32 -Wno-c++11-narrowing -Wno-pass-failed)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { Files } from "./files";
+import type { BoardRequest } from "./module_endpoint";
 import { systemOf } from "./system";
 
 /** The functions of the module (bindings/browser/module.cpp). */
@@ -11,9 +12,14 @@ interface Exports {
   dermis_answer(): number;
   dermis_answer_size(): number;
   dermis_begin_simulation(size: number, isRehearsal: number): number;
+  dermis_begin_setup(): void;
+  dermis_board(size: number, baud: number): void;
+  dermis_board_lost(): void;
+  dermis_bytes(size: number): void;
+  dermis_board_request(): number;
   dermis_connect(): void;
   dermis_receive(size: number, isText: number): number;
-  dermis_work(): void;
+  dermis_work(): number;
   dermis_next(): number;
   dermis_document(size: number): number;
   dermis_fit(): void;
@@ -36,6 +42,7 @@ export interface Copy {
 }
 
 const NEXT_IS_TEXT = 1;
+const REQUEST_TO_OPEN = 1;
 const PAGE_BYTES = 65536;
 const utf8 = new TextEncoder();
 
@@ -92,6 +99,30 @@ export class Module {
     if (begun === 0) throw new Error(this.#text());
   }
 
+  /** Somebody chooses where the array is, and describes it. */
+  beginSetup(): void {
+    this.#exports.dermis_begin_setup();
+  }
+
+  boardIsOpen(name: string, baud: number): void {
+    this.#exports.dermis_board(this.#put(utf8.encode(name)), baud);
+  }
+
+  boardIsLost(): void {
+    this.#exports.dermis_board_lost();
+  }
+
+  bytes(bytes: Uint8Array): void {
+    this.#exports.dermis_bytes(this.#put(bytes));
+  }
+
+  /** The next thing that the page is to do with the board. */
+  boardRequest(): BoardRequest | undefined {
+    const kind = this.#exports.dermis_board_request();
+    if (kind === 0) return undefined;
+    return kind === REQUEST_TO_OPEN ? { open: Number(this.#text()) } : { write: this.#answer().slice() };
+  }
+
   connect(): void {
     this.#exports.dermis_connect();
   }
@@ -102,8 +133,9 @@ export class Module {
     if (this.#exports.dermis_receive(this.#put(bytes), isText ? 1 : 0) === 0) throw new Error(this.#text());
   }
 
-  work(): void {
-    this.#exports.dermis_work();
+  /** Whether the server is another one now, to which the client has to connect. */
+  work(): boolean {
+    return this.#exports.dermis_work() !== 0;
   }
 
   /** The next message for the client. */
