@@ -5,9 +5,7 @@
 // hear.
 #include <utility>
 
-#include "dermis/bytes/files/output_place.hpp"
 #include "dermis/live/dds/publisher.hpp"
-#include "dermis/live/sources/source_name.hpp"
 #include "out/serve/health/kept_zero.hpp"
 #include "out/serve/recording/recorded_arrays.hpp"
 #include "out/serve/recording/recordings_folder.hpp"
@@ -26,10 +24,6 @@ class bytes::recordings::SuitRecordingWriter::Implementation {};
 bytes::recordings::SuitRecordingWriter::~SuitRecordingWriter() = default;
 
 void bytes::recordings::SuitRecordingReader::seek(Nanos /*time*/) {}
-
-Status bytes::files::check_readable(const std::string& /*path*/) {
-  return not_in_a_page();
-}
 
 namespace out::serve {
 
@@ -81,14 +75,6 @@ std::string absolute_path(const std::string& path) {
 }
 
 }  // namespace out::serve
-
-Result<live::sources::SourceName> live::sources::SourceName::parse(const std::string& /*text*/) {
-  return not_in_a_page();
-}
-
-bool live::sources::SourceName::hears(std::uint32_t /*domain*/, std::string_view /*topic*/) const {
-  return false;
-}
 
 namespace live::dds {
 

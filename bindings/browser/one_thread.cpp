@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
-// The functions of libc++ that a library without threads lacks, for its one thread. Nothing waits there: it traps. So
-// does what throws, as the module has no exceptions.
+// The functions of libc++ that a library without threads lacks, for its one thread. A wait for another thread traps; a
+// pause is none. What throws traps, as the module has no exceptions.
 #include <condition_variable>
 #include <mutex>
 #include <shared_mutex>
@@ -25,6 +25,8 @@ void condition_variable::notify_all() noexcept {}
 void condition_variable::wait(unique_lock<mutex>&) noexcept {
   __builtin_trap();
 }
+void condition_variable::__do_timed_wait(unique_lock<mutex>&,
+                                         chrono::time_point<chrono::system_clock, chrono::nanoseconds>) noexcept {}
 
 __shared_mutex_base::__shared_mutex_base() = default;
 void __shared_mutex_base::lock() {}
@@ -44,9 +46,7 @@ void thread::detach() {}
 unsigned thread::hardware_concurrency() noexcept {
   return 1;
 }
-void this_thread::sleep_for(const chrono::nanoseconds&) {
-  __builtin_trap();
-}
+void this_thread::sleep_for(const chrono::nanoseconds&) {}
 
 _LIBCPP_END_NAMESPACE_STD
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "dermis/touch/frames/result.hpp"
 #include "out/websocket/outgoing_queue.hpp"
@@ -24,6 +25,11 @@ class PageLink {
   virtual void connect() = 0;
   /// A message of the client. Errors: it does not speak the protocol.
   [[nodiscard]] virtual Status receive(std::span<const std::uint8_t> bytes, bool is_text) = 0;
+  /// Asks again for the answer to what the client has asked, if one is due; the client's next messages wait for it.
+  /// Errors: as receive().
+  [[nodiscard]] virtual Status work() = 0;
+  /// A line that the client shows to its user; `level` as that of Server::status().
+  virtual void tell(int level, std::string_view line) = 0;
   /// The next message for the client; empty: none waits.
   [[nodiscard]] virtual std::optional<out::websocket::OutgoingMessage> next() = 0;
   /// "/suit.json"; null: there is none of that name.

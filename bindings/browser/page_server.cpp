@@ -2,12 +2,15 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
 // websocket::Server for the page that the module is part of: the same protocol, without sockets.
+#include <deque>
 #include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "bindings/browser/page_link.hpp"
 #include "dermis/out/websocket/server.hpp"
+#include "out/websocket/access.hpp"
 #include "out/websocket/client.hpp"
 
 namespace dermis {
@@ -25,6 +28,11 @@ PageLink* page_link() noexcept {
 }  // namespace browser
 
 namespace out::websocket {
+
+/// Nobody else reaches a page.
+bool is_loopback(std::string_view /*host*/) {
+  return true;
+}
 
 class Server::Implementation final : public browser::PageLink {
  public:
@@ -70,6 +78,10 @@ class Server::Implementation final : public browser::PageLink {
 
   void connect() override;
   [[nodiscard]] Status receive(std::span<const std::uint8_t> bytes, bool is_text) override;
+  [[nodiscard]] Status work() override;
+  void tell(int level, std::string_view line) override {
+    send([&](Client& client) { client.send_status(level, line); });
+  }
   [[nodiscard]] std::optional<OutgoingMessage> next() override;
   [[nodiscard]] const std::string* document(const std::string& path) const override {
     const auto found = documents_.find(path);
@@ -84,6 +96,13 @@ class Server::Implementation final : public browser::PageLink {
     MessageKind kind = MessageKind::event;
   };
 
+  struct Received {
+    std::vector<std::uint8_t> bytes;
+    bool is_text = false;
+  };
+
+  /// Asks the question, which stays where there is no answer yet.
+  void ask();
   /// Queues for the client all that was published since the last time.
   void hand_out();
 
@@ -95,6 +114,8 @@ class Server::Implementation final : public browser::PageLink {
   ServerStatistics statistics_;
   std::map<std::string, std::string> documents_;
   std::vector<Published> published_;  // that the client has not got yet
+  std::deque<Received> received_;     // that the client said while its question waited
+  Question question_;                 // of the client; empty: none waits for its answer
   std::optional<Client> client_;      // the last: it tells of its subscriptions when it goes
 };
 
@@ -116,17 +137,41 @@ void Server::Implementation::hand_out() {
 void Server::Implementation::connect() {
   client_.reset();
   published_.clear();
+  received_.clear();
+  question_ = {};
   const auto changed = [this](ChannelId channel, int change) {
     if (channel < subscribers_.size()) subscribers_[channel] += change;
     if (change > 0) ++subscriptions_;
   };
-  client_.emplace(offer_, "this page", true, options_.client_queue_bytes, changed,
-                  [this](const Question& question) { question()(*client_); });
+  client_.emplace(offer_, "this page", true, options_.client_queue_bytes, changed, [this](Question question) {
+    question_ = std::move(question);
+    ask();
+  });
   client_->greet(options_.name, "page", channels_);
 }
 
 Status Server::Implementation::receive(std::span<const std::uint8_t> bytes, bool is_text) {
-  return client_ ? client_->receive(bytes, is_text) : Status(Done{});
+  if (!client_) return Done{};
+  if (!question_) return client_->receive(bytes, is_text);
+  received_.push_back({{bytes.begin(), bytes.end()}, is_text});
+  return Done{};
+}
+
+void Server::Implementation::ask() {
+  const Answer answer = question_();
+  if (!answer) return;
+  question_ = {};
+  answer(*client_);
+}
+
+Status Server::Implementation::work() {
+  if (question_) ask();
+  while (!question_ && !received_.empty()) {
+    const Received next = std::move(received_.front());
+    received_.pop_front();
+    if (Status received = client_->receive(next.bytes, next.is_text); !received) return received;
+  }
+  return Done{};
 }
 
 std::optional<OutgoingMessage> Server::Implementation::next() {

@@ -6,7 +6,8 @@ namespace dermis::out::serve {
 
 /// Those that need neither files nor threads.
 std::span<PartMaker* const> part_makers() {
-  static constexpr PartMaker* kMakers[] = {make_frame_topics, make_health, make_live_settings, make_tares};
+  static constexpr PartMaker* kMakers[] = {make_frame_topics, make_health, make_calibration, make_live_settings,
+                                           make_tares};
   return kMakers;
 }
 

@@ -3,63 +3,14 @@
 // Usage: node try_test.mjs
 // The page of site/try in a real browser: dermis in a worker, in the place of a server.
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
-import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
-import { createServer } from "node:http";
-import { tmpdir } from "node:os";
-import { extname, join } from "node:path";
-import { after, before, describe, it } from "node:test";
+import { describe, it } from "node:test";
 import { gunzipSync, gzipSync } from "node:zlib";
-import { assertUnhurt, becomes, eventually, openBrowser, openPage, part, tareAnyway } from "./harness.mjs";
+import { assertUnhurt, becomes, eventually, openPage, part, tareAnyway } from "./harness.mjs";
+import { browser, network, packed, url, useSite } from "./try_site.mjs";
 
-const CONTENT_TYPES = {
-  ".html": "text/html",
-  ".js": "text/javascript",
-  ".css": "text/css",
-  ".wasm": "application/wasm",
-};
 const MOST_BYTES = 3_000_000;
 
-if (!existsSync("/usr/bin/wasm-ld-16") || !existsSync("/usr/include/wasm32-wasi/c++/v1")) {
-  console.log("skipped: there is no compiler for WebAssembly (scripts/setup browser)");
-  process.exit(0);
-}
-
-let folder;
-let server;
-let browser;
-let url;
-let packed;
-let isOnline = true;
-
-before(async () => {
-  folder = mkdtempSync(join(tmpdir(), "dermis-try-"));
-  execFileSync(new URL("../../scripts/try_page", import.meta.url).pathname, [folder], {
-    stdio: ["ignore", "ignore", "inherit"],
-  });
-  const files = readdirSync(folder, { recursive: true, withFileTypes: true }).filter((entry) => entry.isFile());
-  packed = new Map(
-    files.map(({ parentPath, path = parentPath, name }) => {
-      const file = join(path, name);
-      return [file.slice(folder.length), gzipSync(readFileSync(file), { level: 9 })];
-    }),
-  );
-  server = createServer((request, response) => {
-    const path = request.url === "/" ? "/index.html" : request.url;
-    const file = isOnline ? packed.get(path) : undefined;
-    if (file === undefined) return response.writeHead(404).end();
-    const type = CONTENT_TYPES[extname(path)] ?? "application/octet-stream";
-    response.writeHead(200, { "Content-Type": type, "Content-Encoding": "gzip" }).end(file);
-  });
-  await new Promise((listening) => server.listen(0, "127.0.0.1", listening));
-  url = `http://127.0.0.1:${server.address().port}/`;
-  browser = await openBrowser();
-});
-after(async () => {
-  await browser?.close();
-  server?.close();
-  if (folder) rmSync(folder, { recursive: true, force: true });
-});
+useSite();
 
 /** Waits until the page is kept for offline. */
 async function kept(page) {
@@ -117,11 +68,11 @@ describe("the page of site/try", () => {
     const page = await openPage(browser, `${url}#/array`);
     await becomes(page, "live");
     await kept(page);
-    isOnline = false;
+    network.isOn = false;
     await page.reload();
     await becomes(page, "live");
     await page.locator("[data-contact]").first().waitFor();
-    isOnline = true;
+    network.isOn = true;
     assertUnhurt(page);
     await page.close();
   });

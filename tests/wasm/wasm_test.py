@@ -45,12 +45,12 @@ def node():
     return [found, "--no-warnings", HERE / "run.mjs"]
 
 
-def build():
-    """The programs, by the project's own build; their folder."""
+def build(*programs):
+    """Them, by the project's own build; their folder."""
     if not shutil.which("wasm-ld-16") or not Path("/usr/include/wasm32-wasi/c++/v1").is_dir():
         sys.exit("skipped: there is no compiler for WebAssembly (scripts/setup browser)")
     run(["cmake", "--preset", "browser"], cwd=PROJECT)
-    run(["cmake", "--build", "--preset", "browser", "--target", "process_frames", "read_numbers"], cwd=PROJECT)
+    run(["cmake", "--build", "--preset", "browser", "--target", *programs], cwd=PROJECT)
     return PROJECT / "build/browser/bindings/browser"
 
 
@@ -70,7 +70,7 @@ def check(circuit, here, there):
 def main():
     simulate, process, read = map(Path, sys.argv[1:])
     in_node = node()
-    folder = build()
+    folder = build("process_frames", "read_numbers")
     program = folder / "process_frames.wasm"
     numbers = "\n".join(PLAIN_NUMBERS.split() + OTHER_NUMBERS).encode()
     here, there = (run(command, input=numbers).stdout for command in ([read], [*in_node, folder / "read_numbers.wasm"]))

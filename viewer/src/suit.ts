@@ -84,6 +84,8 @@ export interface ArraySetup {
   rows: number | null;
   cols: number | null;
   message: string;
+  /** By which the source is read, as TOML; empty: nobody has chosen one. */
+  layout: string;
   /** The first of those of which no frame is made, two hexadecimal digits each. */
   bytes: string;
 }

@@ -3,7 +3,6 @@
 
 // The protocol of dermis itself, docs/wire-protocol.md. Zeros end packets and are nowhere else, as packets are stuffed
 // (Cheshire and Baker 1999, "Consistent Overhead Byte Stuffing").
-#include <zlib.h>
 
 #include <cmath>
 #include <cstring>
@@ -12,6 +11,7 @@
 #include "bytes/devices/frame_numbers.hpp"
 #include "bytes/devices/protocols.hpp"
 #include "bytes/devices/wire_values.hpp"
+#include "dermis/bytes/layouts/checksum_of.hpp"
 #include "dermis/bytes/layouts/escapes.hpp"
 #include "dermis/bytes/layouts/window_decoder.hpp"
 #include "dermis/touch/frames/array_description.hpp"
@@ -36,7 +36,13 @@ constexpr unsigned kSequenceBits = 32;
 constexpr std::uint32_t kMaxLost = 1'000'000;
 
 std::uint32_t crc_of(Bytes bytes) {
-  return static_cast<std::uint32_t>(crc32_z(0, bytes.data(), bytes.size()));
+  static const layouts::ChecksumOf crc32({.kind = layouts::Checksum::Kind::crc,
+                                          .polynomial = 0x04C11DB7U,
+                                          .initial = 0xFFFFFFFFU,
+                                          .final_xor = 0xFFFFFFFFU,
+                                          .is_reflected = true},
+                                         32);
+  return crc32(bytes);
 }
 
 std::size_t packet_size(const FrameShape& shape) {

@@ -32,8 +32,8 @@ DeviceConnection::DeviceConnection(const SourceUri& uri, std::unique_ptr<ByteStr
       notice_(std::move(notice)),
       since_(now().steady) {}
 
-Status DeviceConnection::try_open() {
-  return state_ == State::away ? wait_for_return() : wait_for_first();
+Status DeviceConnection::try_open(Nanos wait) {
+  return state_ == State::away ? wait_for_return(wait) : wait_for_first(wait);
 }
 
 Result<std::size_t> DeviceConnection::read(std::span<std::uint8_t> into, Nanos timeout, bool device_was_here) {
@@ -87,8 +87,8 @@ void DeviceConnection::come_back() {
   notice_(name() + " is back");
 }
 
-Status DeviceConnection::wait_for_first() {
-  const Result<bool> opened = stream_->open(kTick);
+Status DeviceConnection::wait_for_first(Nanos wait) {
+  const Result<bool> opened = stream_->open(wait);
   if (!opened) return opened.error();
   if (*opened) {
     enter(State::open);
@@ -100,11 +100,11 @@ Status DeviceConnection::wait_for_first() {
   return Done{};
 }
 
-Status DeviceConnection::wait_for_return() {
+Status DeviceConnection::wait_for_return(Nanos wait) {
   if (now().steady - since_ >= reconnect_) return give_up();
-  std::this_thread::sleep_for(kTick);
+  if (wait > Nanos{}) std::this_thread::sleep_for(wait);
   if (now().steady < next_try_) return Done{};
-  const Result<bool> opened = stream_->open(kTick);
+  const Result<bool> opened = stream_->open(wait);
   if (!opened || !*opened) return Done{};
   state_ = State::open;
   opened_ = now().steady;

@@ -16,8 +16,8 @@
 namespace dermis::bytes::devices {
 
 /// The stream of a device that may not be there yet, or may go away and come back. It is back when it sends, or stays
-/// for a second. A peer that accepts and closes at once is asked less and less often, once a second in the end. A call
-/// takes 100 ms at most. Not thread-safe.
+/// for a second. A peer that accepts and closes at once is asked less and less often, once a second in the end. Not
+/// thread-safe.
 class DeviceConnection {
  public:
   enum class State {
@@ -32,8 +32,9 @@ class DeviceConnection {
 
   [[nodiscard]] State state() const { return state_; }
 
-  /// One try to open a stream that is waiting or away. Fails where it can never open, and where it was away too long.
-  [[nodiscard]] Status try_open();
+  /// One try to open a stream that is waiting or away, which takes twice `wait` at most. Fails where it can never open,
+  /// and where it was away too long.
+  [[nodiscard]] Status try_open(Nanos wait);
 
   /// Reads the bytes that arrive within the time. Ends the connection where the stream ends. `device_was_here`: who
   /// closes a connection without a frame before was not the device, so another is waited for.
@@ -49,8 +50,8 @@ class DeviceConnection {
 
  private:
   Status end(ByteStream::End how, bool device_was_here);
-  Status wait_for_first();
-  Status wait_for_return();
+  Status wait_for_first(Nanos wait);
+  Status wait_for_return(Nanos wait);
   void leave();
   void come_back();
   Status give_up();

@@ -59,7 +59,7 @@ class DeviceSource final : public FrameSource {
   Status open() {
     const Nanos begin = now().steady;
     for (;;) {
-      if (Status tried = try_open(); !tried) return tried;
+      if (Status tried = try_open(kTick); !tried) return tried;
       if (connection_.state() == State::open || uri_.transport == Transport::tcp_listen || is_stopped()) return Done{};
       if (now().steady - begin > kConnectTimeout) {
         return failed(connection_.name() + " does not answer: check the address, and that the device is on");
@@ -72,7 +72,7 @@ class DeviceSource final : public FrameSource {
       if (decoder_->next(frame)) return deliver(frame);
       if (is_stopped()) return false;
       if (connection_.state() == State::over) return finished();
-      const Status step = connection_.state() == State::open ? receive(until_due(kTick)) : try_open();
+      const Status step = connection_.state() == State::open ? receive(until_due(kTick)) : try_open(kTick);
       if (!step) return step.error();
     }
   }
@@ -88,8 +88,10 @@ class DeviceSource final : public FrameSource {
       if (decoder_->next(frame)) return polled(deliver(frame));
       if (is_stopped()) return Polled::end;
       if (connection_.state() == State::over) return polled(finished());
-      if (connection_.state() != State::open || std::exchange(last_read_.has_all, false)) return Polled::nothing;
-      if (const Status received = receive(Nanos{}); !received) return received.error();
+      if (std::exchange(last_read_.has_all, false)) return Polled::nothing;
+      const bool was_open = connection_.state() == State::open;
+      if (Status step = was_open ? receive(Nanos{}) : try_open(Nanos{}); !step) return step.error();
+      if (!was_open) return Polled::nothing;
     }
   }
 
@@ -137,8 +139,8 @@ class DeviceSource final : public FrameSource {
     if (options_.notice) options_.notice(text);
   }
 
-  Status try_open() {
-    if (Status tried = connection_.try_open(); !tried) return tried;
+  Status try_open(Nanos wait) {
+    if (Status tried = connection_.try_open(wait); !tried) return tried;
     if (connection_.state() == State::open) start();
     return Done{};
   }

@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/bytes/files/config_table.hpp"
 
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
@@ -13,6 +11,7 @@
 #include <utility>
 
 #include "bytes/files/config_text.hpp"
+#include "bytes/files/toml_text.hpp"
 #include "dermis/bytes/files/file_kind.hpp"
 #include "dermis/bytes/files/numbers.hpp"
 #include "dermis/touch/frames/nearest_name.hpp"
@@ -236,15 +235,11 @@ Result<ConfigFile> ConfigFile::read(const std::string& path) {
 Result<ConfigFile> ConfigFile::parse(std::string_view text, const std::string& name) {
   if (const auto other = wrong_kind(text, kTomlKind)) return bad_input(name + ": " + *other);
   if (const Status checked = check_config_text(text, name); !checked) return checked.error();
+  Result<toml::table> root = parse_toml(with_byte_escapes(text), name);
+  if (!root) return root.error();
   ConfigFile file;
   file.parsed_->name = name;
-  try {
-    file.parsed_->root = toml::parse(with_byte_escapes(text));
-  } catch (const toml::parse_error& error) {
-    const toml::source_position at = error.source().begin;
-    return bad_input(name + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ": " +
-                     std::string(error.description()));
-  }
+  file.parsed_->root = *std::move(root);
   return file;
 }
 

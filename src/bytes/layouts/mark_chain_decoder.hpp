@@ -50,7 +50,7 @@ class MarkChainDecoder : public WindowDecoder {
   using Bytes = std::span<const std::uint8_t>;
 
   struct Chain {
-    std::size_t start;
+    std::uint64_t start;
     std::size_t frame_size;
     bool is_whole;  ///< Long enough, and no mark is missing.
   };

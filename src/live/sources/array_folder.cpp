@@ -5,9 +5,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
-#include <memory>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -16,7 +14,7 @@
 #include "dermis/bytes/files/atomic_file.hpp"
 #include "dermis/bytes/files/config_table.hpp"
 #include "dermis/bytes/files/text.hpp"
-#include "dermis/live/sources/patience.hpp"
+#include "live/sources/likely_sources.hpp"
 
 namespace dermis::live::sources {
 namespace {
@@ -24,7 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 using bytes::devices::SerialPort;
 
-constexpr std::chrono::milliseconds kPatienceAtAPort{2500};  // a board begins anew when its port is opened
 constexpr const char* kSerial = "serial://";
 
 std::string within(const std::string& folder, const char* name) {
@@ -106,37 +103,6 @@ std::string kind_of_board(const std::string& path) {
   return name.substr(0, name.rfind('_'));
 }
 
-/// The likeliest first.
-std::vector<SourceName> likely_sources(const ArrayFolder& folder) {
-  std::vector<SourceName> likely;
-  const Result<SourceName> last = SourceName::parse(folder.from);
-  if (!last || folder.from.empty()) return likely;
-  if (!last->uri || last->uri->transport != bytes::devices::Transport::serial) return {*last};
-  const std::string& path = last->uri->path;
-  std::vector<SerialPort> ports = bytes::devices::serial_ports();
-  const auto rank = [&](const SerialPort& port) {
-    if (port.path == path || port.device == path) return 0;
-    return kind_of_board(port.path) == kind_of_board(path) ? 1 : 2;
-  };
-  std::ranges::stable_sort(ports, {}, rank);
-  if (ports.empty() || rank(ports.front()) != 0) likely.push_back(*last);
-  for (const SerialPort& port : ports) {
-    SplitUri uri(folder.from);
-    uri.place = kSerial + port.path;
-    if (Result<SourceName> name = SourceName::parse(uri.text())) likely.push_back(*std::move(name));
-  }
-  return likely;
-}
-
-bool sends_frames(const SourceName& name, FrameShape sent, SourceOptions options) {
-  const Patience patience(options.stop, kPatienceAtAPort);
-  options.stop = patience.over();
-  const Result<std::unique_ptr<FrameSource>> source = open_source(name, options);
-  RawFrame frame;
-  const Result<bool> came = source ? (*source)->next(frame) : Result<bool>(false);
-  return came && *came && (*source)->shape() == sent;
-}
-
 }  // namespace
 
 bool is_array_folder(const std::string& path) {
@@ -172,13 +138,25 @@ Status write_array_source(const std::string& folder, const SourceName& from) {
   return file->commit();
 }
 
-Result<SourceName> find_source(const ArrayFolder& folder, FrameShape sent, const SourceOptions& options) {
-  for (SourceName& name : likely_sources(folder)) {
-    if (sends_frames(name, sent, options)) return std::move(name);
+std::vector<SourceName> likely_sources(const ArrayFolder& folder) {
+  std::vector<SourceName> likely;
+  const Result<SourceName> last = SourceName::parse(folder.from);
+  if (!last || folder.from.empty()) return likely;
+  if (!last->uri || last->uri->transport != bytes::devices::Transport::serial) return {*last};
+  const std::string& path = last->uri->path;
+  std::vector<SerialPort> ports = bytes::devices::serial_ports();
+  const auto rank = [&](const SerialPort& port) {
+    if (port.path == path || port.device == path) return 0;
+    return kind_of_board(port.path) == kind_of_board(path) ? 1 : 2;
+  };
+  std::ranges::stable_sort(ports, {}, rank);
+  if (ports.empty() || rank(ports.front()) != 0) likely.push_back(*last);
+  for (const SerialPort& port : ports) {
+    SplitUri uri(folder.from);
+    uri.place = kSerial + port.path;
+    if (Result<SourceName> name = SourceName::parse(uri.text())) likely.push_back(*std::move(name));
   }
-  return bad_input(
-      fmt::format("'{}': no frame of {}x{} readings came from {}, nor from another serial port: plug it in",
-                  folder.path, sent.rows, sent.cols, folder.from));
+  return likely;
 }
 
 }  // namespace dermis::live::sources

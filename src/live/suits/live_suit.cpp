@@ -56,7 +56,7 @@ class LiveSuit::Implementation {
 
   void work() {
     for (const auto& worker : workers_) {
-      if (worker->readiness()) worker->acquire();
+      worker->acquire();
       while (worker->process()) {
       }
     }

@@ -35,6 +35,13 @@ std::vector<std::string> set_parameters(const Offer& offer, std::span<const Para
   return errors;
 }
 
+Later answer_of(const Service& service, const std::string& request) {
+  Result<Later> begun = service.begin ? service.begin(request)
+                                      : Later([answer = service.call(request)] { return std::optional(answer); });
+  if (begun) return *std::move(begun);
+  return [error = begun.error()] { return std::optional<Result<std::string>>(error); };
+}
+
 }  // namespace
 
 Client::Client(const Offer& offer, std::string address, bool is_sdk, std::size_t queue_bytes,
@@ -142,7 +149,9 @@ void Client::handle(const Taken& taken) {
 void Client::ask(Question question) {
   is_asking_ = true;
   ask_([question = std::move(question)]() -> Answer {
-    return [answer = question()](Client& client) {
+    Answer answer = question();
+    if (!answer) return answer;
+    return [answer = std::move(answer)](Client& client) {
       client.is_asking_ = false;
       answer(client);
     };
@@ -197,9 +206,11 @@ void Client::handle(const ServiceCall& request) {
     return queue_.push_text(service_failure_text(request, "there is no such service"));
   }
   if (request.encoding != "json") return queue_.push_text(service_failure_text(request, "the encoding must be 'json'"));
-  ask([&offer = offer_, request]() -> Answer {
-    const Result<std::string> answer = offer.services[request.service].call(request.request);
-    return [request, answer](Client& client) {
+  ask([&offer = offer_, request, later = Later()]() mutable -> Answer {
+    if (!later) later = answer_of(offer.services[request.service], request.request);
+    const std::optional<Result<std::string>> answer = later();
+    if (!answer) return {};
+    return [request, answer = *answer](Client& client) {
       if (!answer) return client.queue_.push_text(service_failure_text(request, answer.error().message));
       client.queue_.push_binary(service_response(request, *answer));
     };

@@ -31,7 +31,8 @@ struct Offer {
 using SubscriptionsChanged = std::function<void(ChannelId channel, int change)>;
 
 class Client;
-/// The question to the owner, which may take its time, and the following action for the client.
+/// The question to the owner, which may take its time, and the following action for the client. An empty one: not yet;
+/// the question is to be asked again within 50 ms.
 using Answer = std::function<void(Client&)>;
 using Question = std::function<Answer()>;
 /// Has a question answered, one after the other, on any thread; the answer comes on the client's, if that is still

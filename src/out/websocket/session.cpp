@@ -6,6 +6,7 @@
 #include <array>
 #include <chrono>
 #include <filesystem>
+#include <thread>
 #include <utility>
 
 namespace dermis::out::websocket {
@@ -25,6 +26,7 @@ constexpr double kMostRequestBytes = 256U << 10U;  // in a second, after a messa
 constexpr int kSendBuffer = 256 << 10;             // [bytes]; data waiting there cannot be dropped any more
 constexpr seconds kRequestTime{5};                 // from the connection, or the last answer, to the end of the request
 constexpr seconds kIdleTime{30};
+constexpr std::chrono::milliseconds kAgain{20};  // a question that has no answer yet is asked
 
 /// The bytes that came are wrong, rather than at their end.
 bool is_no_http(const beast::error_code& error) {
@@ -35,6 +37,13 @@ bool is_no_http(const beast::error_code& error) {
 bool is_no_websocket(const beast::error_code& error) {
   return error.category() == make_error_code(websocket::error::bad_opcode).category() &&
          error != websocket::error::closed;
+}
+
+Answer answer_to(const Question& question) {
+  for (;;) {
+    if (Answer answer = question()) return answer;
+    std::this_thread::sleep_for(kAgain);
+  }
 }
 
 }  // namespace
@@ -221,7 +230,7 @@ void Session::ask(Question question) {
   awaits_answer_ = true;
   asio::post(owner_.desk(),
              [weak = weak_from_this(), executor = stream_.get_executor(), question = std::move(question)] {
-               asio::post(executor, [weak, answer = question()] {
+               asio::post(executor, [weak, answer = answer_to(question)] {
                  if (const auto self = weak.lock()) self->on_answer(answer);
                });
              });

@@ -6,8 +6,8 @@ import type { Stream } from "../stream/stream";
 import type { KnownArray, KnownArrays } from "./known_arrays";
 import "./setup.css";
 
-const BAUDS = [9600, 57600, 115200, 230400, 250000, 460800, 921600, 1000000, 2000000];
-const USUAL_BAUD = 115200;
+export const BAUDS = [9600, 57600, 115200, 230400, 250000, 460800, 921600, 1000000, 2000000];
+export const USUAL_BAUD = 115200;
 const SCENES: Readonly<Record<string, string>> = {
   contacts: "Contacts that wander",
   rehearsal: "A hand that obeys the guide",

@@ -7,6 +7,8 @@ import "../styles/controls.css";
 import "./try.css";
 import { App } from "../app";
 import { errorText } from "../format";
+import { type BoardLink, boardLinkOf } from "./board_link";
+import { Boards } from "./boards";
 import { ModuleEndpoint } from "./module_endpoint";
 
 function showInstead(text: string): void {
@@ -14,19 +16,41 @@ function showInstead(text: string): void {
 }
 
 const ABOUT =
-  "A simulated sheet. dermis runs in this page: no byte leaves this machine, and once it was shown it needs no network.";
+  "It begins with a simulated sheet. dermis runs in this page: no byte leaves this machine, and once it was shown it needs no network.";
 
 /** Not before the page is at work. Nor where it may not be kept: then it needs its network. */
 function keepForOffline(): void {
   navigator.serviceWorker?.register("offline.js").catch(() => undefined);
 }
 
+/** Taken out of the address: views have theirs there. */
+async function takeLink(): Promise<BoardLink | undefined> {
+  const { hash, pathname, search } = window.location;
+  const link = await boardLinkOf(hash);
+  if (link !== undefined) window.history.replaceState(null, "", pathname + search);
+  return link;
+}
+
 try {
+  const link = await takeLink();
   const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
   const addressOf = (file: string): string => new URL(file, document.baseURI).href;
-  const app = new App(new ModuleEndpoint(worker, addressOf("dermis.wasm"), addressOf("sheet.model"), showInstead));
+  const isRehearsal = new URLSearchParams(location.search).has("rehearsal");
+  const endpoint = new ModuleEndpoint(
+    worker,
+    addressOf("dermis.wasm"),
+    addressOf("sheet.model"),
+    isRehearsal,
+    showInstead,
+  );
+  const app = new App(endpoint);
   document.body.append(
-    element("aside", { class: "about", "aria-label": "About this page", "data-role": "about" }, ABOUT),
+    element(
+      "aside",
+      { class: "about", "aria-label": "About this page", "data-role": "about" },
+      element("p", {}, ABOUT),
+      new Boards(app.stream, app.suit, endpoint, link).element,
+    ),
   );
   app.begin();
   app.stream.connection.follow(({ kind }) => {

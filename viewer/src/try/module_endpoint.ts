@@ -3,8 +3,23 @@
 import type { Endpoint, Socket } from "../stream/endpoint";
 
 /** The page asks its worker to begin with these files, to take a client, or for a document. */
-export type Question = { module: string; model: string } | { port: MessagePort } | { id: number; path: string };
+export type Question =
+  | { module: string; model: string; isRehearsal: boolean }
+  | { port: MessagePort }
+  | { id: number; path: string }
+  | BoardNews;
 export type Answer = { id: number; document?: string | undefined; failure?: string };
+
+/** Of the board in the page, for the worker: it is open, or lost; its bytes. Or that somebody will describe its array. */
+export type BoardNews =
+  | { board: string; baud: number }
+  | { lost: true }
+  | { bytes: Uint8Array<ArrayBuffer> }
+  | { setup: true };
+/** Of the worker, for the page: how to open the board, what to write to it, how long the worker was asleep [s]. */
+export type BoardRequest = { open: number } | { write: Uint8Array<ArrayBuffer> } | { slept: number };
+/** In the place of a message of the server: it is another one from now on. */
+export const SERVER_HAS_CHANGED = null;
 
 /** dermis in a worker of the page, in the place of a server. */
 export class ModuleEndpoint implements Endpoint {
@@ -13,17 +28,23 @@ export class ModuleEndpoint implements Endpoint {
   readonly #failed: (why: string) => void;
   readonly #asked = new Map<number, (answer: Answer) => void>();
   #lastId = 0;
+  /** Is asked for what only the page can do with a board. */
+  onRequest: (request: BoardRequest) => void = () => undefined;
 
-  /** `module` and `model`: addresses of the files to begin with. `failed` is told why that could not be. */
-  constructor(worker: Worker, module: string, model: string, failed: (why: string) => void) {
+  /**
+   * `module` and `model`: addresses of the files to begin with. `isRehearsal`: with a hand that obeys the guide of a
+   * calibration. `failed` is told why that could not be.
+   */
+  constructor(worker: Worker, module: string, model: string, isRehearsal: boolean, failed: (why: string) => void) {
     this.#worker = worker;
     this.#failed = failed;
-    worker.onmessage = ({ data }: MessageEvent<Answer>) => {
+    worker.onmessage = ({ data }: MessageEvent<Answer | BoardRequest>) => {
+      if (!("id" in data)) return this.onRequest(data);
       this.#asked.get(data.id)?.(data);
       this.#asked.delete(data.id);
     };
     worker.onerror = ({ message }) => failed(message);
-    this.#ask({ module, model });
+    this.#ask({ module, model, isRehearsal });
   }
 
   async fetch(path: string): Promise<Response> {
@@ -42,21 +63,37 @@ export class ModuleEndpoint implements Endpoint {
   open(): Socket {
     const { port1, port2 } = new MessageChannel();
     this.#ask({ port: port2 }, [port2]);
-    return {
-      get onmessage() {
-        return port1.onmessage;
-      },
-      set onmessage(handler: Socket["onmessage"]) {
-        port1.onmessage = handler;
-      },
-      onclose: null,
-      readyState: WebSocket.OPEN,
-      send: (message) => port1.postMessage(message),
-      close: () => port1.close(),
-    };
+    return new ModuleSocket(port1);
+  }
+
+  tell(news: BoardNews): void {
+    this.#ask(news);
   }
 
   #ask(question: Question, handedOver: Transferable[] = []): void {
     this.#worker.postMessage(question, handedOver);
+  }
+}
+
+class ModuleSocket implements Socket {
+  onmessage: Socket["onmessage"] = null;
+  onclose: Socket["onclose"] = null;
+  readyState: number = WebSocket.OPEN;
+
+  constructor(private readonly port: MessagePort) {
+    port.onmessage = (event: MessageEvent<string | ArrayBuffer | typeof SERVER_HAS_CHANGED>) => {
+      if (event.data !== SERVER_HAS_CHANGED) return this.onmessage?.(event as MessageEvent<string | ArrayBuffer>);
+      this.close();
+      this.onclose?.(new CloseEvent("close"));
+    };
+  }
+
+  send(message: string | Uint8Array<ArrayBuffer>): void {
+    this.port.postMessage(message);
+  }
+
+  close(): void {
+    this.readyState = WebSocket.CLOSED;
+    this.port.close();
   }
 }

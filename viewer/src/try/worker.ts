@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { errorText } from "../format";
+import { Files } from "./files";
+import { Fits } from "./fits";
 import { Module } from "./module";
-import type { Answer, Question } from "./module_endpoint";
+import { type Answer, type BoardNews, type Question, SERVER_HAS_CHANGED } from "./module_endpoint";
 
 const WORK_MS = 5;
+/** Nobody calls for so long: the page was asleep, or its machine. */
+const SLEEP_MS = 2000;
 
 let client: MessagePort | undefined;
 let begun: Promise<Module> | undefined;
@@ -15,15 +19,29 @@ async function bytesOf(address: string): Promise<ArrayBuffer> {
   return response.arrayBuffer();
 }
 
-async function begin(module: string, model: string): Promise<Module> {
+async function begin(module: string, model: string, isRehearsal: boolean): Promise<Module> {
   const [code, modelFile] = await Promise.all([bytesOf(module), bytesOf(model)]);
-  const made = await Module.load(await WebAssembly.compile(code));
-  made.beginSimulation(new Uint8Array(modelFile));
+  const made = await Module.load(await WebAssembly.compile(code), new Files(), new Fits());
+  made.beginSimulation(new Uint8Array(modelFile), isRehearsal);
+  let workedMs = performance.now();
   setInterval(() => {
-    made.work();
+    const sleptMs = performance.now() - workedMs;
+    if (sleptMs > SLEEP_MS) postMessage({ slept: sleptMs / 1000 });
+    const hasChanged = made.work();
     send(made);
+    for (let request = made.boardRequest(); request !== undefined; request = made.boardRequest()) postMessage(request);
+    if (hasChanged) client?.postMessage(SERVER_HAS_CHANGED);
+    if (hasChanged) client = undefined;
+    workedMs = performance.now();
   }, WORK_MS);
   return made;
+}
+
+function hear(module: Module, news: BoardNews): void {
+  if ("bytes" in news) module.bytes(news.bytes);
+  else if ("board" in news) module.boardIsOpen(news.board, news.baud);
+  else if ("lost" in news) module.boardIsLost();
+  else module.beginSetup();
 }
 
 function send(module: Module): void {
@@ -54,8 +72,9 @@ async function answer(id: number, path: string): Promise<void> {
 }
 
 addEventListener("message", ({ data }: MessageEvent<Question>) => {
-  if ("module" in data) begun = begin(data.module, data.model);
+  if ("module" in data) begun = begin(data.module, data.model, data.isRehearsal);
   else if ("port" in data)
     connect(data.port).catch(() => undefined); // the question for suit.json tells why
-  else void answer(data.id, data.path);
+  else if ("id" in data) void answer(data.id, data.path);
+  else void begun?.then((module) => hear(module, data));
 });

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "dermis/live/sources/open_source.hpp"
@@ -44,6 +45,9 @@ class ArraySetup {
 
   /// Waits until a client has described the array; all are empty where `stop` was set before. Call it once.
   [[nodiscard]] DescribedArray run(const std::atomic<bool>& stop);
+
+  /// In the place of run(), where there is one thread: empty as long as no client has described the array.
+  [[nodiscard]] std::optional<DescribedArray> described();
 
  private:
   class Implementation;

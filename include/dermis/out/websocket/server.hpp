@@ -72,11 +72,16 @@ struct Handlers {
   std::function<Status(const Parameter&, const std::string& client)> set_parameter{};
 };
 
+/// Asked until it has the response. Empty: not yet; ask again within 50 ms.
+using Later = std::function<std::optional<Result<std::string>>()>;
+
 /// A service that clients call with JSON and that answers with JSON.
 struct Service {
   std::string name;  ///< "/calibration/start"
   /// Request in, response out.
-  std::function<Result<std::string>(std::string_view request)> call;
+  std::function<Result<std::string>(std::string_view request)> call{};
+  /// In the place of `call`, where the response takes its time.
+  std::function<Result<Later>(std::string_view request)> begin{};
 };
 
 /// The playback of a recording, which clients control.

@@ -2,28 +2,42 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "learn/calibration/guided/guide_fitter.hpp"
 
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <thread>
 #include <utility>
-
-#include "dermis/learn/calibration/circuit_fit.hpp"
 
 namespace dermis::learn::calibration {
 
-namespace {
+class GuideFitter::Implementation {
+ public:
+  Implementation(ArrayDescription array, std::function<void(FitOutcome)> on_outcome,
+                 std::function<void(double)> on_progress)
+      : array_(std::move(array)),
+        on_outcome_(std::move(on_outcome)),
+        on_progress_(std::move(on_progress)),
+        thread_([this] { work(); }) {}
+  Implementation(const Implementation&) = delete;
+  Implementation& operator=(const Implementation&) = delete;
+  ~Implementation();
 
-// A last job fits the model, a fit without some presses, and four without some taxels.
-constexpr double kModelShare = 1.0 / 6.0;
-constexpr double kPressesShare = 2.0 / 6.0;
+  void fit(FitJob job);
 
-}  // namespace
+ private:
+  void work();
 
-GuideFitter::GuideFitter(ArrayDescription array, std::function<void(Outcome)> on_outcome,
-                         std::function<void(double)> on_progress)
-    : array_(std::move(array)),
-      on_outcome_(std::move(on_outcome)),
-      on_progress_(std::move(on_progress)),
-      thread_([this] { work(); }) {}
+  const ArrayDescription array_;
+  const std::function<void(FitOutcome)> on_outcome_;
+  const std::function<void(double)> on_progress_;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  std::optional<FitJob> waiting_;
+  bool is_ending_ = false;
+  std::thread thread_;
+};
 
-GuideFitter::~GuideFitter() {
+GuideFitter::Implementation::~Implementation() {
   {
     const std::lock_guard lock(mutex_);
     is_ending_ = true;
@@ -32,7 +46,7 @@ GuideFitter::~GuideFitter() {
   thread_.join();
 }
 
-void GuideFitter::fit(Job job) {
+void GuideFitter::Implementation::fit(FitJob job) {
   {
     const std::lock_guard lock(mutex_);
     waiting_ = std::move(job);
@@ -40,48 +54,28 @@ void GuideFitter::fit(Job job) {
   wake_.notify_one();
 }
 
-void GuideFitter::work() {
+void GuideFitter::Implementation::work() {
   for (;;) {
-    Job job;
+    FitJob job;
     {
       std::unique_lock lock(mutex_);
       wake_.wait(lock, [this] { return is_ending_ || waiting_; });
       if (is_ending_) return;
       job = *std::exchange(waiting_, std::nullopt);
     }
-    on_outcome_(run(job));
+    on_outcome_(fit_presses(array_, job, on_progress_));
   }
 }
 
-GuideFitter::Outcome GuideFitter::run(const Job& job) const {
-  if (job.is_last) return run_last(job);
-  Outcome outcome;
-  if (!array_.has_unknown_circuit()) {
-    outcome.error = error_on_left_out_presses(array_, *job.unloaded, job.presses);
-    return outcome;
-  }
-  const GuidedData data = labelled_frames(array_, *job.unloaded, job.presses);
-  if (const Result<CircuitFit> circuit = fit_circuit(array_, data.frames, data.loads)) {
-    outcome.error = error_on_left_out_presses(circuit->array, *job.unloaded, job.presses);
-  }
-  return outcome;
-}
+GuideFitter::GuideFitter(ArrayDescription array, std::function<void(FitOutcome)> on_outcome,
+                         std::function<void(double)> on_progress)
+    : implementation_(
+          std::make_unique<Implementation>(std::move(array), std::move(on_outcome), std::move(on_progress))) {}
 
-GuideFitter::Outcome GuideFitter::run_last(const Job& job) const {
-  const GuidedData data = labelled_frames(array_, *job.unloaded, job.presses);
-  const auto fitted = [this](const std::string& stage, double share) {
-    on_progress_(kModelShare * (stage == "circuit" ? 0.0 : share));
-  };
-  Outcome outcome;
-  outcome.calibration = calibrate(array_, data.frames, data.loads, Nanos{0}, fitted);
-  if (!*outcome.calibration) return outcome;
-  const ArrayDescription& array = outcome.calibration->value().model.array;
-  outcome.error = error_on_left_out_presses(array, *job.unloaded, job.presses);
-  on_progress_(kPressesShare);
-  outcome.unpressed_error = error_on_left_out_taxels(array, *job.unloaded, job.presses, [this](double share) {
-    on_progress_(kPressesShare + (1.0 - kPressesShare) * share);
-  });
-  return outcome;
+GuideFitter::~GuideFitter() = default;
+
+void GuideFitter::fit(FitJob job) {
+  implementation_->fit(std::move(job));
 }
 
 }  // namespace dermis::learn::calibration

@@ -66,7 +66,7 @@ class GuidedCalibration::Implementation {
   void ask_for_proof();
   void start_last_fit();
   void fail(std::string why);
-  void accept_fit(GuideFitter::Outcome outcome);
+  void accept_fit(FitOutcome outcome);
   void accept_share(double share);
   [[nodiscard]] std::string message(const GuideState& state) const;
 
@@ -93,7 +93,7 @@ GuidedCalibration::Implementation::Implementation(ArrayDescription array, Calibr
       quiet_(plan_.unloaded_time, ratio_per_count(array_)),
       presses_(plan_, array_.cols),
       fitter_(
-          array_, [this](GuideFitter::Outcome outcome) { accept_fit(std::move(outcome)); },
+          array_, [this](FitOutcome outcome) { accept_fit(std::move(outcome)); },
           [this](double share) { accept_share(share); }) {}
 
 void GuidedCalibration::Implementation::feed(const RawFrame& raw) {
@@ -160,7 +160,7 @@ void GuidedCalibration::Implementation::fail(std::string why) {
   fit_.failure = std::move(why);
 }
 
-void GuidedCalibration::Implementation::accept_fit(GuideFitter::Outcome outcome) {
+void GuidedCalibration::Implementation::accept_fit(FitOutcome outcome) {
   const std::lock_guard lock(mutex_);
   if (outcome.error) fit_.error = outcome.error;
   fit_.unpressed_error = outcome.unpressed_error;

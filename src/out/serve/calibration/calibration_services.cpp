@@ -8,6 +8,7 @@
 #include "dermis/bytes/files/loads_csv.hpp"
 #include "dermis/bytes/models/model_file.hpp"
 #include "dermis/learn/calibration/plan_request.hpp"
+#include "out/serve/calibration/end_apart.hpp"
 #include "out/serve/parts/part_makers.hpp"
 #include "out/serve/requests/json_request.hpp"
 #include "out/serve/suit/saved_files.hpp"
@@ -114,10 +115,7 @@ void CalibrationServices::replace(Calibration calibration) {
     std::swap(last_, calibration);
   }
   say_what_to_do();
-  // Its end may have to wait for a fit; the caller must not.
-  if (calibration.guide) {
-    ending_ = std::async(std::launch::async, [old = std::move(calibration.guide)]() mutable { old.reset(); });
-  }
+  if (calibration.guide) ending_ = end_apart(std::move(calibration.guide));
 }
 
 Result<std::string> CalibrationServices::save() {

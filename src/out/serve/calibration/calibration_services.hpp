@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cstddef>
 #include <functional>
-#include <future>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -79,7 +78,7 @@ class CalibrationServices final : public Part {
   const std::shared_ptr<live::sources::GuideVoice> guide_voice_;
   const MayBegin may_begin_;
   const Notify notify_;
-  std::future<void> ending_;  ///< A calibration whose last fit is waited for.
+  std::shared_ptr<void> ending_;  ///< A calibration whose last fit is waited for.
   std::atomic<std::size_t> active_array_{kNone};
   mutable std::mutex mutex_;  ///< Guards the members below; never held for long, because frames wait for it.
   Calibration last_;

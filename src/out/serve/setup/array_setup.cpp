@@ -2,16 +2,14 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/out/serve/array_setup.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <filesystem>
+#include <functional>
+#include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <span>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -25,6 +23,7 @@
 #include "out/serve/setup/known_arrays.hpp"
 #include "out/serve/setup/layout_proposals.hpp"
 #include "out/serve/setup/press_watch.hpp"
+#include "out/serve/setup/setup_json.hpp"
 #include "out/serve/setup/source_choice.hpp"
 #include "out/serve/setup/touch_watch.hpp"
 
@@ -33,36 +32,14 @@ namespace {
 
 using live::sources::SourceName;
 using nlohmann::ordered_json;
+using websocket::Later;
 
 constexpr std::chrono::milliseconds kPeriod{50};
 constexpr std::chrono::milliseconds kToAnswer{300};  // until a client has what it asked for
 constexpr std::size_t kMostFileName = 255;
 constexpr std::size_t kMostPlaces = 65536;  // bytes
-constexpr std::size_t kMostShown = 256;     // bytes of which no frame was made
+constexpr std::size_t kMostLayout = 65536;  // bytes
 constexpr const char* kNoSource = "choose where the array is first";
-
-/// /suit.json of an array that is not described yet.
-std::string suit_json(const std::optional<SourceName>& name, const FirstLook& found) {
-  ordered_json json;
-  json["name"] = "";
-  json["arrays"] = ordered_json::array();
-  ordered_json& setup = json["setup"];
-  setup["from"] = name ? name->text : "";
-  setup["turnable"] = name && name->kind != live::sources::SourceKind::recording;
-  setup["readable"] = found.has_frames;
-  setup["rows"] = found.shape ? ordered_json(found.shape->rows) : ordered_json();
-  setup["cols"] = found.shape ? ordered_json(found.shape->cols) : ordered_json();
-  setup["message"] = found.message;
-  setup["bytes"] = hex_of(std::span(found.bytes).first(std::min(found.bytes.size(), kMostShown)));
-  return json_text(json);
-}
-
-/// Missing readings are null.
-ordered_json counts_json(const std::vector<float>& counts) {
-  ordered_json json = ordered_json::array();
-  for (const float count : counts) json.push_back(std::isfinite(count) ? ordered_json(count) : ordered_json());
-  return json;
-}
 
 }  // namespace
 
@@ -81,30 +58,41 @@ class ArraySetup::Implementation {
 
   DescribedArray run(const std::atomic<bool>& stop) {
     while (!stop) {
-      if (DescribedArray array = described(); !array.model.empty() || !array.suit.empty()) {
+      if (const std::optional<DescribedArray> array = described()) {
         std::this_thread::sleep_for(kToAnswer);
-        return array;
+        return *array;
       }
       std::this_thread::sleep_for(kPeriod);
     }
     return {};
   }
 
+  [[nodiscard]] std::optional<DescribedArray> described() {
+    const std::lock_guard lock(mutex_);
+    if (described_.model.empty() && described_.suit.empty()) return std::nullopt;
+    return described_;
+  }
+
  private:
   using Call = Result<std::string> (Implementation::*)(std::string_view);
+  using Begin = Result<Later> (Implementation::*)(std::string_view);
 
   std::vector<websocket::Service> services(bool with_choice) {
     const auto service = [this](const char* name, Call call) {
       return websocket::Service{name, [this, call](std::string_view request) { return (this->*call)(request); }};
     };
+    const auto slow = [this](const char* name, Begin begin) {
+      return websocket::Service{.name = name,
+                                .begin = [this, begin](std::string_view request) { return (this->*begin)(request); }};
+    };
     std::vector<websocket::Service> services = {
-        service("/array/describe", &Implementation::describe),
-        service("/array/use", &Implementation::use),
+        slow("/array/describe", &Implementation::describe),
+        slow("/array/use", &Implementation::use),
         service("/array/watch", &Implementation::watch),
         service("/array/touch", &Implementation::touch),
         service("/layout/propose", &Implementation::propose),
-        service("/layout/use", &Implementation::use_layout),
-        service("/source/look", &Implementation::look),
+        slow("/layout/use", &Implementation::use_layout),
+        slow("/source/look", &Implementation::look),
         service("/array/press", &Implementation::press),
         service("/array/pressed", &Implementation::pressed),
         service("/array/skip", &Implementation::skip),
@@ -112,66 +100,69 @@ class ArraySetup::Implementation {
         {"/array/known", [](std::string_view) { return Result<std::string>(known_arrays_json()); }}};
     if (!with_choice) return services;
     services.push_back({"/source/list", [](std::string_view) { return Result<std::string>(source_choices()); }});
-    services.push_back(service("/source/open", &Implementation::open));
+    services.push_back(slow("/source/open", &Implementation::open));
     services.push_back(service("/source/leave", &Implementation::leave));
     return services;
   }
 
   void show(const FirstLook& found) {
     unread_ = found.bytes;
-    server_->set_document("/suit.json", "application/json", suit_json(name_, found));
+    server_->set_document("/suit.json", "application/json", setup_json(name_, found, layout_));
   }
 
-  [[nodiscard]] DescribedArray described() {
-    const std::lock_guard lock(mutex_);
-    return described_;
-  }
-
-  Result<std::string> open(std::string_view request) {
-    Result<SourceName> name = source_request(request);
+  Result<Later> open(std::string_view request) {
+    const Result<SourceName> name = source_request(request);
     if (!name) return name.error();
-    return look_at(*std::move(name));
+    layout_.clear();
+    return look_at(*name);
   }
 
-  Result<std::string> look(std::string_view /*request*/) {
+  Result<Later> look(std::string_view /*request*/) {
     if (!name_) return bad_input(kNoSource);
     return look_at(*name_);
   }
 
   /// A source that cannot be opened is not taken.
-  Result<std::string> look_at(SourceName name) {
+  Later look_at(const SourceName& name) {
     close_watches();
-    const Result<FirstLook> found = first_look(name, options_);
-    if (!found) return found.error();
-    name_ = std::move(name);
-    show(*found);
-    return json_text(nlohmann::json{{"from", name_->text}});
+    return [this, name, look = std::make_shared<SourceLook>(name, options_)]() -> std::optional<Result<std::string>> {
+      const std::optional<Result<FirstLook>> found = look->found();
+      if (!found) return std::nullopt;
+      if (!*found) return found->error();
+      name_ = name;
+      show(**found);
+      return json_text(nlohmann::json{{"from", name_->text}});
+    };
   }
 
   /// Another source may be chosen.
   Result<std::string> leave(std::string_view /*request*/) {
     close_watches();
     name_.reset();
+    layout_.clear();
     show({});
     return std::string("{}");
   }
 
-  Result<std::string> describe(std::string_view request) {
+  Result<Later> describe(std::string_view request) {
     if (!name_) return bad_input(kNoSource);
     const Result<ArrayDescription> array = array_request(request);
     if (!array) return array.error();
-    Result<std::string> path = new_array_file(array->name, "array.toml");
-    if (!path) return path;
-    if (Status sends = check_frames(*array); !sends) return sends.error();
-    if (Status made = make_array_folder(array->name); !made) return made.error();
-    if (Status written = bytes::files::write_array(*path, *array); !written) return written.error();
-    if (Status kept = live::sources::write_array_source(array->name, *name_); !kept) return kept.error();
-    return serve_as({.from = name_->text, .model = *path, .is_new = true});
+    const Result<std::string> path = new_array_file(array->name, "array.toml");
+    if (!path) return path.error();
+    return when_it_sends(*array, [this, array = *array, path = *path] { return write(array, path); });
+  }
+
+  Result<std::string> write(const ArrayDescription& array, const std::string& path) {
+    if (Status made = make_array_folder(array.name); !made) return made.error();
+    if (Status written = bytes::files::write_array(path, array); !written) return written.error();
+    if (Status kept = live::sources::write_array_source(array.name, *name_); !kept) return kept.error();
+    return serve_as({.from = name_->text, .model = path, .is_new = true});
   }
 
   /// {"file": "mat/mat-20261130-101500.safetensors"}, one of those that are known. Without a source it is looked for
   /// where it was last time, and at the other ports.
-  Result<std::string> use(std::string_view text) {
+  Result<Later> use(std::string_view text) {
     const Result<JsonRequest> request = JsonRequest::parse(text);
     if (!request) return request.error();
     const Result<std::string> file = request->text("file", kMostFileName);
@@ -185,8 +176,7 @@ class ArraySetup::Implementation {
       if (const auto suit = open_suit({.from = name_->text, .model = known->file}, options_); !suit)
         return suit.error();
     }
-    if (Status sends = check_frames(known->array); !sends) return sends.error();
-    return serve_known(*known);
+    return when_it_sends(known->array, [this, known = *known] { return serve_known(known); });
   }
 
   Result<std::string> serve_known(const KnownArray& known) {
@@ -213,23 +203,21 @@ class ArraySetup::Implementation {
     return Done{};
   }
 
-  /// Waits for a frame of such an array: a source without one is not served, as its map would stay blank. Those of
+  /// After a frame of such an array: a source without one is not served, as its map would stay blank. Those of
   /// recordings are turned already.
-  Status check_frames(const ArrayDescription& array) {
+  Later when_it_sends(const ArrayDescription& array, std::function<Result<std::string>()> then) {
     const FrameShape shape{array.rows, array.cols};
     const FrameShape sent = name_->kind == live::sources::SourceKind::recording ? shape : array.order.sent(shape);
     if (!watch_ || watch_->shape() != sent) begin_watch(sent);
     const auto end = std::chrono::steady_clock::now() + kPatience;
-    for (;;) {
+    return [this, sent, end, then = std::move(then)]() -> std::optional<Result<std::string>> {
       const TouchWatch::Seen seen = watch_->seen();
-      if (seen.frames > 0) return Done{};
+      if (seen.frames > 0) return then();
       if (!seen.problem.empty()) return bad_input(seen.problem);
       const bool is_stopped = options_.stop != nullptr && *options_.stop;
-      if (is_stopped || std::chrono::steady_clock::now() > end) {
-        return bad_input(fmt::format("no frame of {}x{} readings came within 8 s", sent.rows, sent.cols));
-      }
-      std::this_thread::sleep_for(kPeriod);
-    }
+      if (!is_stopped && std::chrono::steady_clock::now() <= end) return std::nullopt;
+      return bad_input(fmt::format("no frame of {}x{} readings came within 8 s", sent.rows, sent.cols));
+    };
   }
 
   /// A device can be opened once.
@@ -252,26 +240,40 @@ class ArraySetup::Implementation {
     return layout_proposals(unread_, *known);
   }
 
-  /// {"name": "mat", "place": 0} and what the client knows: writes that layout, by which the source is then read.
-  Result<std::string> use_layout(std::string_view text) {
+  /// {"name": "mat", "place": 0} and what the client knows, or {"name": "mat", "layout": [line, ...]}: writes that
+  /// layout, by which the source is then read.
+  Result<Later> use_layout(std::string_view text) {
     if (!name_ || !name_->uri) return bad_input(kNoSource);
-    const Result<JsonRequest> request = JsonRequest::parse(text);
+    const Result<JsonRequest> request = JsonRequest::parse(text, kMostLayout);
     if (!request) return request.error();
-    const Result<bytes::proposals::Known> known = known_request(*request);
-    if (!known) return known.error();
     const Result<std::string> name = request->file_name("name");
     if (!name) return name.error();
-    const Result<std::optional<std::uint64_t>> place = request->number("place", "that of a proposal");
-    if (!place) return place.error();
+    const Result<std::string> layout = wanted_layout(*request);
+    if (!layout) return layout.error();
     if (Status made = make_array_folder(*name); !made) return made.error();
     const std::string file = *name + "/layout.toml";
-    const Result<std::string> array = write_layout(unread_, *known, place->value_or(0), file);
+    const Result<std::string> array = write_layout(*layout, file);
     if (!array) return array.error();
+    layout_ = *layout;
     const std::string& from = name_->text;
-    Result<SourceName> described = SourceName::parse(from + (from.find('?') == std::string::npos ? "?" : "&") +
-                                                     "layout=" + file + (array->empty() ? "" : "&array=" + *array));
+    const Result<SourceName> described =
+        SourceName::parse(from + (from.find('?') == std::string::npos ? "?" : "&") + "layout=" + file +
+                          (array->empty() ? "" : "&array=" + *array));
     if (!described) return described.error();
-    return look_at(*std::move(described));
+    return look_at(*described);
+  }
+
+  Result<std::string> wanted_layout(const JsonRequest& request) const {
+    const Result<std::optional<std::uint64_t>> place = request.number("place", "that of a proposal");
+    if (!place) return place.error();
+    if (!*place) {
+      const Result<std::vector<std::string>> lines = request.texts("layout");
+      if (!lines) return lines.error();
+      return fmt::format("{}\n", fmt::join(*lines, "\n"));
+    }
+    const Result<bytes::proposals::Known> known = known_request(request);
+    if (!known) return known.error();
+    return proposed_layout(unread_, *known, **place);
   }
 
   /// From now on touch() gives the sent readings; `request` has their shape.
@@ -351,6 +353,7 @@ class ArraySetup::Implementation {
   DescribedArray described_;
   std::optional<SourceName> name_;  // this and the rest: of the services, which are called one at a time
   live::sources::SourceOptions options_;
+  std::string layout_;                    // that a client has chosen; empty: none
   std::vector<std::uint8_t> unread_;      // of which no frame was made
   std::unique_ptr<TouchWatch> watch_;     // null: nobody asked for it
   std::unique_ptr<PressWatch> pressing_;  // the same
@@ -388,6 +391,10 @@ std::uint16_t ArraySetup::port() const noexcept {
 
 DescribedArray ArraySetup::run(const std::atomic<bool>& stop) {
   return implementation_->run(stop);
+}
+
+std::optional<DescribedArray> ArraySetup::described() {
+  return implementation_->described();
 }
 
 }  // namespace dermis::out::serve

@@ -4,57 +4,82 @@
 
 #include <algorithm>
 #include <span>
+#include <thread>
 #include <utility>
 
 #include "dermis/bytes/devices/device_source.hpp"
-#include "dermis/live/sources/patience.hpp"
 
 namespace dermis::out::serve {
 namespace {
 
 constexpr std::size_t kMostKept = 65536;
-
-/// These bytes, possibly none, made no frame.
-void explain(const live::sources::SourceName& name, std::vector<std::uint8_t> bytes, FirstLook& found) {
-  if (!name.uri || bytes.empty()) {
-    if (found.message.empty()) found.message = "nothing came within 8 s";
-    return;
-  }
-  bytes::devices::UndecodedReason reason = bytes::devices::why_undecoded(*name.uri, bytes);
-  found.message = std::move(reason.why);
-  found.shape = reason.likely_shape;
-  found.bytes = std::move(bytes);
-}
+constexpr std::chrono::milliseconds kPeriod{20};
 
 }  // namespace
 
-Result<FirstLook> first_look(const live::sources::SourceName& name, live::sources::SourceOptions options) {
-  FirstLook found;
-  const live::sources::Patience waits(options.stop, kPatience);
-  options.stop = waits.over();
-  const auto log = std::move(options.notice);
-  options.notice = [&](const std::string& line) {
-    found.message = line;
+SourceLook::SourceLook(live::sources::SourceName name, live::sources::SourceOptions options)
+    : name_(std::move(name)),
+      stop_(options.stop),
+      watch_(name_, std::nullopt, heard_by(std::move(options)), [this](const FrameSource& source, const RawFrame&) {
+        const std::lock_guard lock(mutex_);
+        found_.has_frames = true;
+        found_.shape = source.shape();
+        return false;
+      }) {}
+
+live::sources::SourceOptions SourceLook::heard_by(live::sources::SourceOptions options) {
+  options.notice = [this, log = std::move(options.notice)](const std::string& line) {
+    {
+      const std::lock_guard lock(mutex_);
+      found_.message = line;
+    }
     if (log) log(line);
   };
-  std::vector<std::uint8_t> bytes;
-  options.received = [&](std::span<const std::uint8_t> more) {
-    more = more.first(std::min(more.size(), kMostKept - bytes.size()));
-    bytes.insert(bytes.end(), more.begin(), more.end());
+  options.received = [this](std::span<const std::uint8_t> more) {
+    const std::lock_guard lock(mutex_);
+    more = more.first(std::min(more.size(), kMostKept - found_.bytes.size()));
+    found_.bytes.insert(found_.bytes.end(), more.begin(), more.end());
   };
-  const Result<std::unique_ptr<FrameSource>> source = live::sources::open_source(name, options);
-  if (!source) return source.error();
-  RawFrame frame;
-  const Result<bool> came = (*source)->next(frame);
-  if (!came && came.error().kind != ErrorKind::bad_input) return came.error();
-  if (!came) found.message = came.error().message;
-  found.has_frames = came && *came;
-  if (found.has_frames) {
-    found.shape = (*source)->shape();
+  return options;
+}
+
+std::optional<Result<FirstLook>> SourceLook::found() {
+  const std::optional<SourceWatch::Ended> ended = watch_.ended();
+  if (ended) return outcome(*ended);
+  const bool is_over = std::chrono::steady_clock::now() >= end_ || (stop_ != nullptr && *stop_);
+  return is_over ? std::optional(outcome(watch_.stop())) : std::nullopt;
+}
+
+Result<FirstLook> SourceLook::outcome(const SourceWatch::Ended& ended) {
+  const bool shows_bytes = ended.was_open && !ended.how && ended.how.error().kind == ErrorKind::bad_input;
+  if (!ended.how && !shows_bytes) return ended.how.error();
+  if (!ended.how) found_.message = ended.how.error().message;
+  if (found_.has_frames) {
+    found_.bytes.clear();
   } else {
-    explain(name, std::move(bytes), found);
+    explain();
   }
-  return found;
+  return found_;
+}
+
+/// These bytes, possibly none, made no frame.
+void SourceLook::explain() {
+  if (!name_.uri || found_.bytes.empty()) {
+    if (found_.message.empty()) found_.message = "nothing came within 8 s";
+    found_.bytes.clear();
+    return;
+  }
+  bytes::devices::UndecodedReason reason = bytes::devices::why_undecoded(*name_.uri, found_.bytes);
+  found_.message = std::move(reason.why);
+  found_.shape = reason.likely_shape;
+}
+
+Result<FirstLook> first_look(const live::sources::SourceName& name, live::sources::SourceOptions options) {
+  SourceLook look(name, std::move(options));
+  for (;;) {
+    if (std::optional<Result<FirstLook>> found = look.found()) return *std::move(found);
+    std::this_thread::sleep_for(kPeriod);
+  }
 }
 
 }  // namespace dermis::out::serve

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "dermis/bytes/files/atomic_file.hpp"
+#include "dermis/bytes/files/input.hpp"
 #include "dermis/bytes/layouts/layout.hpp"
 #include "dermis/touch/frames/array_description.hpp"
 
@@ -89,18 +90,28 @@ std::string layout_proposals(std::span<const std::uint8_t> bytes, const bytes::p
   return json_text(answer);
 }
 
-Result<std::string> write_layout(std::span<const std::uint8_t> bytes, const bytes::proposals::Known& known,
-                                 std::size_t place, const std::string& file) {
-  const std::vector<bytes::proposals::Proposal> proposals = bytes::proposals::propose(bytes, known);
+Result<std::string> proposed_layout(std::span<const std::uint8_t> bytes, const bytes::proposals::Known& known,
+                                    std::uint64_t place) {
+  std::vector<bytes::proposals::Proposal> proposals = bytes::proposals::propose(bytes, known);
   if (place >= proposals.size()) return bad_input("no such layout reads these bytes");
+  return std::move(proposals[static_cast<std::size_t>(place)].toml);
+}
+
+Result<std::string> write_layout(const std::string& toml, const std::string& file) {
+  const Result<bytes::layouts::Layout> layout = bytes::layouts::layout_from_toml(toml, file);
+  if (!layout) return layout.error();
+  const std::string& array = layout->arrays.front().name;
   std::error_code ignored;
-  if (std::filesystem::exists(file, ignored)) return bad_field("name", file + " is there already: choose another name");
+  if (std::filesystem::exists(file, ignored)) {
+    const Result<std::string> before = bytes::files::read_file(file, toml.size() + 1);
+    if (before && *before == toml) return array;
+    return bad_field("name", file + " is there already: choose another name");
+  }
   Result<bytes::files::AtomicFile> written = bytes::files::AtomicFile::create(file);
   if (!written) return written.error();
-  written->write(proposals[place].toml);
+  written->write(toml);
   if (Status committed = written->commit(); !committed) return committed.error();
-  const Result<bytes::layouts::Layout> layout = bytes::layouts::layout_from_toml(proposals[place].toml, file);
-  return layout ? Result<std::string>(layout->arrays.front().name) : Result<std::string>(layout.error());
+  return array;
 }
 
 }  // namespace dermis::out::serve

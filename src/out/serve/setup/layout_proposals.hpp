@@ -23,10 +23,12 @@ namespace dermis::out::serve {
 /// The bytes are the first 1024, and parts are of these.
 [[nodiscard]] std::string layout_proposals(std::span<const std::uint8_t> bytes, const bytes::proposals::Known& known);
 
-/// Writes the layout at that place as `file`, which must not be there. Returns the name of its first array; empty where
-/// it has but one.
-[[nodiscard]] Result<std::string> write_layout(std::span<const std::uint8_t> bytes,
-                                               const bytes::proposals::Known& known, std::size_t place,
-                                               const std::string& file);
+/// The layout at that place, as TOML.
+[[nodiscard]] Result<std::string> proposed_layout(std::span<const std::uint8_t> bytes,
+                                                  const bytes::proposals::Known& known, std::uint64_t place);
+
+/// Writes a layout as `file`, where no other one may be. Returns the name of its first array; empty where it has but
+/// one.
+[[nodiscard]] Result<std::string> write_layout(const std::string& toml, const std::string& file);
 
 }  // namespace dermis::out::serve

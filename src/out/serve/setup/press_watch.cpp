@@ -45,7 +45,7 @@ PressWatch::PressWatch(const live::sources::SourceName& name, FrameShape sent, P
         guide_.add(frame.counts, frame.time);
       }) {}
 
-nlohmann::ordered_json PressWatch::progress() const {
+nlohmann::ordered_json PressWatch::progress() {
   const std::string problem = watch_.seen().problem;
   const std::lock_guard lock(mutex_);
   nlohmann::ordered_json json = {{"ready", guide_.is_ready()}, {"place", guide_.place()},

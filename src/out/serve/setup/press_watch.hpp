@@ -25,7 +25,7 @@ class PressWatch {
 
   /// {"ready", "place", "done", "pressed", "repeated", "channels", "problem"}. `place` is to be pressed now. The
   /// channel of `repeated`, or of none (null), answered again.
-  [[nodiscard]] nlohmann::ordered_json progress() const;
+  [[nodiscard]] nlohmann::ordered_json progress();
   /// Nothing answers at this place; or the last place again.
   void skip();
   void back();

@@ -2,18 +2,18 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "dermis/live/sources/open_source.hpp"
 #include "dermis/touch/frames/frame_source.hpp"
+#include "out/serve/setup/source_watch.hpp"
+#include "out/serve/setup/touch_finder.hpp"
 
 namespace dermis::out::serve {
 
@@ -33,24 +33,19 @@ class TouchWatch {
 
   /// `shape`: of the frames. The options `array` and `stop` are not used. `heard` has each frame, in another thread.
   TouchWatch(live::sources::SourceName name, FrameShape shape, live::sources::SourceOptions options, Heard heard = {});
-  TouchWatch(const TouchWatch&) = delete;
-  TouchWatch& operator=(const TouchWatch&) = delete;
-  ~TouchWatch();
 
   [[nodiscard]] FrameShape shape() const noexcept { return shape_; }
-  [[nodiscard]] Seen seen() const;
+  [[nodiscard]] Seen seen();
 
  private:
-  [[nodiscard]] Status watch(live::sources::SourceOptions options);
-  void keep(Seen seen);
+  [[nodiscard]] Result<bool> hear(const RawFrame& frame);
 
-  const live::sources::SourceName name_;
   const FrameShape shape_;
   const Heard heard_;
-  mutable std::mutex mutex_;
+  std::mutex mutex_;
   Seen seen_;
-  std::atomic<bool> stop_ = false;
-  std::thread thread_;
+  TouchFinder finder_;
+  SourceWatch watch_;  // the last: its thread uses the others
 };
 
 }  // namespace dermis::out::serve
