@@ -20,7 +20,10 @@ export class Fits implements Fitter {
       else module.fitFailed(`its worker ended (${news.failure}); perhaps this page has too little memory`);
     };
     worker.onmessage = ({ data }: MessageEvent<News>) => hear(data);
-    worker.onerror = ({ message }) => hear({ failure: message });
+    worker.onerror = (error) => {
+      error.preventDefault(); // it is none of the page
+      hear({ failure: error.message });
+    };
     try {
       const copy = module.copy();
       worker.postMessage(copy, [copy.memory]);
