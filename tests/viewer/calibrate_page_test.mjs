@@ -17,7 +17,7 @@ const WEIGHTS = [1, 4, 10];
 const PRESSES = 48;
 const LEAST_N = 1e-3;
 /** Products and sums are rounded otherwise in the page, and a training ends a little elsewhere. */
-const MOST_RELATIVE = 1e-3;
+const MOST_RELATIVE = 1e-4;
 const KINDS = ["safetensors", "array.toml", "frames.csv", "loads.csv"];
 
 useSite();
