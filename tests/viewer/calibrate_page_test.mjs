@@ -82,7 +82,8 @@ function apart(some, others) {
 
 /** Newtons of the model that the page saved, and of the command's own calibration of what the page measured. */
 function compare(folder) {
-  const dermis = (...command) => execFileSync(resolve(process.argv[2]), command, { stdio: ["ignore", "ignore", "pipe"] });
+  const dermis = (...command) =>
+    execFileSync(resolve(process.argv[2]), command, { stdio: ["ignore", "ignore", "pipe"] });
   const file = (name) => join(folder, name);
   const data = ["--frames", file("frames.csv"), "--loads", file("loads.csv")];
   dermis("calibrate", "--array", file("array.toml"), ...data, "--out", file("own.safetensors"));

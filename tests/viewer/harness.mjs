@@ -12,7 +12,7 @@ import { after, before } from "node:test";
 
 const { chromium } = createRequire(new URL("../npm/package.json", import.meta.url))("playwright-core");
 
-export const WAIT_MS = Number(process.env.H3_WAIT ?? 180_000);
+export const WAIT_MS = 180_000;
 /** As the tabs name them. */
 export const VIEWS = ["array", "time", "suit", "recognition", "health", "calibration"];
 

@@ -2,7 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
 // Usage: simulate_presses CIRCUIT PRESSES >presses
-// The frames of a guided calibration, for calibrate_presses: the array at rest, then five weights on taxels all over it.
+// The frames of a guided calibration, for calibrate_presses: the array at rest, then five weights on taxels all over
+// it.
 #include <array>
 #include <cstdio>
 #include <cstdlib>

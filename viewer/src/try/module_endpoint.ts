@@ -3,7 +3,10 @@
 import type { Endpoint, Socket } from "../stream/endpoint";
 
 /** The page asks its worker to begin with these files, to take a client, or for a document. */
-export type Question = { module: string; model: string; isRehearsal: boolean } | { port: MessagePort } | { id: number; path: string };
+export type Question =
+  | { module: string; model: string; isRehearsal: boolean }
+  | { port: MessagePort }
+  | { id: number; path: string };
 export type Answer = { id: number; document?: string | Uint8Array<ArrayBuffer> | undefined; failure?: string };
 
 /** dermis in a worker of the page, in the place of a server. */
