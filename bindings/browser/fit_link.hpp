@@ -19,7 +19,7 @@ class FitLink {
 
   /// In the copy: does the fit that was begun last. Its outcome, as bytes.
   [[nodiscard]] virtual std::string run() = 0;
-  /// What run() gave in the copy.
+  /// Takes the outcome that run() gave in the copy.
   virtual void accept(std::string_view outcome) = 0;
   virtual void accept_share(double share) = 0;
   /// The copy has ended without an outcome.

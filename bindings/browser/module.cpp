@@ -140,7 +140,7 @@ DERMIS_EXPORT(dermis_answer_size) std::size_t dermis_answer_size() {
   return module().answer.size();
 }
 
-/// A simulated sheet with the model whose bytes are in the room; or that of a rehearsal, under a hand that obeys the
+/// A simulated sheet with the model whose bytes are in the room. For a rehearsal it has none, and a hand that obeys the
 /// guide of a calibration. 0: it could not begin, and the answer says why.
 DERMIS_EXPORT(dermis_begin_simulation) int dermis_begin_simulation(std::size_t size, int is_rehearsal) {
   module().setup.reset();

@@ -10,7 +10,7 @@
 
 namespace dermis::browser {
 
-/// The outcome of a fit as bytes (CBOR). Of the report of a calibration, what a guide tells: see outcome_bytes.cpp.
+/// The outcome of a fit as bytes (CBOR). The report of a calibration is there as far as a guide tells it.
 [[nodiscard]] std::string outcome_to_bytes(const learn::calibration::FitOutcome& outcome);
 /// Errors: they are not what outcome_to_bytes() gives.
 [[nodiscard]] Result<learn::calibration::FitOutcome> outcome_from_bytes(std::string_view bytes);

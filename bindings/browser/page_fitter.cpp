@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
 // GuideFitter for the page that the module is part of. A fit runs in a second worker, in a copy of this module and of
-// its whole memory, so that the job is there as it is here. The outcome comes back as bytes.
+// its whole memory. So the job is there as it is here. The outcome comes back as bytes.
 #include <optional>
 #include <utility>
 

@@ -14,13 +14,19 @@ export class Fits implements Fitter {
     this.#worker = worker;
     const hear = (news: News): void => {
       if (this.#worker !== worker) return;
-      if ("share" in news) return module.fitShare(news.share);
+      if ("share" in news) {
+        module.fitShare(news.share);
+        return;
+      }
       this.end();
       if ("outcome" in news) module.fitDone(news.outcome);
       else module.fitFailed(`its worker ended (${news.failure}); perhaps this page has too little memory`);
     };
     worker.onmessage = ({ data }: MessageEvent<News>) => hear(data);
-    worker.onerror = ({ message }) => hear({ failure: message });
+    worker.onerror = (error) => {
+      error.preventDefault(); // it is none of the page
+      hear({ failure: error.message });
+    };
     try {
       const copy = module.copy();
       worker.postMessage(copy, [copy.memory]);

@@ -49,10 +49,12 @@ const utf8 = new TextEncoder();
 /** dermis in this thread: the server of `dermis serve` for one client. Not for the page's own thread, which it holds up. */
 export class Module {
   readonly #code: WebAssembly.Module;
+  readonly #files: Files;
   readonly #exports: Exports;
 
-  private constructor(code: WebAssembly.Module, instance: WebAssembly.Instance) {
+  private constructor(code: WebAssembly.Module, files: Files, instance: WebAssembly.Instance) {
     this.#code = code;
+    this.#files = files;
     this.#exports = instance.exports as unknown as Exports;
   }
 
@@ -77,7 +79,7 @@ export class Module {
 
   static async #make(code: WebAssembly.Module, files: Files, fits: WebAssembly.ModuleImports): Promise<Module> {
     const system = systemOf(files);
-    const module = new Module(code, await WebAssembly.instantiate(code, { ...system.imports, fits }));
+    const module = new Module(code, files, await WebAssembly.instantiate(code, { ...system.imports, fits }));
     system.memory = module.#exports.memory;
     return module;
   }
@@ -145,8 +147,10 @@ export class Module {
     return kind === NEXT_IS_TEXT ? this.#text() : this.#answer().slice().buffer;
   }
 
-  document(path: string): string | undefined {
-    return this.#exports.dermis_document(this.#put(utf8.encode(path))) === 0 ? undefined : this.#text();
+  /** A document of the server, or the bytes of a file that it wrote. */
+  document(path: string): string | Uint8Array<ArrayBuffer> | undefined {
+    const isThere = this.#exports.dermis_document(this.#put(utf8.encode(path))) !== 0;
+    return isThere ? this.#text() : this.#files.bytes(path);
   }
 
   fitDone(outcome: Uint8Array): void {

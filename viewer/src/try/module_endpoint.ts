@@ -8,7 +8,7 @@ export type Question =
   | { port: MessagePort }
   | { id: number; path: string }
   | BoardNews;
-export type Answer = { id: number; document?: string | undefined; failure?: string };
+export type Answer = { id: number; document?: string | Uint8Array<ArrayBuffer> | undefined; failure?: string };
 
 /** Of the board in the page, for the worker: it is open, or lost; its bytes. Or that somebody will describe its array. */
 export type BoardNews =

@@ -35,7 +35,8 @@ export class Bar {
     this.element = element(
       "header",
       { class: "bar" },
-      element("h1", { class: "brand" }, "dermis"),
+      element("h1", { class: "only-spoken" }, "dermis"),
+      element("span", { class: "brand", "aria-hidden": "true" }, "dermis"),
       makeSuitName(context),
       element("nav", { class: "tabs", "aria-label": "Views" }, ...this.#tabs),
       makeSelector(context),

@@ -10,8 +10,7 @@
 
 namespace dermis::learn::calibration {
 
-/// Fits the presses of a guided calibration while its caller goes on: on a thread of its own; in a page, in a worker of
-/// its own.
+/// Fits the presses of a guided calibration on a thread of its own; in a page, in a worker.
 class GuideFitter {
  public:
   /// `on_outcome` is called on the thread of the fits; `on_progress` gets the share done of a last job, from any
