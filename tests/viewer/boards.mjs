@@ -153,7 +153,11 @@ export function standInForSerial() {
         last = now;
         if (this.port !== undefined) this.send(due);
       }, 4);
-      setInterval(() => this.says !== undefined && this.port?.receive(new TextEncoder().encode(this.says())), 10);
+      setInterval(() => {
+        if (this.says === undefined || this.port === undefined) return;
+        const said = this.says();
+        this.port.receive(typeof said === "string" ? new TextEncoder().encode(said) : said);
+      }, 10);
     }
     send(count) {
       if (this.bytes.length === 0) return;
@@ -174,11 +178,11 @@ export function standInForSerial() {
       this.port = undefined;
       port?.lose();
     }
-    /** Its permission lasts, but the port is another object, as in Chromium. */
-    plugIn() {
+    /** The port is another object, as in Chromium. `isKnown`: its permission lasts. */
+    plugIn({ isKnown = true } = {}) {
       this.isPlugged = true;
       this.known = new Port(this);
-      tell("connect", this.known);
+      if (isKnown) tell("connect", this.known);
     }
   }
 
