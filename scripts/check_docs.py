@@ -24,6 +24,7 @@ def broken_links(path):
         if re.match(r"[a-z]+:", target):
             continue
         name, _, anchor = target.partition("#")
+        name = name.split("?")[0]
         file = (path.parent / name) if name else path
         if not file.exists():
             yield f"{path.relative_to(ROOT)}: {target} does not exist"

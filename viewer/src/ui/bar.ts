@@ -35,7 +35,7 @@ export class Bar {
     this.element = element(
       "header",
       { class: "bar" },
-      element("span", { class: "brand" }, "dermis"),
+      element("h1", { class: "brand" }, "dermis"),
       makeSuitName(context),
       element("nav", { class: "tabs", "aria-label": "Views" }, ...this.#tabs),
       makeSelector(context),
