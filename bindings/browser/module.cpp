@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -24,6 +26,9 @@ using namespace dermis;  // NOLINT(google-build-using-namespace)
 
 constexpr double kSimulatedHz = 100.0;
 constexpr std::size_t kSimulatedFrames = 600;  // of the scene, at 100 Hz
+
+/// The page's recordings are in its folder, with this name or another.
+constexpr const char* kRecordings = "/recordings/dermis.mcap";
 
 /// All that the page has.
 struct Module {
@@ -62,9 +67,12 @@ Result<out::serve::ServedSuit> simulated(const std::string& model_file) {
 }
 
 Status begin(const std::string& model_file) {
+  std::error_code is_there;
+  std::filesystem::create_directories(std::filesystem::path(kRecordings).parent_path(), is_there);
   Result<out::serve::ServedSuit> suit = simulated(model_file);
   if (!suit) return suit.error();
-  Result<std::unique_ptr<out::serve::Session>> session = out::serve::Session::create(*std::move(suit));
+  Result<std::unique_ptr<out::serve::Session>> session =
+      out::serve::Session::create(*std::move(suit), {.recordings = kRecordings});
   if (!session) return session.error();
   module().session = *std::move(session);
   return Done{};
@@ -130,4 +138,12 @@ DERMIS_EXPORT(dermis_document) int dermis_document(std::size_t size) {
   const std::string* const document = link != nullptr ? link->document(text_of(size)) : nullptr;
   if (document != nullptr) answer(*document);
   return document != nullptr ? 1 : 0;
+}
+
+/// The place of a file that clients may save, whose path at the server is in the room, becomes the answer. 0: none.
+DERMIS_EXPORT(dermis_file) int dermis_file(std::size_t size) {
+  auto* const link = browser::page_link();
+  const std::string* const file = link != nullptr ? link->file(text_of(size)) : nullptr;
+  if (file != nullptr) answer(*file);
+  return file != nullptr ? 1 : 0;
 }

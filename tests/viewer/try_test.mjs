@@ -3,63 +3,13 @@
 // Usage: node try_test.mjs
 // The page of site/try in a real browser: dermis in a worker, in the place of a server.
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
-import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
-import { createServer } from "node:http";
-import { tmpdir } from "node:os";
-import { extname, join } from "node:path";
-import { after, before, describe, it } from "node:test";
-import { gunzipSync, gzipSync } from "node:zlib";
-import { assertUnhurt, becomes, eventually, openBrowser, openPage, part, tareAnyway } from "./harness.mjs";
+import { describe, it } from "node:test";
+import { assertUnhurt, becomes, eventually, openPage, part, tareAnyway } from "./harness.mjs";
+import { change, site, useSite } from "./try_page.mjs";
 
-const CONTENT_TYPES = {
-  ".html": "text/html",
-  ".js": "text/javascript",
-  ".css": "text/css",
-  ".wasm": "application/wasm",
-};
 const MOST_BYTES = 3_000_000;
 
-if (!existsSync("/usr/bin/wasm-ld-16") || !existsSync("/usr/include/wasm32-wasi/c++/v1")) {
-  console.log("skipped: there is no compiler for WebAssembly (scripts/setup browser)");
-  process.exit(0);
-}
-
-let folder;
-let server;
-let browser;
-let url;
-let packed;
-let isOnline = true;
-
-before(async () => {
-  folder = mkdtempSync(join(tmpdir(), "dermis-try-"));
-  execFileSync(new URL("../../scripts/try_page", import.meta.url).pathname, [folder], {
-    stdio: ["ignore", "ignore", "inherit"],
-  });
-  const files = readdirSync(folder, { recursive: true, withFileTypes: true }).filter((entry) => entry.isFile());
-  packed = new Map(
-    files.map(({ parentPath, path = parentPath, name }) => {
-      const file = join(path, name);
-      return [file.slice(folder.length), gzipSync(readFileSync(file), { level: 9 })];
-    }),
-  );
-  server = createServer((request, response) => {
-    const path = request.url === "/" ? "/index.html" : request.url;
-    const file = isOnline ? packed.get(path) : undefined;
-    if (file === undefined) return response.writeHead(404).end();
-    const type = CONTENT_TYPES[extname(path)] ?? "application/octet-stream";
-    response.writeHead(200, { "Content-Type": type, "Content-Encoding": "gzip" }).end(file);
-  });
-  await new Promise((listening) => server.listen(0, "127.0.0.1", listening));
-  url = `http://127.0.0.1:${server.address().port}/`;
-  browser = await openBrowser();
-});
-after(async () => {
-  await browser?.close();
-  server?.close();
-  if (folder) rmSync(folder, { recursive: true, force: true });
-});
+useSite();
 
 /** Waits until the page is kept for offline. */
 async function kept(page) {
@@ -70,17 +20,13 @@ async function kept(page) {
   });
 }
 
-function change(path, text, by) {
-  packed.set(path, gzipSync(gunzipSync(packed.get(path)).toString().replace(text, by)));
-}
-
 describe("the page of site/try", () => {
   it("shows newtons and contacts of a simulated sheet, and asks for nothing but its own files", async () => {
-    const page = await openPage(browser, "about:blank");
+    const page = await openPage(site.browser, "about:blank");
     const asked = [];
     page.on("request", (request) => asked.push(request.url()));
     const begin = performance.now();
-    await page.goto(`${url}#/array`);
+    await page.goto(`${site.url}#/array`);
     await becomes(page, "live");
     await eventually(page, () => document.querySelector("[data-view=array]").dataset.stamp !== undefined);
     const firstMapMs = performance.now() - begin;
@@ -89,10 +35,10 @@ describe("the page of site/try", () => {
     const stamp = await page.evaluate(stampOf);
     await eventually(page, (before) => document.querySelector("[data-view=array]").dataset.stamp !== before, stamp);
     assert.deepEqual(
-      asked.filter((address) => !address.startsWith(url)),
+      asked.filter((address) => !address.startsWith(site.url)),
       [],
     );
-    const bytes = [...packed.values()].reduce((sum, { length }) => sum + length, 0);
+    const bytes = [...site.packed.values()].reduce((sum, { length }) => sum + length, 0);
     assert.ok(bytes < MOST_BYTES, `${bytes} bytes`);
     assertUnhurt(page);
     console.log(`first map after ${Math.round(firstMapMs)} ms, ${bytes} bytes compressed`);
@@ -100,7 +46,7 @@ describe("the page of site/try", () => {
   });
 
   it("tares, and answers as a server does", async () => {
-    const page = await openPage(browser, `${url}#/array`);
+    const page = await openPage(site.browser, `${site.url}#/array`);
     await becomes(page, "live");
     await part(page, "show-thresholds").click();
     const rate = page.locator('[data-parameter="/stream/rate_hz"]');
@@ -114,21 +60,21 @@ describe("the page of site/try", () => {
   });
 
   it("needs no network once it was shown", async () => {
-    const page = await openPage(browser, `${url}#/array`);
+    const page = await openPage(site.browser, `${site.url}#/array`);
     await becomes(page, "live");
     await kept(page);
-    isOnline = false;
+    site.isOnline = false;
     await page.reload();
     await becomes(page, "live");
     await page.locator("[data-contact]").first().waitFor();
-    isOnline = true;
+    site.isOnline = true;
     assertUnhurt(page);
     await page.close();
   });
 
   it("has all files of one version, and the next one when no page is open", async () => {
-    const context = await browser.newContext();
-    const page = await openPage(context, url);
+    const context = await site.browser.newContext();
+    const page = await openPage(context, site.url);
     await becomes(page, "live");
     await kept(page);
     await page.reload(); // now it is of the version that is kept
@@ -144,7 +90,7 @@ describe("the page of site/try", () => {
     for (let found = 0; found === 0; found = await next.count()) {
       await page.goto("about:blank");
       await page.waitForTimeout(200);
-      await page.goto(url);
+      await page.goto(site.url);
     }
     await becomes(page, "live");
     assertUnhurt(page);
@@ -152,9 +98,9 @@ describe("the page of site/try", () => {
   });
 
   it("says in one line why it cannot begin", async () => {
-    const page = await openPage(browser, "about:blank");
+    const page = await openPage(site.browser, "about:blank");
     await page.route("**/sheet.model", (route) => route.fulfill({ body: "no model" }));
-    await page.goto(url);
+    await page.goto(site.url);
     await page.getByRole("alert").filter({ hasText: "the model" }).waitFor();
     await page.close();
   });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element } from "../dom";
+import { element, setText } from "../dom";
 import "../styles/tokens.css";
 import "../styles/page.css";
 import "../styles/controls.css";
@@ -24,9 +24,17 @@ function keepForOffline(): void {
 try {
   const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
   const addressOf = (file: string): string => new URL(file, document.baseURI).href;
-  const app = new App(new ModuleEndpoint(worker, addressOf("dermis.wasm"), addressOf("sheet.model"), showInstead));
+  const note = element("p", { role: "status", "data-role": "files-note" });
+  const endpoint = new ModuleEndpoint(
+    worker,
+    addressOf("dermis.wasm"),
+    addressOf("sheet.model"),
+    showInstead,
+    (words) => setText(note, words),
+  );
+  const app = new App(endpoint);
   document.body.append(
-    element("aside", { class: "about", "aria-label": "About this page", "data-role": "about" }, ABOUT),
+    element("aside", { class: "about", "aria-label": "About this page", "data-role": "about" }, ABOUT, note),
   );
   app.begin();
   app.stream.connection.follow(({ kind }) => {

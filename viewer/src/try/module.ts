@@ -16,6 +16,7 @@ interface Exports {
   dermis_work(): void;
   dermis_next(): number;
   dermis_document(size: number): number;
+  dermis_file(size: number): number;
 }
 
 const NEXT_IS_TEXT = 1;
@@ -65,6 +66,11 @@ export class Module {
 
   document(path: string): string | undefined {
     return this.#exports.dermis_document(this.#put(utf8.encode(path))) === 0 ? undefined : this.#text();
+  }
+
+  /** Where the file is that a client may save at this path. */
+  file(path: string): string | undefined {
+    return this.#exports.dermis_file(this.#put(utf8.encode(path))) === 0 ? undefined : this.#text();
   }
 
   #put(bytes: Uint8Array): number {

@@ -1,24 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
+
 import type { Endpoint, Socket } from "../stream/endpoint";
+import { saveBlob } from "../take/save_file";
 
 /** The page asks its worker to begin with these files, to take a client, or for a document. */
 export type Question = { module: string; model: string } | { port: MessagePort } | { id: number; path: string };
-export type Answer = { id: number; document?: string | undefined; failure?: string };
+export type Answer = { id: number; document?: string | Blob | undefined; failure?: string } | { note: string };
+type Document = Exclude<Answer, { note: string }>;
 
 /** dermis in a worker of the page, in the place of a server. */
 export class ModuleEndpoint implements Endpoint {
   readonly token = "";
   readonly #worker: Worker;
   readonly #failed: (why: string) => void;
-  readonly #asked = new Map<number, (answer: Answer) => void>();
+  readonly #asked = new Map<number, (answer: Document) => void>();
   #lastId = 0;
 
-  /** `module` and `model`: addresses of the files to begin with. `failed` is told why that could not be. */
-  constructor(worker: Worker, module: string, model: string, failed: (why: string) => void) {
+  /**
+   * `module` and `model`: addresses of the files to begin with. `failed` is told why that could not be, `told` what the
+   * user should know of the files of the page.
+   */
+  constructor(
+    worker: Worker,
+    module: string,
+    model: string,
+    failed: (why: string) => void,
+    told: (note: string) => void,
+  ) {
     this.#worker = worker;
     this.#failed = failed;
     worker.onmessage = ({ data }: MessageEvent<Answer>) => {
+      if ("note" in data) return told(data.note);
       this.#asked.get(data.id)?.(data);
       this.#asked.delete(data.id);
     };
@@ -27,16 +40,14 @@ export class ModuleEndpoint implements Endpoint {
   }
 
   async fetch(path: string): Promise<Response> {
-    const id = ++this.#lastId;
-    const { document, failure } = await new Promise<Answer>((resolve) => {
-      this.#asked.set(id, resolve);
-      this.#ask({ id, path: `/${path}` });
-    });
-    if (failure !== undefined) {
-      this.#failed(failure);
-      throw new Error(failure);
-    }
+    const document = await this.#document(path);
     return document === undefined ? new Response(null, { status: 404 }) : new Response(document);
+  }
+
+  async save(path: string, _token: string, name: string): Promise<void> {
+    const document = await this.#document(path);
+    if (document === undefined) throw new Error(`${name} is not there.`);
+    saveBlob(new Blob([document]), name);
   }
 
   open(): Socket {
@@ -54,6 +65,17 @@ export class ModuleEndpoint implements Endpoint {
       send: (message) => port1.postMessage(message),
       close: () => port1.close(),
     };
+  }
+
+  async #document(path: string): Promise<string | Blob | undefined> {
+    const id = ++this.#lastId;
+    const { document, failure } = await new Promise<Document>((resolve) => {
+      this.#asked.set(id, resolve);
+      this.#ask({ id, path: `/${path}` });
+    });
+    if (failure === undefined) return document;
+    this.#failed(failure);
+    throw new Error(failure);
   }
 
   #ask(question: Question, handedOver: Transferable[] = []): void {

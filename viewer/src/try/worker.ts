@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { errorText } from "../format";
-import { Files } from "./files";
+import { blobOf, openFiles, type PageFiles } from "./kept_files";
 import { Module } from "./module";
 import type { Answer, Question } from "./module_endpoint";
 
 const WORK_MS = 5;
+const SETTLE_MS = 200;
 
 let client: MessagePort | undefined;
 let begun: Promise<Module> | undefined;
+let pageFiles: PageFiles;
 
 async function bytesOf(address: string): Promise<ArrayBuffer> {
   const response = await fetch(address);
@@ -17,14 +19,26 @@ async function bytesOf(address: string): Promise<ArrayBuffer> {
 }
 
 async function begin(module: string, model: string): Promise<Module> {
-  const [code, modelFile] = await Promise.all([bytesOf(module), bytesOf(model)]);
-  const made = await Module.load(await WebAssembly.compile(code), new Files());
+  const [code, modelFile, opened] = await Promise.all([bytesOf(module), bytesOf(model), openFiles()]);
+  pageFiles = opened;
+  if (opened.lost !== undefined) tell({ note: opened.lost });
+  const made = await Module.load(await WebAssembly.compile(code), opened.files);
   made.beginSimulation(new Uint8Array(modelFile));
   setInterval(() => {
     made.work();
     send(made);
   }, WORK_MS);
+  void keepSettled();
   return made;
+}
+
+async function keepSettled(): Promise<void> {
+  await pageFiles.settle().catch(() => undefined); // full: what comes stays in memory
+  setTimeout(() => void keepSettled(), SETTLE_MS);
+}
+
+function tell(answer: Answer): void {
+  postMessage(answer);
 }
 
 function send(module: Module): void {
@@ -47,11 +61,13 @@ async function connect(port: MessagePort): Promise<void> {
 async function answer(id: number, path: string): Promise<void> {
   let answered: Answer;
   try {
-    answered = { id, document: (await begun!).document(path) };
+    const module = await begun!;
+    const file = module.file(path);
+    answered = { id, document: file === undefined ? module.document(path) : await blobOf(pageFiles.files, file) };
   } catch (error) {
     answered = { id, failure: errorText(error) };
   }
-  postMessage(answered);
+  tell(answered);
 }
 
 addEventListener("message", ({ data }: MessageEvent<Question>) => {
