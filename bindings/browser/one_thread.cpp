@@ -27,9 +27,6 @@ void condition_variable::wait(unique_lock<mutex>&) noexcept {
   __builtin_trap();
 }
 void condition_variable::__do_timed_wait(unique_lock<mutex>&,
-                                         chrono::time_point<chrono::system_clock, chrono::nanoseconds>) noexcept {}
-
-void condition_variable::__do_timed_wait(unique_lock<mutex>&,
                                          chrono::time_point<chrono::system_clock, chrono::nanoseconds>) noexcept {
   __builtin_trap();
 }

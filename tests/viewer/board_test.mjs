@@ -6,7 +6,7 @@ import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { resolve } from "node:path";
 import { describe, it } from "node:test";
-import { playMat, standInForBluetooth, standInForSerial } from "./boards.mjs";
+import { playMat, standInForBluetooth, standInForSerial, standInForUsb } from "./boards.mjs";
 import { assertUnhurt, becomes, eventually, openPage, part } from "./harness.mjs";
 import { browser, url, useSite } from "./try_site.mjs";
 
@@ -349,6 +349,35 @@ describe("a board at the page of site/try", () => {
     });
     await says(page, "The board is unplugged");
     await page.evaluate(() => (radio.isInReach = true));
+    await says(page, "The board is back");
+    await isLive(page);
+    assertUnhurt(page);
+    await context.close();
+  });
+
+  it("is read at USB without a driver, and again when it is chosen again", async () => {
+    const context = await browser.newContext();
+    await context.addInitScript(standInForUsb);
+    const page = await openPage(context, url);
+    await becomes(page, "live");
+    await page.evaluate((text) => {
+      usbPort.bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+    }, mat(20).toString("base64"));
+    await page.getByText("Other ways").click();
+    await part(page, "connect-usb").click();
+    await says(page, "Connected: Pico");
+    assert.equal(await page.evaluate(() => usbPort.baud), 115200);
+    await page.locator("#array-rows").fill("12");
+    await page.locator("#array-cols").fill("10");
+    await describeArray(page);
+    await page.evaluate(() => {
+      usbPort.isPlugged = false;
+    });
+    await says(page, "The board is unplugged");
+    await page.evaluate(() => {
+      usbPort.isPlugged = true;
+    });
+    await part(page, "connect-usb").click();
     await says(page, "The board is back");
     await isLive(page);
     assertUnhurt(page);

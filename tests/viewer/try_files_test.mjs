@@ -48,7 +48,8 @@ const row = (page, name) => page.locator(`[data-recording='${name}']`);
 /** Until the recording has more bytes than that. */
 async function grows(page, name, kilobytes) {
   const size = row(page, name).locator("[data-field=size]");
-  for (let have = 0; have < kilobytes; have = Number.parseFloat(await size.textContent())) await page.waitForTimeout(200);
+  for (let have = 0; have < kilobytes; have = Number.parseFloat(await size.textContent()))
+    await page.waitForTimeout(200);
 }
 
 it("records every frame, and the command reads the download", async () => {
@@ -59,7 +60,10 @@ it("records every frame, and the command reads the download", async () => {
   const frames = await end(page);
   const file = await saved(page, row(page, "walk.mcap").locator("[data-act=download]"));
   const { complete, frames: read, lost, compression } = info(file);
-  assert.deepEqual({ complete, read, lost, compression }, { complete: true, read: frames, lost: 0, compression: "none" });
+  assert.deepEqual(
+    { complete, read, lost, compression },
+    { complete: true, read: frames, lost: 0, compression: "none" },
+  );
   const forces = join(site.folder, "forces.csv");
   dermis("run", "--model", join(site.folder, "sheet.model"), "--in", file, "--out", forces);
   assert.equal(readCsv(forces).length, frames);
