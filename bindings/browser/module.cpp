@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -32,6 +34,9 @@ constexpr double kSimulatedHz = 100.0;
 constexpr std::size_t kSimulatedFrames = 600;  // of the scene, at 100 Hz
 constexpr int kWarning = 1;
 constexpr int kError = 2;
+
+/// The page's recordings are in its folder, with this name or another.
+constexpr const char* kRecordings = "/recordings/dermis.mcap";
 
 /// All that the page has: a session, or the setup of one.
 struct Module {
@@ -83,10 +88,13 @@ void tell(const std::string& line) {
 out::serve::SessionOptions session_options() {
   out::serve::SessionOptions options;
   options.server.notice = tell;
+  options.recordings = kRecordings;
   return options;
 }
 
 Status serve(Result<out::serve::ServedSuit> suit) {
+  std::error_code is_there;
+  std::filesystem::create_directories(std::filesystem::path(kRecordings).parent_path(), is_there);
   if (!suit) return suit.error();
   Result<std::unique_ptr<out::serve::Session>> session =
       out::serve::Session::create(*std::move(suit), session_options());
@@ -241,4 +249,12 @@ DERMIS_EXPORT(dermis_fit_share) void dermis_fit_share(double share) {
 /// The copy has ended without an answer; why is in the room.
 DERMIS_EXPORT(dermis_fit_failed) void dermis_fit_failed(std::size_t size) {
   if (auto* const link = browser::fit_link()) link->fail(text_of(size));
+}
+
+/// The place of a file that clients may save, whose path at the server is in the room, becomes the answer. 0: none.
+DERMIS_EXPORT(dermis_file) int dermis_file(std::size_t size) {
+  auto* const link = browser::page_link();
+  const std::string* const file = link != nullptr ? link->file(text_of(size)) : nullptr;
+  if (file != nullptr) answer(*file);
+  return file != nullptr ? 1 : 0;
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
-// The functions of libc++ that a library without threads lacks, for its one thread. A wait for another thread traps; a
-// pause is none. What throws traps, as the module has no exceptions.
+// The functions of libc++ that a library without threads lacks, for its one thread. A thread
+// runs to its end where it begins. A wait for another thread traps; a pause is none. What throws traps, as the module
+// has no exceptions.
 #include <condition_variable>
 #include <mutex>
 #include <shared_mutex>
@@ -26,7 +27,9 @@ void condition_variable::wait(unique_lock<mutex>&) noexcept {
   __builtin_trap();
 }
 void condition_variable::__do_timed_wait(unique_lock<mutex>&,
-                                         chrono::time_point<chrono::system_clock, chrono::nanoseconds>) noexcept {}
+                                         chrono::time_point<chrono::system_clock, chrono::nanoseconds>) noexcept {
+  __builtin_trap();
+}
 
 __shared_mutex_base::__shared_mutex_base() = default;
 void __shared_mutex_base::lock() {}
@@ -41,8 +44,18 @@ bool __shared_mutex_base::try_lock_shared() {
 void __shared_mutex_base::unlock_shared() {}
 
 thread::~thread() = default;
-void thread::join() {}
-void thread::detach() {}
+void thread::join() {
+  __t_ = _LIBCPP_NULL_THREAD;
+}
+void thread::detach() {
+  __t_ = _LIBCPP_NULL_THREAD;
+}
+__thread_specific_ptr<__thread_struct>& __thread_local_data() {
+  static __thread_specific_ptr<__thread_struct> data;
+  return data;
+}
+__thread_struct::__thread_struct() : __p_(nullptr) {}
+__thread_struct::~__thread_struct() = default;
 unsigned thread::hardware_concurrency() noexcept {
   return 1;
 }

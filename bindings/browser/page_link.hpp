@@ -34,6 +34,8 @@ class PageLink {
   [[nodiscard]] virtual std::optional<out::websocket::OutgoingMessage> next() = 0;
   /// "/suit.json"; null: there is none of that name.
   [[nodiscard]] virtual const std::string* document(const std::string& path) const = 0;
+  /// "/recordings/walk.mcap": the place of that file; null: there is none of that name.
+  [[nodiscard]] virtual const std::string* file(const std::string& path) const = 0;
 };
 
 /// That of the server that was made last; null: there is none.

@@ -59,6 +59,7 @@ class Server::Implementation final : public browser::PageLink {
     return id;
   }
   void set_document(std::string path, std::string content) { documents_[std::move(path)] = std::move(content); }
+  void set_file(std::string path, std::string file) { files_[std::move(path)] = std::move(file); }
   [[nodiscard]] bool has_subscribers(ChannelId channel) const { return subscribers_[channel] > 0; }
   [[nodiscard]] std::uint64_t subscriptions() const noexcept { return subscriptions_; }
   void publish(ChannelId channel, Nanos log_time, std::span<const std::uint8_t> message, MessageKind kind);
@@ -87,6 +88,10 @@ class Server::Implementation final : public browser::PageLink {
     const auto found = documents_.find(path);
     return found == documents_.end() ? nullptr : &found->second;
   }
+  [[nodiscard]] const std::string* file(const std::string& path) const override {
+    const auto found = files_.find(path);
+    return found == files_.end() ? nullptr : &found->second;
+  }
 
  private:
   struct Published {
@@ -113,6 +118,7 @@ class Server::Implementation final : public browser::PageLink {
   std::uint64_t subscriptions_ = 0;
   ServerStatistics statistics_;
   std::map<std::string, std::string> documents_;
+  std::map<std::string, std::string> files_;
   std::vector<Published> published_;  // that the client has not got yet
   std::deque<Received> received_;     // that the client said while its question waited
   Question question_;                 // of the client; empty: none waits for its answer
@@ -209,7 +215,9 @@ void Server::set_document(std::string path, std::string /*content_type*/, std::s
   implementation_->set_document(std::move(path), std::move(content));
 }
 
-void Server::set_file(std::string /*path*/, std::string /*file*/) {}
+void Server::set_file(std::string path, std::string file) {
+  implementation_->set_file(std::move(path), std::move(file));
+}
 
 bool Server::has_subscribers(ChannelId channel) const noexcept {
   return implementation_->has_subscribers(channel);

@@ -4,10 +4,11 @@
 
 namespace dermis::out::serve {
 
-/// Those that need neither files nor threads.
+/// Those that need no other thread, in the order of the command's.
 std::span<PartMaker* const> part_makers() {
-  static constexpr PartMaker* kMakers[] = {make_frame_topics, make_health, make_calibration, make_live_settings,
-                                           make_tares};
+  static constexpr PartMaker* kMakers[] = {make_frame_topics,    make_health,   make_calibration, make_live_settings,
+                                           make_tares,           make_playback, make_recording,   make_resumption,
+                                           make_result_recorder, make_marks};
   return kMakers;
 }
 

@@ -6,7 +6,7 @@ import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { resolve } from "node:path";
 import { describe, it } from "node:test";
-import { playMat, standInForBluetooth, standInForSerial } from "./boards.mjs";
+import { playMat, standInForBluetooth, standInForSerial, standInForUsb } from "./boards.mjs";
 import { assertUnhurt, becomes, eventually, openPage, part } from "./harness.mjs";
 import { browser, url, useSite } from "./try_site.mjs";
 
@@ -208,6 +208,47 @@ describe("a board at the page of site/try", () => {
     await context.close();
   });
 
+  it("is read without a loss at 2 Mbaud", async () => {
+    const context = await browser.newContext({ viewport: { width: 1280, height: 800 } });
+    await context.addInitScript(standInForSerial);
+    const layout = '[layout]\nrows = 32\ncols = 32\npacket = ["A5 5A C3", "frame u32le", "values u16le"]\n';
+    const page = await openPage(context, `${url}#toml=${encodeURIComponent(layout)}&baud=2000000`);
+    await becomes(page, "live");
+    await page.evaluate(() => {
+      let frame = 0;
+      board.says = () => {
+        const packet = new DataView(new ArrayBuffer(7 + 2048));
+        [0xa5, 0x5a, 0xc3].forEach((byte, at) => packet.setUint8(at, byte));
+        packet.setUint32(3, frame++, true);
+        for (let taxel = 0; taxel < 1024; ++taxel) packet.setUint16(7 + 2 * taxel, 600 + ((taxel + frame) % 7), true);
+        return new Uint8Array(packet.buffer);
+      };
+    });
+    await part(page, "use-link").click();
+    await connect(page);
+    await says(page, "Connected");
+    await describeArray(page);
+    await page.locator("[data-tab=health]").click();
+    const fieldsOf = () =>
+      page.evaluate(() =>
+        Object.fromEntries(
+          [...document.querySelectorAll("[data-array] [data-field]")].map(({ dataset, textContent }) => [
+            dataset.field,
+            Number(textContent.replaceAll(/[^0-9.-]/g, "")),
+          ]),
+        ),
+      );
+    await eventually(page, () => document.querySelector("[data-array] [data-field=frames]")?.textContent.length > 2);
+    const before = await fieldsOf();
+    const seconds = Number(process.env.DERMIS_BOARD_SECONDS ?? 10);
+    await page.waitForTimeout(1000 * seconds);
+    const { frames, lost, damaged, skipped } = await fieldsOf();
+    assert.deepEqual({ lost, damaged, skipped }, { lost: 0, damaged: 0, skipped: 0 });
+    console.log(`${frames - before.frames} frames of 2055 bytes in ${seconds} s, none lost`);
+    assertUnhurt(page);
+    await context.close();
+  });
+
   it("goes on when it is plugged in again, without another permission", async () => {
     await withBoard(mat(), 60_000, async (page) => {
       await connect(page);
@@ -219,6 +260,38 @@ describe("a board at the page of site/try", () => {
       await page.waitForTimeout(1500);
       await page.evaluate(() => board.plugIn());
       await says(page, "The board is back");
+      await isLive(page);
+    });
+  });
+
+  it("goes on when it is chosen again, where its permission was lost with it", async () => {
+    await withBoard(mat(), 60_000, async (page) => {
+      await connect(page);
+      await page.locator("#array-rows").fill("12");
+      await page.locator("#array-cols").fill("10");
+      await describeArray(page);
+      await page.evaluate(() => board.unplug());
+      await says(page, "The board is unplugged");
+      await page.evaluate(() => board.plugIn({ isKnown: false }));
+      await connect(page);
+      await says(page, "The board is back");
+      await isLive(page);
+    });
+  });
+
+  it("that is away for too long is told, and served again from what was written of it", async () => {
+    await withBoard(mat(), 60_000, async (page) => {
+      await connect(page);
+      await page.locator("#array-rows").fill("12");
+      await page.locator("#array-cols").fill("10");
+      await describeArray(page);
+      await page.evaluate(() => board.unplug());
+      await part(page, "notice").filter({ hasText: "did not come back within 10 s" }).waitFor();
+      await page.evaluate(() => board.plugIn());
+      await says(page, "was away for more than 10 s");
+      await connect(page);
+      await says(page, "Connected");
+      await page.locator("[data-role=array-setup] [data-known='mat/array.toml']").click();
       await isLive(page);
     });
   });
@@ -276,6 +349,35 @@ describe("a board at the page of site/try", () => {
     });
     await says(page, "The board is unplugged");
     await page.evaluate(() => (radio.isInReach = true));
+    await says(page, "The board is back");
+    await isLive(page);
+    assertUnhurt(page);
+    await context.close();
+  });
+
+  it("is read at USB without a driver, and again when it is chosen again", async () => {
+    const context = await browser.newContext();
+    await context.addInitScript(standInForUsb);
+    const page = await openPage(context, url);
+    await becomes(page, "live");
+    await page.evaluate((text) => {
+      usbPort.bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+    }, mat(20).toString("base64"));
+    await page.getByText("Other ways").click();
+    await part(page, "connect-usb").click();
+    await says(page, "Connected: Pico");
+    assert.equal(await page.evaluate(() => usbPort.baud), 115200);
+    await page.locator("#array-rows").fill("12");
+    await page.locator("#array-cols").fill("10");
+    await describeArray(page);
+    await page.evaluate(() => {
+      usbPort.isPlugged = false;
+    });
+    await says(page, "The board is unplugged");
+    await page.evaluate(() => {
+      usbPort.isPlugged = true;
+    });
+    await part(page, "connect-usb").click();
     await says(page, "The board is back");
     await isLive(page);
     assertUnhurt(page);

@@ -153,7 +153,11 @@ export function standInForSerial() {
         last = now;
         if (this.port !== undefined) this.send(due);
       }, 4);
-      setInterval(() => this.says !== undefined && this.port?.receive(new TextEncoder().encode(this.says())), 10);
+      setInterval(() => {
+        if (this.says === undefined || this.port === undefined) return;
+        const said = this.says();
+        this.port.receive(typeof said === "string" ? new TextEncoder().encode(said) : said);
+      }, 10);
     }
     send(count) {
       if (this.bytes.length === 0) return;
@@ -174,11 +178,11 @@ export function standInForSerial() {
       this.port = undefined;
       port?.lose();
     }
-    /** Its permission lasts, but the port is another object, as in Chromium. */
-    plugIn() {
+    /** The port is another object, as in Chromium. `isKnown`: its permission lasts. */
+    plugIn({ isKnown = true } = {}) {
       this.isPlugged = true;
       this.known = new Port(this);
-      tell("connect", this.known);
+      if (isKnown) tell("connect", this.known);
     }
   }
 
@@ -281,4 +285,61 @@ export function standInForBluetooth() {
     },
   };
   Object.defineProperty(Navigator.prototype, "bluetooth", { configurable: true, get: () => bluetooth });
+}
+
+/** navigator.usb, as https://wicg.github.io/webusb has it: a board of CDC-ACM that no driver of the system has. */
+export function standInForUsb() {
+  const failure = (name, message) => new DOMException(message, name);
+  const [CONTROL, DATA, IN, OUT] = [0, 1, 2, 3];
+  const claimed = new Set();
+  const bulk = (direction, endpointNumber) => ({ type: "bulk", direction, endpointNumber });
+  const port = { bytes: new Uint8Array(), sent: 0, heard: "", baud: 0, isPlugged: true };
+  const interfaces = [
+    { interfaceNumber: CONTROL, alternate: { interfaceClass: 2, endpoints: [] } },
+    { interfaceNumber: DATA, alternate: { interfaceClass: 10, endpoints: [bulk("in", IN), bulk("out", OUT)] } },
+  ];
+  const device = {
+    productName: "Pico",
+    configuration: null,
+    async open() {
+      if (!port.isPlugged) throw failure("NotFoundError", "The device was disconnected.");
+      claimed.clear();
+    },
+    async close() {
+      claimed.clear();
+    },
+    async selectConfiguration() {
+      device.configuration = { interfaces };
+    },
+    async claimInterface(number) {
+      claimed.add(number);
+    },
+    async controlTransferOut({ request, index }, data) {
+      if (!claimed.has(index)) throw failure("InvalidStateError", "The specified interface has not been claimed.");
+      if (request === 0x20) port.baud = new DataView(data.buffer).getUint32(0, true);
+    },
+    async transferIn(endpoint, length) {
+      if (endpoint !== IN || !claimed.has(DATA)) throw failure("NotFoundError", "The endpoint is not there.");
+      await new Promise((soon) => setTimeout(soon, 5));
+      if (!port.isPlugged) throw failure("NetworkError", "A transfer error has occurred.");
+      const begin = port.sent % port.bytes.length;
+      const part = port.bytes.slice(begin, begin + Math.min(length, 512));
+      port.sent += part.length;
+      return { status: "ok", data: new DataView(part.buffer) };
+    },
+    async transferOut(endpoint, bytes) {
+      if (endpoint !== OUT || !claimed.has(DATA)) throw failure("NotFoundError", "The endpoint is not there.");
+      port.heard += new TextDecoder().decode(bytes);
+      return { status: "ok", bytesWritten: bytes.length };
+    },
+  };
+  globalThis.usbPort = port;
+  const usb = {
+    async requestDevice({ filters }) {
+      if (!Array.isArray(filters)) throw new TypeError("filters must be given");
+      if (!navigator.userActivation.isActive) throw failure("SecurityError", "Must be handling a user gesture.");
+      return device;
+    },
+  };
+  Object.defineProperty(Navigator.prototype, "usb", { configurable: true, get: () => usb });
 }

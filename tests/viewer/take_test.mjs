@@ -53,7 +53,7 @@ it("records under a name, shows the size as it grows, plays the recording and sa
     await part(page, "begin-recording").click();
     await told;
     await row.getByText("Play it").waitFor();
-    await page.locator(".recording-list", { hasText: `Folder of the server: ${bench.folder}` }).waitFor();
+    await page.locator(".recording-list", { hasText: `Folder: ${bench.folder}` }).waitFor();
     await part(page, "begin-recording").click();
     await words(page, "take-words", "walk.mcap is there already");
 

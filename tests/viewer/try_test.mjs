@@ -4,9 +4,8 @@
 // The page of site/try in a real browser: dermis in a worker, in the place of a server.
 import assert from "node:assert/strict";
 import { describe, it } from "node:test";
-import { gunzipSync, gzipSync } from "node:zlib";
 import { assertUnhurt, becomes, eventually, openPage, part, tareAnyway } from "./harness.mjs";
-import { browser, network, packed, url, useSite } from "./try_site.mjs";
+import { change, site, useSite } from "./try_page.mjs";
 
 const MOST_BYTES = 3_000_000;
 
@@ -21,17 +20,13 @@ async function kept(page) {
   });
 }
 
-function change(path, text, by) {
-  packed.set(path, gzipSync(gunzipSync(packed.get(path)).toString().replace(text, by)));
-}
-
 describe("the page of site/try", () => {
   it("shows newtons and contacts of a simulated sheet, and asks for nothing but its own files", async () => {
-    const page = await openPage(browser, "about:blank");
+    const page = await openPage(site.browser, "about:blank");
     const asked = [];
     page.on("request", (request) => asked.push(request.url()));
     const begin = performance.now();
-    await page.goto(`${url}#/array`);
+    await page.goto(`${site.url}#/array`);
     await becomes(page, "live");
     await eventually(page, () => document.querySelector("[data-view=array]").dataset.stamp !== undefined);
     const firstMapMs = performance.now() - begin;
@@ -40,10 +35,10 @@ describe("the page of site/try", () => {
     const stamp = await page.evaluate(stampOf);
     await eventually(page, (before) => document.querySelector("[data-view=array]").dataset.stamp !== before, stamp);
     assert.deepEqual(
-      asked.filter((address) => !address.startsWith(url)),
+      asked.filter((address) => !address.startsWith(site.url)),
       [],
     );
-    const bytes = [...packed.values()].reduce((sum, { length }) => sum + length, 0);
+    const bytes = [...site.packed.values()].reduce((sum, { length }) => sum + length, 0);
     assert.ok(bytes < MOST_BYTES, `${bytes} bytes`);
     assertUnhurt(page);
     console.log(`first map after ${Math.round(firstMapMs)} ms, ${bytes} bytes compressed`);
@@ -51,7 +46,7 @@ describe("the page of site/try", () => {
   });
 
   it("tares, and answers as a server does", async () => {
-    const page = await openPage(browser, `${url}#/array`);
+    const page = await openPage(site.browser, `${site.url}#/array`);
     await becomes(page, "live");
     await part(page, "show-thresholds").click();
     const rate = page.locator('[data-parameter="/stream/rate_hz"]');
@@ -65,21 +60,21 @@ describe("the page of site/try", () => {
   });
 
   it("needs no network once it was shown", async () => {
-    const page = await openPage(browser, `${url}#/array`);
+    const page = await openPage(site.browser, `${site.url}#/array`);
     await becomes(page, "live");
     await kept(page);
-    network.isOn = false;
+    site.isOnline = false;
     await page.reload();
     await becomes(page, "live");
     await page.locator("[data-contact]").first().waitFor();
-    network.isOn = true;
+    site.isOnline = true;
     assertUnhurt(page);
     await page.close();
   });
 
   it("has all files of one version, and the next one when no page is open", async () => {
-    const context = await browser.newContext();
-    const page = await openPage(context, url);
+    const context = await site.browser.newContext();
+    const page = await openPage(context, site.url);
     await becomes(page, "live");
     await kept(page);
     await page.reload(); // now it is of the version that is kept
@@ -95,7 +90,7 @@ describe("the page of site/try", () => {
     for (let found = 0; found === 0; found = await next.count()) {
       await page.goto("about:blank");
       await page.waitForTimeout(200);
-      await page.goto(url);
+      await page.goto(site.url);
     }
     await becomes(page, "live");
     assertUnhurt(page);
@@ -103,9 +98,9 @@ describe("the page of site/try", () => {
   });
 
   it("says in one line why it cannot begin", async () => {
-    const page = await openPage(browser, "about:blank");
+    const page = await openPage(site.browser, "about:blank");
     await page.route("**/sheet.model", (route) => route.fulfill({ body: "no model" }));
-    await page.goto(url);
+    await page.goto(site.url);
     await page.getByRole("alert").filter({ hasText: "the model" }).waitFor();
     await page.close();
   });

@@ -103,13 +103,8 @@ std::span<const std::uint8_t> Decompressor::decompress(McapCompression compressi
   return made == size ? std::span<const std::uint8_t>(out_).first(size) : std::span<const std::uint8_t>{};
 }
 
-const char* to_string(McapCompression compression) noexcept {
-  switch (compression) {
-    case McapCompression::none: return "";
-    case McapCompression::lz4: return "lz4";
-    case McapCompression::zstd: return "zstd";
-  }
-  return "";
+bool is_available(McapCompression /*compression*/) noexcept {
+  return true;
 }
 
 }  // namespace dermis::bytes::recordings

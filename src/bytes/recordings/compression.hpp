@@ -15,6 +15,9 @@ struct ZSTD_DCtx_s;
 
 namespace dermis::bytes::recordings {
 
+/// Whether this build can compress and decompress so. That of a page has no library for it.
+[[nodiscard]] bool is_available(McapCompression compression) noexcept;
+
 /// Compresses chunks. Reuses its memory.
 class Compressor {
  public:

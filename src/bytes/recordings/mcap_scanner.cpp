@@ -124,6 +124,15 @@ Result<McapScanner::Step> McapScanner::next(McapRecord& record) {
   return Step::record;
 }
 
+const char* to_string(McapCompression compression) noexcept {
+  switch (compression) {
+    case McapCompression::none: return "";
+    case McapCompression::lz4: return "lz4";
+    case McapCompression::zstd: return "zstd";
+  }
+  return "";
+}
+
 Result<McapChunk> parse_chunk(ByteView body, Decompressor& decompressor) {
   ByteReader reader(body);
   static_cast<void>(reader.number<std::uint64_t>());  // first time
@@ -134,6 +143,10 @@ Result<McapChunk> parse_chunk(ByteView body, Decompressor& decompressor) {
   const ByteView compressed = reader.consume(reader.number<std::uint64_t>());
   if (!reader.good()) return bad_input("the chunk is shorter than its fields say");
   const std::optional<McapCompression> compression = compression_named(compression_name);
+  if (compression && !is_available(*compression)) {
+    return bad_input("the chunk is compressed with " + std::string(compression_name) +
+                     ", which a page cannot read; `dermis convert RECORDING frames.csv` writes what it can read");
+  }
   if (!compression) {
     return bad_input("the chunk is compressed with '" + std::string(compression_name.substr(0, 20)) +
                      "'; lz4, zstd and no compression can be read");

@@ -16,8 +16,8 @@ namespace dermis::bytes::recordings {
 struct McapWriter::State {
   State(GrowingFile growing_file, McapCompression chunk_compression)
       : file(std::move(growing_file)),
-        compression(chunk_compression),
-        compressor(chunk_compression),
+        compression(is_available(chunk_compression) ? chunk_compression : McapCompression::none),
+        compressor(compression),
         summary(file.place_beside()) {}
 
   BatchBuilder added;  ///< Used by the thread that adds.

@@ -408,6 +408,54 @@ TEST(DeviceSource, a_polled_device_that_comes_back_is_read_on) {
   EXPECT_EQ(source->statistics().reconnections, 1U);
 }
 
+TEST(DeviceSource, a_device_that_is_away_comes_back_by_polls_alone) {
+  const std::string link = testing::TempDir() + "dermis_polled_tty_" + std::to_string(::getpid());
+  auto device = target("pty:");
+  ASSERT_EQ(::symlink(device->name().c_str(), link.c_str()), 0);
+  const auto source = open("serial://" + link + "?protocol=dermis&reconnect_s=20");
+  const std::vector<RawFrame> frames = random_frames(2, 23);
+  const auto polls_until = [&](auto done) {
+    RawFrame frame;
+    for (const auto end = std::chrono::steady_clock::now() + 60s; std::chrono::steady_clock::now() < end;) {
+      const Result<Polled> polled = source->poll(frame);
+      ASSERT_TRUE(polled) << polled.error().message;
+      if (done(*polled, frame)) return;
+    }
+    ADD_FAILURE() << "60 s are over";
+  };
+  const auto is_frame = [&](std::size_t k) {
+    return [&, k](Polled polled, const RawFrame& frame) {
+      return polled == Polled::frame && frame.counts == frames[k].counts;
+    };
+  };
+  send(*device, encoded({frames[0]}));
+  polls_until(is_frame(0));
+  device.reset();
+  polls_until([&](Polled, const RawFrame&) { return !source->readiness(); });
+  ::unlink(link.c_str());
+  device = target("pty:");
+  ASSERT_EQ(::symlink(device->name().c_str(), link.c_str()), 0);
+  std::thread hand([&] {
+    ASSERT_TRUE(*device->open(kLong));
+    send(*device, encoded({frames[1]}));
+  });
+  polls_until(is_frame(1));
+  hand.join();
+  ::unlink(link.c_str());
+  EXPECT_EQ(source->statistics().reconnections, 1U);
+}
+
+TEST(DeviceSource, a_device_that_is_away_for_too_long_is_an_error_of_a_poll) {
+  auto device = target("pty:");
+  const auto source = open("serial://" + device->name() + "?protocol=dermis&reconnect_s=0.2");
+  device.reset();
+  RawFrame frame;
+  Result<Polled> polled = Polled::nothing;
+  while (polled && *polled == Polled::nothing) polled = source->poll(frame);
+  ASSERT_FALSE(polled);
+  expect_words(polled.error().message, {"did not come back within 0.2 s"});
+}
+
 TEST(DeviceSource, a_polled_source_ends_by_the_flag) {
   const auto device = target("pty:");
   std::atomic<bool> stop = false;

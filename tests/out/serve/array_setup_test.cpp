@@ -103,6 +103,30 @@ std::string ask_until(StreamClient& client, const std::string& service, const st
   }
 }
 
+TEST_F(ArraySetupTest, reads_the_source_by_the_layout_that_a_client_brings) {
+  std::ofstream file("bytes");
+  for (int line = 0; line < 20; ++line) file << "Frame " << line << ": 1 2 3 4 5 6\n";
+  file.close();
+  const auto setup = ArraySetup::create("file:bytes", any_port(), {});
+  ASSERT_TRUE(setup) << setup.error().message;
+  StreamClient client((*setup)->port());
+  const std::string layout = R"("layout":["[layout]","rows = 2","cols = 3","line = 'Frame {frame}: {values}'"])";
+  EXPECT_NE(client.call("/layout/use", R"({"name":"mat","layout":["rows"]})").find("mat/layout.toml"),
+            std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists("mat/layout.toml")) << "it is none";
+  EXPECT_EQ(client.call("/layout/use", R"({"name":"mat",)" + layout + "}"),
+            R"({"from":"file:bytes?layout=mat/layout.toml"})");
+  EXPECT_EQ(client.call("/layout/use", R"({"name":"mat",)" + layout + "}"),
+            R"({"from":"file:bytes?layout=mat/layout.toml"})")
+      << "it is the same";
+  const std::string another = R"({"name":"mat","layout":["[layout]","rows = 1","cols = 6","line = '{values}'"]})";
+  EXPECT_NE(client.call("/layout/use", another).find("there already"), std::string::npos);
+  EXPECT_NE(
+      client.call("/layout/use", R"({"name":"mat","layout":["[layout]","rows = 1","cols = 6","line = '{values}'"]})")
+          .find("there already"),
+      std::string::npos);
+}
+
 TEST_F(ArraySetupTest, tells_where_the_array_is_touched) {
   const auto setup = ArraySetup::create("sim:idle?rate=100&rows=3&cols=4", any_port(), {});
   ASSERT_TRUE(setup) << setup.error().message;

@@ -110,15 +110,28 @@ struct StreamClient : testing::Test {
                 [](std::string_view request) -> Result<std::string> {
                   if (request == "fail") return failed("it cannot be done");
                   return std::string(request);
+                }},
+               {.name = "/slow",
+                .begin = [this](std::string_view request) -> Result<Later> {
+                  if (request == "fail") return failed("it cannot begin");
+                  return Later([this, text = std::string(request)]() -> std::optional<Result<std::string>> {
+                    if (++times_asked < 3) return std::nullopt;
+                    return text;
+                  });
                 }}},
               {}};
+  int times_asked = 0;
   std::map<ChannelId, int> subscribers;
   Client client{offer,
                 "somebody",
                 true,
                 1U << 20U,
                 [this](ChannelId channel, int change) { subscribers[channel] += change; },
-                [this](const Question& question) { question()(client); }};
+                [this](const Question& question) {
+                  Answer answer = question();
+                  while (!answer) answer = question();
+                  answer(client);
+                }};
 
   void say(const std::string& text) {
     EXPECT_TRUE(client.receive({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, true)) << text;
@@ -246,12 +259,16 @@ TEST_F(StreamClient, is_told_why_a_parameter_was_not_set) {
   EXPECT_EQ(answer["message"], "'/b' cannot be set");
 }
 
+std::vector<std::uint8_t> call_of(std::uint8_t service, const std::string& request) {
+  std::vector<std::uint8_t> bytes{2, service, 0, 0, 0, 9, 0, 0, 0, 4, 0, 0, 0, 'j', 's', 'o', 'n'};
+  bytes.insert(bytes.end(), request.begin(), request.end());
+  return bytes;
+}
+
 TEST_F(StreamClient, calls_services) {
   client.queue().push_text("first");
   const auto call = [this](std::uint8_t service, const std::string& request) {
-    std::vector<std::uint8_t> bytes{2, service, 0, 0, 0, 9, 0, 0, 0, 4, 0, 0, 0, 'j', 's', 'o', 'n'};
-    bytes.insert(bytes.end(), request.begin(), request.end());
-    EXPECT_TRUE(client.receive(bytes, false));
+    EXPECT_TRUE(client.receive(call_of(service, request), false));
     static_cast<void>(client.queue().pop());
   };
   call(0, "abc");
@@ -261,8 +278,17 @@ TEST_F(StreamClient, calls_services) {
   call(0, "fail");
   EXPECT_EQ(next_text()["message"], "it cannot be done");
   client.queue().push_text("first");
-  call(1, "abc");
+  call(2, "abc");
   EXPECT_EQ(next_text()["op"], "serviceCallFailure");
+}
+
+TEST_F(StreamClient, asks_a_service_that_takes_its_time_until_it_has_answered) {
+  EXPECT_TRUE(client.receive(call_of(1, "abc"), false));
+  EXPECT_EQ(times_asked, 3);
+  const OutgoingMessage answer = client.queue().pop();
+  EXPECT_EQ(std::string(answer.bytes->end() - 3, answer.bytes->end()), "abc");
+  EXPECT_TRUE(client.receive(call_of(1, "fail"), false));
+  EXPECT_EQ(next_text()["message"], "it cannot begin");
 }
 
 TEST(Budget, gives_some_at_once_and_then_so_much_a_second) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
+import { saveFrom } from "../take/save_file";
 import { SUBPROTOCOLS } from "./protocol";
 
 /** The part of a WebSocket that the stream uses. */
@@ -17,6 +18,8 @@ export interface Endpoint {
   readonly token: string;
   /** A document or a file, such as "suit.json". */
   fetch(path: string, token: string, options?: RequestInit): Promise<Response>;
+  /** Has the browser save a file under a name. */
+  save(path: string, token: string, name: string): Promise<void>;
   open(token: string): Socket;
 }
 
@@ -31,6 +34,10 @@ export class ServerEndpoint implements Endpoint {
 
   fetch(path: string, token: string, options?: RequestInit): Promise<Response> {
     return fetch(this.#address(path, token), options);
+  }
+
+  async save(path: string, token: string, name: string): Promise<void> {
+    saveFrom(this.#address(path, token).href, name);
   }
 
   open(token: string): Socket {

@@ -148,6 +148,11 @@ export class Stream {
     return response.arrayBuffer();
   }
 
+  /** Has the browser save a file of the other end under a name. */
+  save(path: string, name: string): Promise<void> {
+    return this.#endpoint.save(path, this.#token, name);
+  }
+
   #fetchSuit(): Promise<Response> {
     return this.#endpoint.fetch("suit.json", this.#token, { signal: AbortSignal.timeout(5000), cache: "no-store" });
   }

@@ -20,10 +20,9 @@ interface Listed {
   files: RecordingFile[];
 }
 
-/** Where a file of the server is. */
-export function fileAddress(stream: Stream, name: string): string {
-  const query = stream.token === "" ? "" : `?${new URLSearchParams({ token: stream.token })}`;
-  return new URL(`recordings/${encodeURIComponent(name)}${query}`, window.location.href).href;
+/** Saves a file of the folder. */
+export function saveRecorded(stream: Stream, name: string): Promise<void> {
+  return stream.save(`recordings/${encodeURIComponent(name)}`, name);
 }
 
 interface Entry extends RecordingFile {
@@ -38,9 +37,9 @@ class RecordingRow implements Row<Entry> {
   readonly #play: HTMLElement;
   readonly #save: HTMLElement;
 
-  constructor({ name }: Entry, address: string, play: () => void) {
+  constructor({ name }: Entry, save: () => void, play: () => void) {
     this.#play = button("Play it", play, { "data-act": "play" });
-    this.#save = element("a", { class: "button", href: address, download: name, "data-act": "download" }, "Save");
+    this.#save = button("Save", save, { "data-act": "download" });
     this.element = element(
       "tr",
       { "data-recording": name },
@@ -70,7 +69,12 @@ export class RecordingList {
   readonly #rows = new KeyedRows<Entry>(
     this.#body,
     ({ name }) => name,
-    (entry) => new RecordingRow(entry, fileAddress(this.#stream, entry.name), () => void this.#play(entry.name)),
+    (entry) =>
+      new RecordingRow(
+        entry,
+        () => void this.#try(() => saveRecorded(this.#stream, entry.name)),
+        () => void this.#try(() => this.#play(entry.name)),
+      ),
   );
 
   constructor(stream: Stream, tell: (words: string) => void) {
@@ -86,7 +90,7 @@ export class RecordingList {
 
   async refresh(): Promise<void> {
     const listed = (await this.#stream.callService("/recordings/list", {})) as Listed;
-    setText(this.#folder, `Folder of the server: ${listed.folder}`);
+    setText(this.#folder, `Folder: ${listed.folder}`);
     const isPlayable = this.#stream.services.value.has("/recordings/play");
     const entries = listed.files.map((file) => ({ ...file, isWritten: file.name === listed.recording, isPlayable }));
     this.#rows.show(entries);
@@ -94,12 +98,17 @@ export class RecordingList {
 
   /** In a page of its own, while this one shows what is live. */
   async #play(name: string): Promise<void> {
+    const { port } = (await this.#stream.callService("/recordings/play", { name })) as { port: number };
+    if (port === 0) return; // it is played in the place of what is live
+    const address = new URL(window.location.href);
+    address.port = String(port);
+    address.hash = "";
+    if (window.open(address.href, "_blank") === null) this.#tell(`${name} is played at ${address.href}`);
+  }
+
+  async #try(act: () => Promise<void>): Promise<void> {
     try {
-      const { port } = (await this.#stream.callService("/recordings/play", { name })) as { port: number };
-      const address = new URL(window.location.href);
-      address.port = String(port);
-      address.hash = "";
-      if (window.open(address.href, "_blank") === null) this.#tell(`${name} is played at ${address.href}`);
+      await act();
     } catch (error) {
       this.#tell(errorText(error));
     }

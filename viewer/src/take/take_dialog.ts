@@ -5,8 +5,8 @@ import { errorText } from "../format";
 import type { ArrayDescription } from "../suit";
 import type { ViewContext } from "../view";
 import { type Picture, takeFilm, takePicture } from "./pictures";
-import { fileAddress, RecordingList } from "./recording_list";
-import { nameWithTime, saveBlob, saveFrom } from "./save_file";
+import { RecordingList, saveRecorded } from "./recording_list";
+import { nameWithTime, saveBlob } from "./save_file";
 import "./take.css";
 
 const REFRESH_MS = 1000;
@@ -135,7 +135,7 @@ export class TakeDialog {
       forces?: string;
     };
     setText(this.#words, `${file}: ${frames} frames${forces === undefined ? "" : `; ${forces}: their newtons`}`);
-    for (const name of forces === undefined ? [file] : [file, forces]) saveFrom(fileAddress(stream, name), name);
+    for (const name of forces === undefined ? [file] : [file, forces]) await saveRecorded(stream, name);
   }
 
   async #savePicture(ending: string, take: (array: ArrayDescription) => Promise<Picture>): Promise<void> {

@@ -6,13 +6,15 @@ import { BAUDS, USUAL_BAUD } from "../setup/source_choice";
 import type { Stream } from "../stream/stream";
 import type { Suit } from "../suit";
 import { BluetoothBoard, bluetoothOf, NORDIC_UART, uuidOf } from "./bluetooth_board";
-import { adviceOn, type Board, type BoardEvents, isNoChoice } from "./board";
+import { type Board, type BoardEvents, isNoChoice } from "./board";
 import { type BoardLink, hashOf } from "./board_link";
 import { makeLinkPanel } from "./link_panel";
 import type { BoardRequest, ModuleEndpoint } from "./module_endpoint";
 import { SerialBoard, serialOf } from "./serial_board";
 import { UsbBoard, usbOf } from "./usb_board";
 
+/** As long as the module does: reconnect_s of docs/devices.md. */
+const AWAITED_MS = 10_000;
 const NO_SERIAL =
   "This browser cannot open a serial port: Chrome, Edge and Opera can, on Windows, macOS, Linux and ChromeOS. The rest of this page works here, too.";
 
@@ -36,6 +38,8 @@ export class Boards {
   /** That of a link, which the user wants. */
   #wanted = "";
   #board: Board | undefined;
+  /** When it was unplugged, by performance.now(). */
+  #lostMs = -Infinity;
   #writing: Promise<void> = Promise.resolve();
 
   /** `link`: the page was opened by it. */
@@ -124,16 +128,36 @@ export class Boards {
     try {
       const baud = Number(this.#baud.value);
       const board = await choose(this.#events(() => this.#board === board));
-      await this.#board?.close();
+      await this.#letGo();
       this.#board = board;
       await board.open(baud);
       this.#endpoint.tell({ board: board.name, baud });
+      if (this.#isAwaited()) return this.#tellReturn();
       setText(this.#words, "Listening to the board, for 8 s at most \u2026");
       await this.#lookAtIt(baud);
       setText(this.#words, `Connected: ${board.name}.`);
     } catch (error) {
       setText(this.#words, isNoChoice(error) ? "No board was chosen." : errorText(error));
     }
+  }
+
+  async #letGo(): Promise<void> {
+    if (this.#board === undefined) return;
+    this.#endpoint.tell({ lost: true });
+    await this.#board.close();
+  }
+
+  /** It was unplugged, and the module waits for it to come back. */
+  #isAwaited(): boolean {
+    return performance.now() - this.#lostMs < AWAITED_MS;
+  }
+
+  #tellReturn(): void {
+    const words = this.#isAwaited()
+      ? "The board is back."
+      : "The board is back, but was away for more than 10 s: press Connect a board to go on.";
+    this.#lostMs = -Infinity;
+    setText(this.#words, words);
   }
 
   /** As if the user had chosen it among the ports of the machine of a server. */
@@ -163,13 +187,14 @@ export class Boards {
       },
       lost: () => {
         if (!isOurs()) return;
+        this.#lostMs = performance.now();
         this.#endpoint.tell({ lost: true });
-        setText(this.#words, "The board is unplugged: it goes on when it is plugged in again.");
+        setText(this.#words, "The board is unplugged: this page waits for it for 10 s.");
       },
       back: () => {
         if (!isOurs() || this.#board === undefined) return;
         this.#endpoint.tell({ board: this.#board.name, baud: Number(this.#baud.value) });
-        setText(this.#words, "The board is back.");
+        this.#tellReturn();
       },
       trouble: (line) => {
         if (isOurs()) setText(this.#words, line);
@@ -196,9 +221,7 @@ export class Boards {
 
   /** One after the other. What cannot be written is asked for again, where the board is still there. */
   #then(act: () => Promise<void>): void {
-    this.#writing = this.#writing
-      .then(act)
-      .catch((error: unknown) => setText(this.#words, adviceOn(error, "The board")));
+    this.#writing = this.#writing.then(act).catch((error: unknown) => setText(this.#words, errorText(error)));
   }
 }
 

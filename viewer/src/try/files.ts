@@ -179,6 +179,10 @@ export class Files {
       .map((path) => path.slice(begin.length));
   }
 
+  all(): File[] {
+    return [...this.#entries.values()].filter((entry) => entry instanceof File);
+  }
+
   /** The bytes of a file; undefined: there is none. */
   bytes(path: string): Uint8Array<ArrayBuffer> | undefined {
     const file = this.find(path);

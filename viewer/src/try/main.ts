@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element } from "../dom";
+import { element, setText } from "../dom";
 import "../styles/tokens.css";
 import "../styles/page.css";
 import "../styles/controls.css";
@@ -36,12 +36,14 @@ try {
   const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
   const addressOf = (file: string): string => new URL(file, document.baseURI).href;
   const isRehearsal = new URLSearchParams(location.search).has("rehearsal");
+  const note = element("p", { role: "status", "data-role": "files-note" });
   const endpoint = new ModuleEndpoint(
     worker,
     addressOf("dermis.wasm"),
     addressOf("sheet.model"),
     isRehearsal,
     showInstead,
+    (words) => setText(note, words),
   );
   const app = new App(endpoint);
   document.body.append(
@@ -50,6 +52,7 @@ try {
       { class: "about", "aria-label": "About this page", "data-role": "about" },
       element("p", {}, ABOUT),
       new Boards(app.stream, app.suit, endpoint, link).element,
+      note,
     ),
   );
   app.begin();

@@ -22,6 +22,7 @@ interface Exports {
   dermis_work(): number;
   dermis_next(): number;
   dermis_document(size: number): number;
+  dermis_file(size: number): number;
   dermis_fit(): void;
   dermis_fit_done(size: number): void;
   dermis_fit_share(share: number): void;
@@ -163,6 +164,11 @@ export class Module {
 
   fitFailed(why: string): void {
     this.#exports.dermis_fit_failed(this.#put(utf8.encode(why)));
+  }
+
+  /** Where the file is that a client may save at this path. */
+  file(path: string): string | undefined {
+    return this.#exports.dermis_file(this.#put(utf8.encode(path))) === 0 ? undefined : this.#text();
   }
 
   #put(bytes: Uint8Array): number {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
+
 import type { Endpoint, Socket } from "../stream/endpoint";
+import { saveBlob } from "../take/save_file";
 
 /** The page asks its worker to begin with these files, to take a client, or for a document. */
 export type Question =
@@ -8,7 +10,8 @@ export type Question =
   | { port: MessagePort }
   | { id: number; path: string }
   | BoardNews;
-export type Answer = { id: number; document?: string | Uint8Array<ArrayBuffer> | undefined; failure?: string };
+export type Answer = { id: number; document?: string | Blob | undefined; failure?: string } | { note: string };
+type Document = Exclude<Answer, { note: string }>;
 
 /** Of the board in the page, for the worker: it is open, or lost; its bytes. Or that somebody will describe its array. */
 export type BoardNews =
@@ -26,19 +29,27 @@ export class ModuleEndpoint implements Endpoint {
   readonly token = "";
   readonly #worker: Worker;
   readonly #failed: (why: string) => void;
-  readonly #asked = new Map<number, (answer: Answer) => void>();
+  readonly #asked = new Map<number, (answer: Document) => void>();
   #lastId = 0;
   /** Is asked for what only the page can do with a board. */
   onRequest: (request: BoardRequest) => void = () => undefined;
 
   /**
    * `module` and `model`: addresses of the files to begin with. `isRehearsal`: with a hand that obeys the guide of a
-   * calibration. `failed` is told why that could not be.
+   * calibration. `failed` is told why that could not be, `told` what the user should know of the files of the page.
    */
-  constructor(worker: Worker, module: string, model: string, isRehearsal: boolean, failed: (why: string) => void) {
+  constructor(
+    worker: Worker,
+    module: string,
+    model: string,
+    isRehearsal: boolean,
+    failed: (why: string) => void,
+    told: (note: string) => void,
+  ) {
     this.#worker = worker;
     this.#failed = failed;
     worker.onmessage = ({ data }: MessageEvent<Answer | BoardRequest>) => {
+      if ("note" in data) return told(data.note);
       if (!("id" in data)) return this.onRequest(data);
       this.#asked.get(data.id)?.(data);
       this.#asked.delete(data.id);
@@ -48,16 +59,14 @@ export class ModuleEndpoint implements Endpoint {
   }
 
   async fetch(path: string): Promise<Response> {
-    const id = ++this.#lastId;
-    const { document, failure } = await new Promise<Answer>((resolve) => {
-      this.#asked.set(id, resolve);
-      this.#ask({ id, path: `/${path}` });
-    });
-    if (failure !== undefined) {
-      this.#failed(failure);
-      throw new Error(failure);
-    }
+    const document = await this.#document(path);
     return document === undefined ? new Response(null, { status: 404 }) : new Response(document);
+  }
+
+  async save(path: string, _token: string, name: string): Promise<void> {
+    const document = await this.#document(path);
+    if (document === undefined) throw new Error(`${name} is not there.`);
+    saveBlob(new Blob([document]), name);
   }
 
   open(): Socket {
@@ -68,6 +77,17 @@ export class ModuleEndpoint implements Endpoint {
 
   tell(news: BoardNews): void {
     this.#ask(news);
+  }
+
+  async #document(path: string): Promise<string | Blob | undefined> {
+    const id = ++this.#lastId;
+    const { document, failure } = await new Promise<Document>((resolve) => {
+      this.#asked.set(id, resolve);
+      this.#ask({ id, path: `/${path}` });
+    });
+    if (failure === undefined) return document;
+    this.#failed(failure);
+    throw new Error(failure);
   }
 
   #ask(question: Question, handedOver: Transferable[] = []): void {

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { errorText } from "../format";
-import { Files } from "./files";
 import { Fits } from "./fits";
+import { blobOf, openFiles, type PageFiles } from "./kept_files";
 import { Module } from "./module";
 import { type Answer, type BoardNews, type Question, SERVER_HAS_CHANGED } from "./module_endpoint";
 
 const WORK_MS = 5;
 /** Nobody calls for so long: the page was asleep, or its machine. */
 const SLEEP_MS = 2000;
+const SETTLE_MS = 200;
 
 let client: MessagePort | undefined;
 let begun: Promise<Module> | undefined;
+let pageFiles: PageFiles;
 
 async function bytesOf(address: string): Promise<ArrayBuffer> {
   const response = await fetch(address);
@@ -20,8 +22,10 @@ async function bytesOf(address: string): Promise<ArrayBuffer> {
 }
 
 async function begin(module: string, model: string, isRehearsal: boolean): Promise<Module> {
-  const [code, modelFile] = await Promise.all([bytesOf(module), bytesOf(model)]);
-  const made = await Module.load(await WebAssembly.compile(code), new Files(), new Fits());
+  const [code, modelFile, opened] = await Promise.all([bytesOf(module), bytesOf(model), openFiles()]);
+  pageFiles = opened;
+  if (opened.lost !== undefined) tell({ note: opened.lost });
+  const made = await Module.load(await WebAssembly.compile(code), opened.files, new Fits());
   made.beginSimulation(new Uint8Array(modelFile), isRehearsal);
   let workedMs = performance.now();
   setInterval(() => {
@@ -34,6 +38,7 @@ async function begin(module: string, model: string, isRehearsal: boolean): Promi
     if (hasChanged) client = undefined;
     workedMs = performance.now();
   }, WORK_MS);
+  void keepSettled();
   return made;
 }
 
@@ -42,6 +47,15 @@ function hear(module: Module, news: BoardNews): void {
   else if ("board" in news) module.boardIsOpen(news.board, news.baud);
   else if ("lost" in news) module.boardIsLost();
   else module.beginSetup();
+}
+
+async function keepSettled(): Promise<void> {
+  await pageFiles.settle().catch(() => undefined); // full: what comes stays in memory
+  setTimeout(() => void keepSettled(), SETTLE_MS);
+}
+
+function tell(answer: Answer): void {
+  postMessage(answer);
 }
 
 function send(module: Module): void {
@@ -64,11 +78,13 @@ async function connect(port: MessagePort): Promise<void> {
 async function answer(id: number, path: string): Promise<void> {
   let answered: Answer;
   try {
-    answered = { id, document: (await begun!).document(path) };
+    const module = await begun!;
+    const file = module.file(path);
+    answered = { id, document: file === undefined ? module.document(path) : await blobOf(pageFiles.files, file) };
   } catch (error) {
     answered = { id, failure: errorText(error) };
   }
-  postMessage(answered);
+  tell(answered);
 }
 
 addEventListener("message", ({ data }: MessageEvent<Question>) => {

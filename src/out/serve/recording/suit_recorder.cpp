@@ -94,8 +94,8 @@ void SuitRecorder::stop() {
 void SuitRecorder::release() {
   const std::unique_lock lock(writer_mutex_);
   if (!writer_) return;
-  closing_ = std::thread([this, writer = std::move(writer_)] { close(*writer); });
   recording_ = false;
+  closing_ = std::thread([this, writer = std::move(writer_)] { close(*writer); });
 }
 
 /// The end is reported here, too: once, and by a thread that nobody waits for.

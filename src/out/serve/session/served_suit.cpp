@@ -25,6 +25,7 @@
 #include "dermis/touch/pipeline/model.hpp"
 #include "out/serve/recognition/live_recognition.hpp"
 #include "out/serve/recognition/suit_recognition.hpp"
+#include "out/serve/session/open_playback.hpp"
 #include "out/serve/session/topic_name.hpp"
 #include "out/serve/suit/model_or_array.hpp"
 
@@ -222,42 +223,6 @@ Result<std::unique_ptr<FrameSource>> open_live(const std::string& text, const Se
   return live::sources::open_source(*from, options);
 }
 
-/// The array is served by the model with which it was recorded.
-bool has_recorded_model(const ServedArray& array, const bytes::recordings::RecordedArray& recorded) {
-  if (recorded.model_hash.empty()) return false;
-  if (array.model_path.empty()) return !recorded.model_file.empty();
-  const Result<std::string> hash = bytes::files::content_hash(array.model_path);
-  return hash && *hash == recorded.model_hash;
-}
-
-/// Index in the recording of each array of the suit.
-Status open_playback(const std::string& from, ServedSuit& suit) {
-  Result<std::unique_ptr<live::suits::Playback>> playback = live::suits::Playback::open(from);
-  if (!playback) return playback.error();
-  const std::vector<bytes::recordings::RecordedArray>& recorded = (*playback)->arrays();
-  for (ServedArray& array : suit.arrays) {
-    const auto same = [&](const bytes::recordings::RecordedArray& other) {
-      return topic_name(other.name) == array.name;
-    };
-    auto found = std::find_if(recorded.begin(), recorded.end(), same);
-    if (found == recorded.end() && suit.arrays.size() == 1 && recorded.size() == 1) found = recorded.begin();
-    if (found == recorded.end()) return bytes::recordings::find_array(recorded, from, array.name).error();
-    const FrameShape shape{array.model->array.rows, array.model->array.cols};
-    if (found->shape != shape) {
-      return bad_input(fmt::format("'{}': array '{}' has {}x{} taxels, its model {}x{}", from, array.name,
-                                   found->shape.rows, found->shape.cols, shape.rows, shape.cols));
-    }
-    Status order = live::sources::check_recorded_order(from, found->array_toml, array.model->array);
-    if (!order) return order;
-    array.simulation = found->simulation;
-    const auto index = static_cast<std::size_t>(found - recorded.begin());
-    array.source = (*playback)->source(index);
-    if (has_recorded_model(array, *found)) array.played = index;
-  }
-  suit.playback = *std::move(playback);
-  return Done{};
-}
-
 /// All at once: a device may take its time to answer, and a scene to be simulated. Returns the first array's error
 /// where there are several.
 Status open_together(const SuitDescription& described, const live::sources::SourceOptions& options, ServedSuit& suit) {
@@ -289,18 +254,6 @@ Status open_sources(const SuitPlace& place, const SuitDescription& described,
   return open_together(described, options, suit);
 }
 
-/// So that all is as it was when it was recorded. Without one that fits, the present model stays.
-void use_recorded_model(const live::suits::Playback& playback, ServedArray& array) {
-  const auto& recorded = playback.arrays();
-  for (std::size_t k = 0; k < recorded.size(); ++k) {
-    if (topic_name(recorded[k].name) != array.name && recorded.size() > 1) continue;
-    const Result<touch::pipeline::Model> model = bytes::models::model_from_bytes(recorded[k].model_file, array.name);
-    if (!model || model->array.taxel_count() != array.model->array.taxel_count()) continue;
-    array.model = std::make_shared<const touch::pipeline::Model>(*model);
-    array.played = k;
-  }
-}
-
 }  // namespace
 
 Status check_served(const SourceName& from) {
@@ -325,27 +278,6 @@ bool describes_its_array(const SourceName& from) {
   if (from.kind != SourceKind::recording) return false;
   const Result<bytes::recordings::FrameNotes> notes = bytes::recordings::read_frame_notes(from.text);
   return notes && !notes->array_toml.empty();
-}
-
-Result<ServedSuit> played_suit(const ServedSuit& suit, const std::string& recording) {
-  ServedSuit played;
-  played.name = suit.name;
-  for (const ServedArray& array : suit.arrays) {
-    played.arrays.push_back({.name = array.name,
-                             .source = nullptr,
-                             .model = array.model,
-                             .surface = array.surface,
-                             .suit_from_array = array.suit_from_array,
-                             .description = array.description,
-                             .model_path = array.model_path,
-                             .classes = array.classes});
-  }
-  played.classes = suit.classes;
-  played.threats = suit.threats;
-  if (suit.body) played.body = suit.body->at_rest();
-  if (Status opened = open_playback(recording, played); !opened) return opened.error();
-  for (ServedArray& array : played.arrays) use_recorded_model(*played.playback, array);
-  return played;
 }
 
 Result<ServedSuit> open_suit(const SuitPlace& place, live::sources::SourceOptions options) {

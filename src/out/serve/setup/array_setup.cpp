@@ -37,8 +37,7 @@ using websocket::Later;
 constexpr std::chrono::milliseconds kPeriod{50};
 constexpr std::chrono::milliseconds kToAnswer{300};  // until a client has what it asked for
 constexpr std::size_t kMostFileName = 255;
-constexpr std::size_t kMostPlaces = 65536;  // bytes
-constexpr std::size_t kMostLayout = 65536;  // bytes
+constexpr std::size_t kMostText = 65536;  // bytes of places or of a layout
 constexpr const char* kNoSource = "choose where the array is first";
 
 }  // namespace
@@ -48,10 +47,12 @@ class ArraySetup::Implementation {
   /// `name`: empty where clients choose it.
   Implementation(std::unique_ptr<websocket::Server> server, std::optional<SourceName> name, const FirstLook& found,
                  live::sources::SourceOptions options)
-      : name_(std::move(name)), options_(std::move(options)), server_(std::move(server)) {
-    const bool is_chosen = name_.has_value();
+      : name_(std::move(name)),
+        from_(name_ ? name_->text : ""),
+        options_(std::move(options)),
+        server_(std::move(server)) {
     show(found);
-    server_->start({}, services(!is_chosen));
+    server_->start({}, services(!name_));
   }
 
   [[nodiscard]] std::uint16_t port() const noexcept { return server_->port(); }
@@ -113,23 +114,25 @@ class ArraySetup::Implementation {
   Result<Later> open(std::string_view request) {
     const Result<SourceName> name = source_request(request);
     if (!name) return name.error();
-    layout_.clear();
-    return look_at(*name);
+    return look_at(*name, {});
   }
 
   Result<Later> look(std::string_view /*request*/) {
     if (!name_) return bad_input(kNoSource);
-    return look_at(*name_);
+    return look_at(*name_, layout_);
   }
 
-  /// A source that cannot be opened is not taken.
-  Later look_at(const SourceName& name) {
+  /// A source that cannot be opened is not taken. `layout`: that a client has chosen for it; empty: none.
+  Later look_at(const SourceName& name, const std::string& layout) {
     close_watches();
-    return [this, name, look = std::make_shared<SourceLook>(name, options_)]() -> std::optional<Result<std::string>> {
+    auto look = std::make_shared<SourceLook>(name, options_);
+    return [this, name, layout, look]() -> std::optional<Result<std::string>> {
       const std::optional<Result<FirstLook>> found = look->found();
       if (!found) return std::nullopt;
       if (!*found) return found->error();
       name_ = name;
+      layout_ = layout;
+      if (layout.empty()) from_ = name.text;
       show(**found);
       return json_text(nlohmann::json{{"from", name_->text}});
     };
@@ -244,7 +247,7 @@ class ArraySetup::Implementation {
   /// layout, by which the source is then read.
   Result<Later> use_layout(std::string_view text) {
     if (!name_ || !name_->uri) return bad_input(kNoSource);
-    const Result<JsonRequest> request = JsonRequest::parse(text, kMostLayout);
+    const Result<JsonRequest> request = JsonRequest::parse(text, kMostText);
     if (!request) return request.error();
     const Result<std::string> name = request->file_name("name");
     if (!name) return name.error();
@@ -254,13 +257,9 @@ class ArraySetup::Implementation {
     const std::string file = *name + "/layout.toml";
     const Result<std::string> array = write_layout(*layout, file);
     if (!array) return array.error();
-    layout_ = *layout;
-    const std::string& from = name_->text;
-    const Result<SourceName> described =
-        SourceName::parse(from + (from.find('?') == std::string::npos ? "?" : "&") + "layout=" + file +
-                          (array->empty() ? "" : "&array=" + *array));
+    const Result<SourceName> described = SourceName::parse(read_by_layout(from_, file, *array));
     if (!described) return described.error();
-    return look_at(*described);
+    return look_at(*described, *layout);
   }
 
   Result<std::string> wanted_layout(const JsonRequest& request) const {
@@ -300,7 +299,7 @@ class ArraySetup::Implementation {
   /// {"sent_rows": 1, "sent_cols": 54} and the places: somebody begins to press them.
   Result<std::string> press(std::string_view text) {
     if (!name_) return bad_input(kNoSource);
-    const Result<JsonRequest> request = JsonRequest::parse(text, kMostPlaces);
+    const Result<JsonRequest> request = JsonRequest::parse(text, kMostText);
     if (!request) return request.error();
     const Result<FrameShape> sent = sent_shape_request(*request);
     if (!sent) return sent.error();
@@ -352,6 +351,7 @@ class ArraySetup::Implementation {
   std::mutex mutex_;
   DescribedArray described_;
   std::optional<SourceName> name_;  // this and the rest: of the services, which are called one at a time
+  std::string from_;                // its text, without layout_
   live::sources::SourceOptions options_;
   std::string layout_;                    // that a client has chosen; empty: none
   std::vector<std::uint8_t> unread_;      // of which no frame was made

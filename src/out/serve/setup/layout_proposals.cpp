@@ -114,4 +114,9 @@ Result<std::string> write_layout(const std::string& toml, const std::string& fil
   return array;
 }
 
+std::string read_by_layout(const std::string& from, const std::string& file, const std::string& array) {
+  const char* const mark = from.find('?') == std::string::npos ? "?" : "&";
+  return from + mark + "layout=" + file + (array.empty() ? "" : "&array=" + array);
+}
+
 }  // namespace dermis::out::serve

@@ -31,4 +31,7 @@ namespace dermis::out::serve {
 /// one.
 [[nodiscard]] Result<std::string> write_layout(const std::string& toml, const std::string& file);
 
+/// The URI of a source, to be read by a layout. `array`: as of write_layout().
+[[nodiscard]] std::string read_by_layout(const std::string& from, const std::string& file, const std::string& array);
+
 }  // namespace dermis::out::serve

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+// Usage: node try_files_test.mjs path/to/dermis
+// The files of the page of site/try: what is recorded there leaves it as the command's own, and is there again later.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { copyFileSync, readFileSync } from "node:fs";
+import { join, resolve } from "node:path";
+import { it } from "node:test";
+import { assertUnhurt, becomes, eventually, openPage, part, readCsv } from "./harness.mjs";
+import { site, useSite } from "./try_page.mjs";
+
+const binary = resolve(process.argv[2]);
+const dermis = (...command) => execFileSync(binary, command, { encoding: "utf8", stdio: ["ignore", "pipe", "pipe"] });
+const info = (file) => JSON.parse(dermis("info", file, "--json"));
+
+useSite();
+
+async function live(context) {
+  const page = await openPage(context, site.url);
+  await becomes(page, "live");
+  return page;
+}
+
+async function record(page, name) {
+  await page.keyboard.press("s");
+  await page.locator("#recording-name").fill(name);
+  await part(page, "begin-recording").click();
+  await page.locator(`[data-recording='${name}.mcap']`).getByText("is being recorded").waitFor();
+}
+
+async function end(page) {
+  const told = page.locator("[data-role=notice]", { hasText: /recorded \d+ frames/ });
+  await part(page, "begin-recording").click();
+  return Number(/recorded (\d+) frames/.exec(await told.textContent())[1]);
+}
+
+/** The place of a copy of what the browser saves. */
+async function saved(page, button) {
+  const [download] = await Promise.all([page.waitForEvent("download"), button.click()]);
+  const place = join(site.folder, download.suggestedFilename());
+  copyFileSync(await download.path(), place);
+  return place;
+}
+
+const row = (page, name) => page.locator(`[data-recording='${name}']`);
+
+/** Until the recording has more bytes than that. */
+async function grows(page, name, kilobytes) {
+  const size = row(page, name).locator("[data-field=size]");
+  for (let have = 0; have < kilobytes; have = Number.parseFloat(await size.textContent()))
+    await page.waitForTimeout(200);
+}
+
+it("records every frame, and the command reads the download", async () => {
+  const context = await site.browser.newContext();
+  const page = await live(context);
+  await record(page, "walk");
+  await grows(page, "walk.mcap", 100);
+  const frames = await end(page);
+  const file = await saved(page, row(page, "walk.mcap").locator("[data-act=download]"));
+  const { complete, frames: read, lost, compression } = info(file);
+  assert.deepEqual(
+    { complete, read, lost, compression },
+    { complete: true, read: frames, lost: 0, compression: "none" },
+  );
+  const forces = join(site.folder, "forces.csv");
+  dermis("run", "--model", join(site.folder, "sheet.model"), "--in", file, "--out", forces);
+  assert.equal(readCsv(forces).length, frames);
+  const table = join(site.folder, "walk.csv");
+  dermis("convert", file, table);
+  assert.equal(readCsv(table).length, frames);
+  assertUnhurt(page);
+  await context.close();
+});
+
+it("saves the last minute, as the server does", async () => {
+  const context = await site.browser.newContext();
+  const page = await live(context);
+  await page.keyboard.press("s");
+  const recording = await saved(page, part(page, "save-mcap"));
+  assert.ok(info(recording).frames > 0);
+  await context.close();
+});
+
+it("has a recording again whose tab was closed", async () => {
+  const context = await site.browser.newContext();
+  const first = await live(context);
+  await record(first, "cut-off");
+  await grows(first, "cut-off.mcap", 100);
+  await first.close();
+  const page = await live(context);
+  await page.keyboard.press("s");
+  const file = await saved(page, row(page, "cut-off.mcap").locator("[data-act=download]"));
+  assert.ok(info(file).frames > 50);
+  const mended = join(site.folder, "mended.mcap");
+  dermis("recover", file, "--out", mended);
+  assert.equal(info(mended).frames, info(file).frames);
+  assertUnhurt(page);
+  await context.close();
+});
+
+it("tells a second tab that another has the files", async () => {
+  const context = await site.browser.newContext();
+  const first = await live(context);
+  await record(first, "alone");
+  const second = await live(context);
+  await part(second, "files-note").filter({ hasText: "Another tab of this page has its files." }).waitFor();
+  assert.ok((await end(first)) > 0);
+  await first.close();
+  await eventually(second, () => true);
+  await context.close();
+});
