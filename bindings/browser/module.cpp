@@ -7,13 +7,16 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
 
+#include "bindings/browser/opened_files.hpp"
 #include "bindings/browser/page_link.hpp"
 #include "dermis/bytes/models/model_file.hpp"
+#include "dermis/live/suits/playback.hpp"
 #include "dermis/out/serve/served_suit.hpp"
 #include "dermis/out/serve/session.hpp"
 #include "live/sources/simulated_source.hpp"
@@ -33,7 +36,10 @@ constexpr const char* kRecordings = "/recordings/dermis.mcap";
 /// All that the page has.
 struct Module {
   std::unique_ptr<out::serve::Session> session;
-  std::vector<std::uint8_t> room;  // bytes from the page
+  std::optional<out::serve::ServedSuit> next;  // in the place of the session
+  std::optional<browser::OpenedArray> array;   // the last that was opened
+  std::string recording;                       // that is played; empty: the session is live
+  std::vector<std::uint8_t> room;              // bytes from the page
   std::vector<std::uint8_t> answer;
 };
 
@@ -50,9 +56,7 @@ std::string text_of(std::size_t size) {
   return {reinterpret_cast<const char*>(module().room.data()), size};
 }
 
-Result<out::serve::ServedSuit> simulated(const std::string& model_file) {
-  Result<touch::pipeline::Model> model = bytes::models::model_from_bytes(model_file, "the model");
-  if (!model) return model.error();
+Result<out::serve::ServedSuit> simulated(touch::pipeline::Model model) {
   bytes::devices::SourceUri uri;
   uri.text = "sim:contacts";
   uri.transport = bytes::devices::Transport::simulation;
@@ -60,22 +64,64 @@ Result<out::serve::ServedSuit> simulated(const std::string& model_file) {
   uri.rate_hz = kSimulatedHz;
   uri.frames = kSimulatedFrames;
   live::sources::SourceOptions options;
-  options.array = &model->array;
+  options.array = &model.array;
   Result<std::unique_ptr<FrameSource>> source = live::sources::open_simulation(uri, options);
   if (!source) return source.error();
-  return out::serve::suit_of_one(*std::move(source), *std::move(model));
+  return out::serve::suit_of_one(*std::move(source), std::move(model));
 }
 
-Status begin(const std::string& model_file) {
-  std::error_code is_there;
-  std::filesystem::create_directories(std::filesystem::path(kRecordings).parent_path(), is_there);
-  Result<out::serve::ServedSuit> suit = simulated(model_file);
+Status serve(Result<out::serve::ServedSuit> suit) {
   if (!suit) return suit.error();
   Result<std::unique_ptr<out::serve::Session>> session =
       out::serve::Session::create(*std::move(suit), {.recordings = kRecordings});
   if (!session) return session.error();
   module().session = *std::move(session);
   return Done{};
+}
+
+Status begin(const std::string& model_file) {
+  std::error_code is_there;
+  std::filesystem::create_directories(std::filesystem::path(kRecordings).parent_path(), is_there);
+  Result<touch::pipeline::Model> model = bytes::models::model_from_bytes(model_file, "the model");
+  if (!model) return model.error();
+  module().recording.clear();
+  return serve(simulated(*std::move(model)));
+}
+
+/// A recording is played; an array is that of the recording, or of the simulator.
+Status open(const std::string& path) {
+  Module& page = module();
+  if (!browser::is_recording(path)) {
+    Result<browser::OpenedArray> array = browser::open_array(path);
+    if (!array) return array.error();
+    page.array = *std::move(array);
+  }
+  const std::string recording = browser::is_recording(path) ? path : page.recording;
+  Result<out::serve::ServedSuit> suit =
+      recording.empty() ? simulated(page.array->model) : browser::open_recording(recording, page.array);
+  if (!suit) return suit.error();
+  page.recording = recording;
+  page.next = *std::move(suit);
+  return Done{};
+}
+
+}  // namespace
+
+void browser::serve_next(out::serve::ServedSuit suit) {
+  module().recording = suit.playback ? suit.playback->path() : "";
+  module().next = std::move(suit);
+}
+
+namespace {
+
+/// Returns whether the session is another now.
+bool change_session() {
+  std::optional<out::serve::ServedSuit> next = std::exchange(module().next, std::nullopt);
+  if (!next) return false;
+  module().session.reset();
+  const Status served = serve(*std::move(next));
+  answer(served ? "" : served.error().message);
+  return true;
 }
 
 }  // namespace
@@ -115,9 +161,20 @@ DERMIS_EXPORT(dermis_receive) int dermis_receive(std::size_t size, int is_text) 
   return received ? 1 : 0;
 }
 
-/// Does what is due. Call it 30 times a second or more.
-DERMIS_EXPORT(dermis_work) void dermis_work() {
+/// Does what is due. Call it 30 times a second or more. 1: the server is another from now on, and its client has to
+/// connect; the answer is empty, or says why there is none.
+DERMIS_EXPORT(dermis_work) int dermis_work() {
+  const bool has_changed = change_session();
   if (module().session) module().session->work();
+  return has_changed ? 1 : 0;
+}
+
+/// Opens the file whose path is in the room: a recording, a model, an array.toml. 0: it cannot, and the answer says
+/// why.
+DERMIS_EXPORT(dermis_open) int dermis_open(std::size_t size) {
+  const Status opened = open(text_of(size));
+  answer(opened ? "" : opened.error().message);
+  return opened ? 1 : 0;
 }
 
 /// The next message for the viewer becomes the answer. 0: there is none; 1: text; 2: bytes.

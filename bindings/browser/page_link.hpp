@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "dermis/out/serve/served_suit.hpp"
 #include "dermis/touch/frames/result.hpp"
 #include "out/websocket/outgoing_queue.hpp"
 
@@ -34,5 +35,8 @@ class PageLink {
 
 /// That of the server that was made last; null: there is none.
 [[nodiscard]] PageLink* page_link() noexcept;
+
+/// Served in the place of what is live, from the next work on.
+void serve_next(out::serve::ServedSuit suit);
 
 }  // namespace dermis::browser

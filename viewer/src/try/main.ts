@@ -8,6 +8,7 @@ import "./try.css";
 import { App } from "../app";
 import { errorText } from "../format";
 import { ModuleEndpoint } from "./module_endpoint";
+import { OpenControls } from "./open_controls";
 
 function showInstead(text: string): void {
   document.body.replaceChildren(element("p", { role: "alert" }, text));
@@ -33,8 +34,19 @@ try {
     (words) => setText(note, words),
   );
   const app = new App(endpoint);
+  const controls = new OpenControls(
+    (file) => endpoint.openFile(file),
+    () => endpoint.goLive(),
+  );
+  app.stream.playback.follow((playback) => controls.showPlayed(playback !== undefined));
   document.body.append(
-    element("aside", { class: "about", "aria-label": "About this page", "data-role": "about" }, ABOUT, note),
+    element(
+      "aside",
+      { class: "about", "aria-label": "About this page", "data-role": "about" },
+      ABOUT,
+      controls.element,
+      note,
+    ),
   );
   app.begin();
   app.stream.connection.follow(({ kind }) => {

@@ -13,7 +13,8 @@ interface Exports {
   dermis_begin_simulation(size: number): number;
   dermis_connect(): void;
   dermis_receive(size: number, isText: number): number;
-  dermis_work(): void;
+  dermis_work(): number;
+  dermis_open(size: number): number;
   dermis_next(): number;
   dermis_document(size: number): number;
   dermis_file(size: number): number;
@@ -53,8 +54,14 @@ export class Module {
     if (this.#exports.dermis_receive(this.#put(bytes), isText ? 1 : 0) === 0) throw new Error(this.#text());
   }
 
-  work(): void {
-    this.#exports.dermis_work();
+  /** Undefined: the client goes on. Else another server has begun, or, with a text, could not. */
+  work(): string | undefined {
+    return this.#exports.dermis_work() === 0 ? undefined : this.#text();
+  }
+
+  /** Opens a file of the page: a recording, a model, an array.toml. Fails with the line of the module. */
+  open(path: string): void {
+    if (this.#exports.dermis_open(this.#put(utf8.encode(path))) === 0) throw new Error(this.#text());
   }
 
   /** The next message for the client. */

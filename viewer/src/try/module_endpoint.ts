@@ -5,9 +5,19 @@ import type { Endpoint, Socket } from "../stream/endpoint";
 import { saveBlob } from "../take/save_file";
 
 /** The page asks its worker to begin with these files, to take a client, or for a document. */
-export type Question = { module: string; model: string } | { port: MessagePort } | { id: number; path: string };
-export type Answer = { id: number; document?: string | Blob | undefined; failure?: string } | { note: string };
-type Document = Exclude<Answer, { note: string }>;
+export type Question =
+  | { module: string; model: string }
+  | { port: MessagePort }
+  | { id: number; path: string }
+  | { opened: File }
+  | { goLive: true };
+export type Answer = { id: number; document?: string | Blob | undefined; failure?: string } | Change;
+/** What the user should know of the files, and whether another server has begun. */
+export interface Change {
+  note: string;
+  isAnother?: boolean;
+}
+type Document = Exclude<Answer, Change>;
 
 /** dermis in a worker of the page, in the place of a server. */
 export class ModuleEndpoint implements Endpoint {
@@ -16,6 +26,7 @@ export class ModuleEndpoint implements Endpoint {
   readonly #failed: (why: string) => void;
   readonly #asked = new Map<number, (answer: Document) => void>();
   #lastId = 0;
+  #socket: Socket | undefined;
 
   /**
    * `module` and `model`: addresses of the files to begin with. `failed` is told why that could not be, `told` what the
@@ -31,7 +42,11 @@ export class ModuleEndpoint implements Endpoint {
     this.#worker = worker;
     this.#failed = failed;
     worker.onmessage = ({ data }: MessageEvent<Answer>) => {
-      if ("note" in data) return told(data.note);
+      if ("note" in data) {
+        told(data.note);
+        if (data.isAnother === true) this.#socket?.onclose?.(new CloseEvent("close"));
+        return;
+      }
       this.#asked.get(data.id)?.(data);
       this.#asked.delete(data.id);
     };
@@ -50,10 +65,20 @@ export class ModuleEndpoint implements Endpoint {
     saveBlob(new Blob([document]), name);
   }
 
+  /** Puts a file into the folder of the page, and plays or uses it. */
+  openFile(opened: File): void {
+    this.#ask({ opened });
+  }
+
+  /** The sheet in the place of a recording. */
+  goLive(): void {
+    this.#ask({ goLive: true });
+  }
+
   open(): Socket {
     const { port1, port2 } = new MessageChannel();
     this.#ask({ port: port2 }, [port2]);
-    return {
+    this.#socket = {
       get onmessage() {
         return port1.onmessage;
       },
@@ -65,6 +90,7 @@ export class ModuleEndpoint implements Endpoint {
       send: (message) => port1.postMessage(message),
       close: () => port1.close(),
     };
+    return this.#socket;
   }
 
   async #document(path: string): Promise<string | Blob | undefined> {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { errorText } from "../format";
+import { keepDropped } from "./dropped_files";
 import { blobOf, openFiles, type PageFiles } from "./kept_files";
 import { Module } from "./module";
 import type { Answer, Question } from "./module_endpoint";
@@ -11,6 +12,7 @@ const SETTLE_MS = 200;
 let client: MessagePort | undefined;
 let begun: Promise<Module> | undefined;
 let pageFiles: PageFiles;
+let simulate: (made: Module) => void;
 
 async function bytesOf(address: string): Promise<ArrayBuffer> {
   const response = await fetch(address);
@@ -23,9 +25,11 @@ async function begin(module: string, model: string): Promise<Module> {
   pageFiles = opened;
   if (opened.lost !== undefined) tell({ note: opened.lost });
   const made = await Module.load(await WebAssembly.compile(code), opened.files);
-  made.beginSimulation(new Uint8Array(modelFile));
+  simulate = (module) => module.beginSimulation(new Uint8Array(modelFile));
+  simulate(made);
   setInterval(() => {
-    made.work();
+    const changed = made.work();
+    if (changed !== undefined) tell({ note: changed || (opened.lost ?? ""), isAnother: true });
     send(made);
   }, WORK_MS);
   void keepSettled();
@@ -70,9 +74,25 @@ async function answer(id: number, path: string): Promise<void> {
   tell(answered);
 }
 
+async function open(file: File): Promise<void> {
+  try {
+    const module = await begun!;
+    module.open(await keepDropped(pageFiles.files, file));
+  } catch (error) {
+    tell({ note: errorText(error) });
+  }
+}
+
+async function goLive(): Promise<void> {
+  simulate(await begun!);
+  tell({ note: pageFiles.lost ?? "", isAnother: true });
+}
+
 addEventListener("message", ({ data }: MessageEvent<Question>) => {
   if ("module" in data) begun = begin(data.module, data.model);
   else if ("port" in data)
     connect(data.port).catch(() => undefined); // the question for suit.json tells why
+  else if ("opened" in data) void open(data.opened);
+  else if ("goLive" in data) void goLive();
   else void answer(data.id, data.path);
 });
