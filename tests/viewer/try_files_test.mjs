@@ -163,3 +163,21 @@ it("opens recordings, tables and models of the command, and says in one line wha
   assertUnhurt(page);
   await context.close();
 });
+
+it("ends a recording complete where the browser gives no more room, and says so", async () => {
+  const context = await site.browser.newContext();
+  const page = await live(context);
+  await record(page, "full");
+  const session = await context.newCDPSession(page);
+  const { usage } = await session.send("Storage.getUsageAndQuota", { origin: new URL(site.url).origin });
+  await session.send("Storage.overrideQuotaForOrigin", {
+    origin: new URL(site.url).origin,
+    quotaSize: usage + 300_000,
+  });
+  await page.locator("[data-role=notice]", { hasText: "the recording has ended: cannot write" }).first().waitFor();
+  const file = await saved(page, row(page, "full.mcap").locator("[data-act=download]"));
+  const { complete, frames } = info(file);
+  assert.ok(complete && frames > 20, `${complete}, ${frames} frames`);
+  assertUnhurt(page);
+  await context.close();
+});
