@@ -12,7 +12,7 @@ export type Question =
   | { opened: File }
   | { goLive: true };
 export type Answer = { id: number; document?: string | Blob | undefined; failure?: string } | Change;
-/** What the user should know of the files, and whether another server has begun. */
+/** A line for the user, and whether another server has begun. */
 export interface Change {
   note: string;
   isAnother?: boolean;
