@@ -159,7 +159,7 @@ bool __fs_is_empty(const path& place, error_code* told) {
   return is_directory(place) ? directory_iterator(place) == directory_iterator() : __file_size(place, told) == 0;
 }
 
-/// What is free is known when it is used up.
+/// A page learns what is free when it is used up.
 space_info __space(const path& place, error_code* told) {
   constexpr auto kUnknown = static_cast<uintmax_t>(-1);
   tell(told, place, ENOSYS);

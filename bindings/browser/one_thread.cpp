@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
-// The functions of libc++ that a library without threads lacks, for its one thread. A thread
-// runs to its end where it begins. A wait for another thread traps; a pause is none. What throws traps, as the module
-// has no exceptions.
+// The functions of libc++ that a library without threads lacks, for its one thread. A thread runs to
+// its end where it begins. A wait for another thread traps; a pause is none. An exception traps, as the module has
+// none.
 #include <condition_variable>
 #include <mutex>
 #include <shared_mutex>

@@ -19,11 +19,11 @@ struct OpenedArray {
 /// Whether a file is a recording (.mcap, .csv, .npy); others describe an array.
 [[nodiscard]] bool is_recording(const std::string& path);
 
-/// Of a model file, or an array.toml. Errors: those of the file.
+/// Reads a model file or an array.toml. Errors: those of the file.
 [[nodiscard]] Result<OpenedArray> open_array(const std::string& path);
 
-/// The suit of a recording, which is played: with `array` where it is as large, else with what the recording holds. Of
-/// .csv and .npy a recording is made beside it. Errors: those of the file; it does not say what array it is of.
+/// The suit of a recording, which is played: with `array` where it is as large, else with what the recording holds. A
+/// recording is made beside a .csv or .npy. Errors: those of the file; it does not say what array it is of.
 [[nodiscard]] Result<out::serve::ServedSuit> open_recording(const std::string& path,
                                                             const std::optional<OpenedArray>& array);
 

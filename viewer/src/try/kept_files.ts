@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { type Content, FAILURE, File, Files, MemoryContent, Refused } from "./files";
 
-/** Of FileSystemSyncAccessHandle, which workers have. */
+/** A FileSystemSyncAccessHandle, which workers have. */
 interface Handle {
   getSize(): number;
   read(into: Uint8Array, options: { at: number }): number;

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { button, element, setHidden } from "../dom";
 
-/** What the user opens: by dropping it anywhere on the page, or by a button. */
+/** The user opens files by dropping them anywhere on the page, or by a button. */
 export class OpenControls {
   readonly element: HTMLElement;
   readonly #live: HTMLElement;

@@ -16,7 +16,7 @@ const LOCK = { shared: 1, alone: 2, release: 8 } as const;
 const DIRENT_BYTES = 24;
 const utf8 = new TextEncoder();
 
-/** What the module asks the system for: files, clocks, random numbers. */
+/** The system below the module: files, clocks, random numbers. */
 export interface System {
   readonly imports: WebAssembly.Imports;
   /** The memory of the module; not before it is there. */

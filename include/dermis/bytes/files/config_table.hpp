@@ -65,7 +65,7 @@ class ConfigFile {
   void text_rows(std::string_view key, std::vector<std::vector<std::string>>& rows);
   /// One of `names`; `index` is set to its place.
   void choice(std::string_view key, const std::vector<std::string>& names, std::size_t& index);
-  /// What the key holds is read by others.
+  /// Others read the value of the key.
   void ignore(std::string_view key);
   /// The key must be present.
   void require(std::string_view key);
