@@ -13,10 +13,12 @@
 #include <vector>
 
 #include "bindings/browser/fit_link.hpp"
+#include "bindings/browser/opened_files.hpp"
 #include "bindings/browser/page_link.hpp"
 #include "bindings/browser/page_port.hpp"
 #include "dermis/bytes/models/model_file.hpp"
 #include "dermis/learn/calibration/uncalibrated_model.hpp"
+#include "dermis/live/suits/playback.hpp"
 #include "dermis/out/serve/array_setup.hpp"
 #include "dermis/out/serve/served_suit.hpp"
 #include "dermis/out/serve/session.hpp"
@@ -42,9 +44,14 @@ constexpr const char* kRecordings = "/recordings/dermis.mcap";
 struct Module {
   std::unique_ptr<out::serve::Session> session;
   std::unique_ptr<out::serve::ArraySetup> setup;
-  bool is_other = false;           // than the client was connected to
-  std::string failure;             // for the next client
-  std::vector<std::uint8_t> room;  // bytes from the page
+  std::optional<out::serve::ServedSuit> next;   // in the place of the session
+  std::optional<touch::pipeline::Model> sheet;  // that is simulated
+  std::optional<out::serve::SuitPlace> board;   // that is served where nothing is played; empty: the sheet is
+  std::optional<browser::OpenedArray> array;    // the last that was opened
+  std::string recording;                        // that is played; empty: the session is live
+  bool is_other = false;                        // than the client was connected to
+  std::string failure;                          // for the next client
+  std::vector<std::uint8_t> room;               // bytes from the page
   std::vector<std::uint8_t> answer;
 };
 
@@ -61,10 +68,8 @@ std::string text_of(std::size_t size) {
   return {reinterpret_cast<const char*>(module().room.data()), size};
 }
 
-Result<out::serve::ServedSuit> simulated(const std::string& model_file, const std::string& scene) {
-  Result<touch::pipeline::Model> model = bytes::models::model_from_bytes(model_file, "the model");
-  if (!model) return model.error();
-  if (scene == kRehearsal) model = learn::calibration::uncalibrated_model(ArrayDescription(model->array));
+Result<out::serve::ServedSuit> simulated(touch::pipeline::Model model, const std::string& scene) {
+  if (scene == kRehearsal) model = learn::calibration::uncalibrated_model(ArrayDescription(model.array));
   bytes::devices::SourceUri uri;
   uri.text = "sim:" + scene;
   uri.transport = bytes::devices::Transport::simulation;
@@ -72,11 +77,11 @@ Result<out::serve::ServedSuit> simulated(const std::string& model_file, const st
   uri.rate_hz = kSimulatedHz;
   uri.frames = kSimulatedFrames;
   live::sources::SourceOptions options;
-  options.array = &model->array;
+  options.array = &model.array;
   options.guide = std::make_shared<live::sources::GuideVoice>();
   Result<std::unique_ptr<FrameSource>> source = live::sources::open_simulation(uri, options);
   if (!source) return source.error();
-  Result<out::serve::ServedSuit> suit = out::serve::suit_of_one(*std::move(source), *std::move(model));
+  Result<out::serve::ServedSuit> suit = out::serve::suit_of_one(*std::move(source), std::move(model));
   if (suit) suit->guide = options.guide;
   return suit;
 }
@@ -111,15 +116,56 @@ void begin_setup() {
   module().is_other = true;
 }
 
-/// Where the array cannot be served, its setup begins again.
-void serve_described(const out::serve::DescribedArray& array) {
+/// What is served from now on, `suit()`. Where it cannot be, somebody has to choose and describe an array.
+template <typename Suit>
+void change_session(const Suit& suit) {
   module().setup.reset();
+  module().session.reset();
   module().is_other = true;
-  const Status served =
-      serve(out::serve::open_suit({.from = array.from, .model = array.model, .suit = array.suit}, {.notice = tell}));
+  const Status served = serve(suit());
   if (served) return;
   begin_setup();
   module().failure = served.error().message;
+}
+
+void serve_board(out::serve::SuitPlace place) {
+  module().board = std::move(place);
+  module().recording.clear();
+  change_session([] { return out::serve::open_suit(*module().board, {.notice = tell}); });
+}
+
+/// The board, else the sheet.
+void go_live() {
+  if (module().board) return serve_board(*module().board);
+  module().recording.clear();
+  change_session([] { return simulated(*module().sheet, kContacts); });
+}
+
+/// Another array for the board that is connected, if one is.
+bool serve_board_as(const std::string& path) {
+  const browser::PagePort& port = browser::page_port();
+  if (!port.is_there() || !module().recording.empty()) return false;
+  const std::string from = module().board ? module().board->from : port.uri();
+  serve_board({.from = from, .model = path});
+  return true;
+}
+
+/// A recording is played; an array is that of the recording, of the board, or of the sheet.
+Status open(const std::string& path) {
+  Module& page = module();
+  if (!browser::is_recording(path)) {
+    Result<browser::OpenedArray> array = browser::open_array(path);
+    if (!array) return array.error();
+    page.array = *std::move(array);
+    if (serve_board_as(path)) return Done{};
+  }
+  const std::string recording = browser::is_recording(path) ? path : page.recording;
+  Result<out::serve::ServedSuit> suit =
+      recording.empty() ? simulated(page.array->model, kContacts) : browser::open_recording(recording, page.array);
+  if (!suit) return suit.error();
+  page.recording = recording;
+  page.next = *std::move(suit);
+  return Done{};
 }
 
 void tell_dropped() {
@@ -133,6 +179,11 @@ int answer_of(const Status& done) {
 }
 
 }  // namespace
+
+void browser::serve_next(out::serve::ServedSuit suit) {
+  module().recording = suit.playback ? suit.playback->path() : "";
+  module().next = std::move(suit);
+}
 
 /// Where the page puts `size` bytes for the next call.
 DERMIS_EXPORT(dermis_room) std::uint8_t* dermis_room(std::size_t size) {
@@ -151,10 +202,22 @@ DERMIS_EXPORT(dermis_answer_size) std::size_t dermis_answer_size() {
 /// A simulated sheet with the model whose bytes are in the room. For a rehearsal it has none, and a hand that obeys the
 /// guide of a calibration. 0: it could not begin, and the answer says why.
 DERMIS_EXPORT(dermis_begin_simulation) int dermis_begin_simulation(std::size_t size, int is_rehearsal) {
-  module().setup.reset();
-  module().session.reset();
+  Result<touch::pipeline::Model> model = bytes::models::model_from_bytes(text_of(size), "the model");
+  if (!model) return answer_of(model.error());
+  module().sheet = *model;
   module().is_other = true;
-  return answer_of(serve(simulated(text_of(size), is_rehearsal != 0 ? kRehearsal : kContacts)));
+  return answer_of(serve(simulated(*std::move(model), is_rehearsal != 0 ? kRehearsal : kContacts)));
+}
+
+/// What is live in the place of a recording: the board that was served last, else the sheet.
+DERMIS_EXPORT(dermis_go_live) void dermis_go_live() {
+  go_live();
+}
+
+/// Opens the file whose path is in the room: a recording, a model, an array.toml. 0: it cannot, and the answer says
+/// why.
+DERMIS_EXPORT(dermis_open) int dermis_open(std::size_t size) {
+  return answer_of(open(text_of(size)));
 }
 
 /// A page on which somebody chooses an array and describes it, as that of `dermis serve` without arguments.
@@ -205,8 +268,12 @@ DERMIS_EXPORT(dermis_receive) int dermis_receive(std::size_t size, int is_text) 
 /// Does what is due. Call it 30 times a second or more. 1: the server is another one, to which the viewer has to
 /// connect.
 DERMIS_EXPORT(dermis_work) int dermis_work() {
-  const auto described = module().setup ? module().setup->described() : std::nullopt;
-  if (described) serve_described(*described);
+  if (const auto array = module().setup ? module().setup->described() : std::nullopt) {
+    serve_board({.from = array->from, .model = array->model, .suit = array->suit});
+  }
+  if (auto next = std::exchange(module().next, std::nullopt)) {
+    change_session([&]() -> Result<out::serve::ServedSuit> { return *std::move(next); });
+  }
   if (module().session) module().session->work();
   auto* const link = browser::page_link();
   if (const Status worked = link != nullptr ? link->work() : Done{}; !worked) tell(worked.error().message);

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "dermis/out/serve/served_suit.hpp"
 #include "dermis/touch/frames/result.hpp"
 #include "out/websocket/outgoing_queue.hpp"
 
@@ -40,5 +41,8 @@ class PageLink {
 
 /// That of the server that was made last; null: there is none.
 [[nodiscard]] PageLink* page_link() noexcept;
+
+/// Served in the place of what is live, from the next work on.
+void serve_next(out::serve::ServedSuit suit);
 
 }  // namespace dermis::browser

@@ -39,6 +39,8 @@ class PagePort {
 
   [[nodiscard]] bool is_there() const noexcept { return is_there_; }
   [[nodiscard]] const std::string& product() const noexcept { return product_; }
+  /// The source that it is, at the baud at which it is open.
+  [[nodiscard]] std::string uri() const;
 
   /// One reader begins. False: another reads it.
   [[nodiscard]] bool open(unsigned baud);

@@ -11,6 +11,11 @@
 
 namespace dermis {
 namespace browser {
+namespace {
+
+constexpr const char* kBoard = "board";
+
+}  // namespace
 
 PagePort& page_port() {
   static PagePort port;
@@ -21,6 +26,10 @@ void PagePort::connect(std::string product, unsigned baud) {
   is_there_ = true;
   product_ = std::move(product);
   baud_ = baud;
+}
+
+std::string PagePort::uri() const {
+  return std::string("serial://") + kBoard + "?baud=" + std::to_string(baud_);
 }
 
 void PagePort::receive(std::span<const std::uint8_t> bytes) {
@@ -78,7 +87,7 @@ std::size_t PagePort::write(std::span<const std::uint8_t> bytes) {
 namespace bytes::devices {
 namespace {
 
-constexpr const char* kBoard = "board";
+using browser::kBoard;
 
 class PageStream final : public ByteStream {
  public:

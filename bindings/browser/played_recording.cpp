@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
-// A page plays a recording in the place of what is live (module.cpp).
+// A page plays a recording in the place of what is live.
 #include "out/serve/recording/played_recording.hpp"
 
 #include <utility>
+
+#include "bindings/browser/page_link.hpp"
 
 namespace dermis::out::serve {
 
@@ -14,8 +16,10 @@ PlayedRecording::PlayedRecording(SessionOptions options, PlayedSuit suit)
 PlayedRecording::~PlayedRecording() = default;
 
 Result<std::uint16_t> PlayedRecording::play(const std::string& recording) {
-  static_cast<void>(recording);
-  return bad_input("not yet");
+  Result<ServedSuit> suit = suit_(recording);
+  if (!suit) return suit.error();
+  browser::serve_next(*std::move(suit));
+  return std::uint16_t{0};
 }
 
 }  // namespace dermis::out::serve

@@ -43,12 +43,16 @@ export function change(path, text, by) {
   site.packed.set(path, gzipSync(gunzipSync(site.packed.get(path)).toString().replace(text, by)));
 }
 
-/** Call it first. Skips where there is no compiler. */
-export function useSite() {
+export function skipWithoutCompiler() {
   if (!existsSync("/usr/bin/wasm-ld-16") || !existsSync("/usr/include/wasm32-wasi/c++/v1")) {
     console.log("skipped: there is no compiler for WebAssembly (scripts/setup browser)");
     process.exit(0);
   }
+}
+
+/** Call it first. Skips where there is no compiler. */
+export function useSite() {
+  skipWithoutCompiler();
   let server;
   before(async () => {
     site.folder = mkdtempSync(join(tmpdir(), "dermis-try-"));

@@ -103,7 +103,11 @@ std::span<const std::uint8_t> Decompressor::decompress(McapCompression compressi
   return made == size ? std::span<const std::uint8_t>(out_).first(size) : std::span<const std::uint8_t>{};
 }
 
-bool is_available(McapCompression /*compression*/) noexcept {
+bool can_compress(McapCompression /*compression*/) noexcept {
+  return true;
+}
+
+bool can_decompress(McapCompression /*compression*/) noexcept {
   return true;
 }
 

@@ -15,8 +15,9 @@ struct ZSTD_DCtx_s;
 
 namespace dermis::bytes::recordings {
 
-/// Whether this build can compress and decompress so. That of a page has no library for it.
-[[nodiscard]] bool is_available(McapCompression compression) noexcept;
+/// Whether this build can; that of a page has not all libraries.
+[[nodiscard]] bool can_compress(McapCompression compression) noexcept;
+[[nodiscard]] bool can_decompress(McapCompression compression) noexcept;
 
 /// Compresses chunks. Reuses its memory.
 class Compressor {

@@ -143,7 +143,7 @@ Result<McapChunk> parse_chunk(ByteView body, Decompressor& decompressor) {
   const ByteView compressed = reader.consume(reader.number<std::uint64_t>());
   if (!reader.good()) return bad_input("the chunk is shorter than its fields say");
   const std::optional<McapCompression> compression = compression_named(compression_name);
-  if (compression && !is_available(*compression)) {
+  if (compression && !can_decompress(*compression)) {
     return bad_input("the chunk is compressed with " + std::string(compression_name) +
                      ", which a page cannot read; `dermis convert RECORDING frames.csv` writes what it can read");
   }

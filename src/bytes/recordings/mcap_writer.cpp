@@ -16,7 +16,7 @@ namespace dermis::bytes::recordings {
 struct McapWriter::State {
   State(GrowingFile growing_file, McapCompression chunk_compression)
       : file(std::move(growing_file)),
-        compression(is_available(chunk_compression) ? chunk_compression : McapCompression::none),
+        compression(can_compress(chunk_compression) ? chunk_compression : McapCompression::none),
         compressor(compression),
         summary(file.place_beside()) {}
 

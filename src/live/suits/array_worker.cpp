@@ -133,14 +133,19 @@ void ArrayWorker::set_zero_now(ZeroRequest zero) {
 }
 
 void ArrayWorker::acquire() {
-  while (!outcome_) {
-    RawFrame& frame = waiting_.room();
-    const Result<Polled> polled = array_.source->poll(frame);
-    if (!polled) return end(polled.error());
-    if (*polled == Polled::end) return end(Done{});
-    if (*polled == Polled::nothing) return;
-    take(frame);
+  while (acquire_one()) {
   }
+}
+
+bool ArrayWorker::acquire_one() {
+  if (outcome_) return false;
+  RawFrame& frame = waiting_.room();
+  const Result<Polled> polled = array_.source->poll(frame);
+  if (!polled) end(polled.error());
+  if (polled && *polled == Polled::end) end(Done{});
+  const bool has_come = polled && *polled == Polled::frame;
+  if (has_come) take(frame);
+  return has_come;
 }
 
 void ArrayWorker::await() {

@@ -32,6 +32,8 @@ class ArrayWorker {
   [[nodiscard]] std::optional<Readiness> readiness() const { return array_.source->readiness(); }
   /// Takes the frames that have come, without waiting.
   void acquire();
+  /// The same of one frame. Returns whether one has come.
+  bool acquire_one();
   /// Takes the next frame, and waits for it.
   void await();
   /// Finds the contacts of the oldest frame that waits, if one does. Returns whether more wait.

@@ -22,6 +22,9 @@ namespace {
 /// A thread that another program puts off makes all of its arrays late.
 constexpr std::size_t kMostArraysOfThread = 2;
 
+/// Frames of a recording that work() takes: its clock waits for who is slower.
+constexpr std::size_t kMostAtOnce = 8;
+
 }  // namespace
 
 class LiveSuit::Implementation {
@@ -56,7 +59,12 @@ class LiveSuit::Implementation {
 
   void work() {
     for (const auto& worker : workers_) {
-      worker->acquire();
+      if (worker->readiness()) {
+        worker->acquire();
+      } else {
+        for (std::size_t k = 0; k < kMostAtOnce && worker->acquire_one(); ++k) {
+        }
+      }
       while (worker->process()) {
       }
     }

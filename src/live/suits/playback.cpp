@@ -59,6 +59,7 @@ class Playback::Implementation {
   [[nodiscard]] bool has_results(std::size_t track) const;
   void set_used(std::size_t track, bool is_used);
   [[nodiscard]] Result<bool> next(std::size_t track, RawFrame& frame);
+  [[nodiscard]] Result<Polled> poll(std::size_t track, RawFrame& frame);
   [[nodiscard]] SourceStatistics statistics(std::size_t track) const;
   PlaybackStatus control(const PlaybackCommand& command);
   [[nodiscard]] PlaybackStatus status() const;
@@ -77,6 +78,7 @@ class Playback::Implementation {
   void keep(const bytes::recordings::RecordedResult& result);
   [[nodiscard]] bool is_full() const;
   [[nodiscard]] bool may_read() const;
+  [[nodiscard]] Result<bool> take_due(PlayedTrack& track, RawFrame& frame);
   void wait(PlayedTrack& track, std::unique_lock<std::mutex>& lock);
   void pop(PlayedTrack& track, RawFrame& frame);
   void wake_all();
@@ -221,28 +223,41 @@ void Playback::Implementation::pop(PlayedTrack& track, RawFrame& frame) {
   track.count(frame);
 }
 
+/// Fills `frame` with the next one where its time has come, or with the last, to be shown again.
+Result<bool> Playback::Implementation::take_due(PlayedTrack& track, RawFrame& frame) {
+  if (track.waiting.empty() && read_status_) read_status_ = read_ahead();
+  if (!track.waiting.empty() && read_status_) read_status_ = read_results_of(track);
+  if (!read_status_) return read_status_.error();
+  if (!track.waiting.empty()) {
+    const bool is_due = track.is_shown_at_once || (plays_ && moment_of(track.waiting.front().time) <= Clock::now());
+    if (is_due) {
+      pop(track, frame);
+      return true;
+    }
+  }
+  if (!std::exchange(track.is_shown_again, false)) return false;
+  frame = *track.shown;
+  frame.acquisition.arrival_steady = Clock::now().time_since_epoch();
+  return true;
+}
+
 Result<bool> Playback::Implementation::next(std::size_t index, RawFrame& frame) {
   std::unique_lock lock(mutex_);
   PlayedTrack& track = tracks_[index];
   while (!is_stopped_) {
-    if (track.waiting.empty() && read_status_) read_status_ = read_ahead();
-    if (!track.waiting.empty() && read_status_) read_status_ = read_results_of(track);
-    if (!read_status_) return read_status_.error();
-    if (!track.waiting.empty()) {
-      const bool is_due = track.is_shown_at_once || (plays_ && moment_of(track.waiting.front().time) <= Clock::now());
-      if (is_due) {
-        pop(track, frame);
-        return true;
-      }
-    }
-    if (std::exchange(track.is_shown_again, false)) {
-      frame = *track.shown;
-      frame.acquisition.arrival_steady = Clock::now().time_since_epoch();
-      return true;
-    }
+    Result<bool> taken = take_due(track, frame);
+    if (!taken || *taken) return taken;
     wait(track, lock);
   }
   return false;
+}
+
+Result<Polled> Playback::Implementation::poll(std::size_t index, RawFrame& frame) {
+  const std::scoped_lock lock(mutex_);
+  if (is_stopped_) return Polled::end;
+  const Result<bool> taken = take_due(tracks_[index], frame);
+  if (!taken) return taken.error();
+  return *taken ? Polled::frame : Polled::nothing;
 }
 
 void Playback::Implementation::set_used(std::size_t track, bool is_used) {
@@ -296,6 +311,7 @@ class Playback::Source final : public FrameSource {
   ~Source() override { playback_->set_used(track_, false); }
 
   Result<bool> next(RawFrame& frame) override { return playback_->next(track_, frame); }
+  Result<Polled> poll(RawFrame& frame) override { return playback_->poll(track_, frame); }
   std::optional<FrameShape> shape() const override {
     const FrameShape& shape = playback_->arrays[track_].shape;
     return shape.taxel_count() == 0 ? std::nullopt : std::optional(shape);

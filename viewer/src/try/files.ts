@@ -34,6 +34,8 @@ export interface Content {
   keepAs(path: string | undefined): void;
 }
 
+export const FOLDER_OF_RECORDINGS = "/recordings";
+
 export class MemoryContent implements Content {
   #bytes = new Uint8Array(0);
   #size = 0;

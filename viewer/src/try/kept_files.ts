@@ -48,8 +48,7 @@ class KeptContent implements Content {
   }
 
   write(from: Uint8Array, at: number): void {
-    const written = this.#handle.write(from, { at: HEAD_BYTES + at });
-    if (written < from.length) throw new Refused(FAILURE.noSpace);
+    this.#put(from, HEAD_BYTES + at);
   }
 
   resize(size: number): void {
@@ -97,8 +96,13 @@ class KeptContent implements Content {
     view.setFloat64(GENERATION, this.#nextGeneration(), true);
     view.setUint32(LENGTH, text.length, true);
     head.set(text, PATH);
-    this.#handle.write(head, { at: 0 });
+    this.#put(head, 0);
     this.#handle.flush();
+  }
+
+  /** Chromium tells a full disk by an exception, or by a number beyond that of the bytes. */
+  #put(bytes: Uint8Array, at: number): void {
+    if (this.#handle.write(bytes, { at }) !== bytes.length) throw new Refused(FAILURE.noSpace);
   }
 }
 

@@ -10,6 +10,7 @@ import { errorText } from "../format";
 import { type BoardLink, boardLinkOf } from "./board_link";
 import { Boards } from "./boards";
 import { ModuleEndpoint } from "./module_endpoint";
+import { OpenControls } from "./open_controls";
 
 function showInstead(text: string): void {
   document.body.replaceChildren(element("p", { role: "alert" }, text));
@@ -46,12 +47,18 @@ try {
     (words) => setText(note, words),
   );
   const app = new App(endpoint);
+  const controls = new OpenControls(
+    (file) => endpoint.openFile(file),
+    () => endpoint.goLive(),
+  );
+  app.stream.playback.follow((playback) => controls.showPlayed(playback !== undefined));
   document.body.append(
     element(
       "aside",
       { class: "about", "aria-label": "About this page", "data-role": "about" },
       element("p", {}, ABOUT),
       new Boards(app.stream, app.suit, endpoint, link).element,
+      controls.element,
       note,
     ),
   );

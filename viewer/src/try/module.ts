@@ -20,6 +20,8 @@ interface Exports {
   dermis_connect(): void;
   dermis_receive(size: number, isText: number): number;
   dermis_work(): number;
+  dermis_open(size: number): number;
+  dermis_go_live(): void;
   dermis_next(): number;
   dermis_document(size: number): number;
   dermis_file(size: number): number;
@@ -50,12 +52,10 @@ const utf8 = new TextEncoder();
 /** dermis in this thread: the server of `dermis serve` for one client. Not for the page's own thread, which it holds up. */
 export class Module {
   readonly #code: WebAssembly.Module;
-  readonly #files: Files;
   readonly #exports: Exports;
 
-  private constructor(code: WebAssembly.Module, files: Files, instance: WebAssembly.Instance) {
+  private constructor(code: WebAssembly.Module, instance: WebAssembly.Instance) {
     this.#code = code;
-    this.#files = files;
     this.#exports = instance.exports as unknown as Exports;
   }
 
@@ -80,7 +80,7 @@ export class Module {
 
   static async #make(code: WebAssembly.Module, files: Files, fits: WebAssembly.ModuleImports): Promise<Module> {
     const system = systemOf(files);
-    const module = new Module(code, files, await WebAssembly.instantiate(code, { ...system.imports, fits }));
+    const module = new Module(code, await WebAssembly.instantiate(code, { ...system.imports, fits }));
     system.memory = module.#exports.memory;
     return module;
   }
@@ -141,6 +141,16 @@ export class Module {
     return this.#exports.dermis_work() !== 0;
   }
 
+  /** Opens a file of the page: a recording, a model, an array.toml. Fails with the line of the module. */
+  open(path: string): void {
+    if (this.#exports.dermis_open(this.#put(utf8.encode(path))) === 0) throw new Error(this.#text());
+  }
+
+  /** The board or the sheet in the place of a recording. */
+  goLive(): void {
+    this.#exports.dermis_go_live();
+  }
+
   /** The next message for the client. */
   next(): string | ArrayBuffer | undefined {
     const kind = this.#exports.dermis_next();
@@ -148,10 +158,9 @@ export class Module {
     return kind === NEXT_IS_TEXT ? this.#text() : this.#answer().slice().buffer;
   }
 
-  /** A document of the server, or the bytes of a file that it wrote. */
-  document(path: string): string | Uint8Array<ArrayBuffer> | undefined {
-    const isThere = this.#exports.dermis_document(this.#put(utf8.encode(path))) !== 0;
-    return isThere ? this.#text() : this.#files.bytes(path);
+  /** A document of the server. */
+  document(path: string): string | undefined {
+    return this.#exports.dermis_document(this.#put(utf8.encode(path))) === 0 ? undefined : this.#text();
   }
 
   fitDone(outcome: Uint8Array): void {

@@ -9,7 +9,10 @@ export type Question =
   | { module: string; model: string; isRehearsal: boolean }
   | { port: MessagePort }
   | { id: number; path: string }
+  | { opened: File }
+  | { goLive: true }
   | BoardNews;
+/** A note: what the user should know of the files. */
 export type Answer = { id: number; document?: string | Blob | undefined; failure?: string } | { note: string };
 type Document = Exclude<Answer, { note: string }>;
 
@@ -67,6 +70,16 @@ export class ModuleEndpoint implements Endpoint {
     const document = await this.#document(path);
     if (document === undefined) throw new Error(`${name} is not there.`);
     saveBlob(new Blob([document]), name);
+  }
+
+  /** Puts a file into the folder of the page, and plays or uses it. */
+  openFile(opened: File): void {
+    this.#ask({ opened });
+  }
+
+  /** The sheet in the place of a recording. */
+  goLive(): void {
+    this.#ask({ goLive: true });
   }
 
   open(): Socket {

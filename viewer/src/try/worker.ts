@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { errorText } from "../format";
+import { keepDropped } from "./dropped_files";
 import { Fits } from "./fits";
 import { blobOf, openFiles, type PageFiles } from "./kept_files";
 import { Module } from "./module";
@@ -34,12 +35,18 @@ async function begin(module: string, model: string, isRehearsal: boolean): Promi
     const hasChanged = made.work();
     send(made);
     for (let request = made.boardRequest(); request !== undefined; request = made.boardRequest()) postMessage(request);
-    if (hasChanged) client?.postMessage(SERVER_HAS_CHANGED);
-    if (hasChanged) client = undefined;
+    if (hasChanged) leaveClient(opened.lost ?? "");
     workedMs = performance.now();
   }, WORK_MS);
   void keepSettled();
   return made;
+}
+
+/** The server is another one: the client connects anew. */
+function leaveClient(note: string): void {
+  tell({ note });
+  client?.postMessage(SERVER_HAS_CHANGED);
+  client = undefined;
 }
 
 function hear(module: Module, news: BoardNews): void {
@@ -79,12 +86,21 @@ async function answer(id: number, path: string): Promise<void> {
   let answered: Answer;
   try {
     const module = await begun!;
-    const file = module.file(path);
-    answered = { id, document: file === undefined ? module.document(path) : await blobOf(pageFiles.files, file) };
+    const document = module.document(path) ?? (await blobOf(pageFiles.files, module.file(path) ?? path));
+    answered = { id, document };
   } catch (error) {
     answered = { id, failure: errorText(error) };
   }
   tell(answered);
+}
+
+async function open(file: File): Promise<void> {
+  try {
+    const module = await begun!;
+    module.open(await keepDropped(pageFiles.files, file));
+  } catch (error) {
+    tell({ note: errorText(error) });
+  }
 }
 
 addEventListener("message", ({ data }: MessageEvent<Question>) => {
@@ -92,5 +108,7 @@ addEventListener("message", ({ data }: MessageEvent<Question>) => {
   else if ("port" in data)
     connect(data.port).catch(() => undefined); // the question for suit.json tells why
   else if ("id" in data) void answer(data.id, data.path);
+  else if ("opened" in data) void open(data.opened);
+  else if ("goLive" in data) void begun?.then((module) => module.goLive());
   else void begun?.then((module) => hear(module, data));
 });

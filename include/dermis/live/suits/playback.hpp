@@ -39,8 +39,8 @@ class Playback {
   [[nodiscard]] Nanos start() const noexcept;              ///< Time of the first and of
   [[nodiscard]] Nanos end() const noexcept;                ///< the last frame.
 
-  /// The frames of an array, for one thread; next() waits until a frame is due, and at the end for a seek. They are as
-  /// recorded, but for arrival_steady, which is now. Ask for it once for each array.
+  /// The frames of an array, for one thread; next() waits until a frame is due, and at the end for a seek; poll()
+  /// never waits. They are as recorded, but for arrival_steady, which is now. Ask for it once for each array.
   [[nodiscard]] std::unique_ptr<FrameSource> source(std::size_t array);
 
   /// Those of a frame that source() gave within the last second of the recording, as it was live; empty where none is

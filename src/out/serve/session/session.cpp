@@ -152,6 +152,7 @@ Status Session::Implementation::run(const std::atomic<bool>& stop) {
 
 /// A page that slept does not make up for the ticks of that time.
 void Session::Implementation::work() {
+  if (ticks_ == 0 && suit_.playback) suit_.playback->control({.play = true});
   live_->work();
   const auto now = std::chrono::steady_clock::now();
   if (now < next_tick_) return;

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
-// Files of frames, which a page does not read yet.
+// A file of frames is no source of a page: what is opened is played (opened_files.cpp).
 #include "dermis/bytes/recordings/frame_files.hpp"
+#include "dermis/bytes/recordings/recording.hpp"
 
 namespace dermis {
 namespace {
 
 Error not_in_a_page() {
-  return bad_input("a page does not read files of frames yet; the command dermis does");
+  return bad_input("a page does not read this as a device; open the file");
 }
 
 }  // namespace
