@@ -116,7 +116,7 @@ void begin_setup() {
   module().is_other = true;
 }
 
-/// What is served from now on, `suit()`. Where it cannot be, somebody has to choose and describe an array.
+/// `suit()` is served from now on. Where it cannot be, somebody has to choose and describe an array.
 template <typename Suit>
 void change_session(const Suit& suit) {
   module().setup.reset();
@@ -209,7 +209,7 @@ DERMIS_EXPORT(dermis_begin_simulation) int dermis_begin_simulation(std::size_t s
   return answer_of(serve(simulated(*std::move(model), is_rehearsal != 0 ? kRehearsal : kContacts)));
 }
 
-/// What is live in the place of a recording: the board that was served last, else the sheet.
+/// Ends the recording that is played: the board that was served last is live, else the sheet.
 DERMIS_EXPORT(dermis_go_live) void dermis_go_live() {
   go_live();
 }
@@ -237,7 +237,7 @@ DERMIS_EXPORT(dermis_board_lost) void dermis_board_lost() {
 DERMIS_EXPORT(dermis_bytes) void dermis_bytes(std::size_t size) {
   browser::page_port().receive({module().room.data(), size});
 }
-/// What the page is to do with the board, one thing at a time. 0: nothing; 1: open it at the baud that is the answer;
+/// The next thing that the page is to do with the board. 0: nothing; 1: open it at the baud that is the answer;
 /// 2: write the bytes of the answer to it.
 DERMIS_EXPORT(dermis_board_request) int dermis_board_request() {
   const auto request = browser::page_port().next_request();

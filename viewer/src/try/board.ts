@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
-/** What a board tells the page. */
+/** Messages of a board to the page. */
 export interface BoardEvents {
   /** The array is the receiver's to keep. */
   bytes(bytes: Uint8Array<ArrayBuffer>): void;
@@ -9,7 +9,7 @@ export interface BoardEvents {
   lost(): void;
   /** It is open again, at the same baud. */
   back(): void;
-  /** What went wrong, in one line; it goes on. */
+  /** A fault, in one line; it goes on. */
   trouble(line: string): void;
 }
 
@@ -23,7 +23,7 @@ export interface Board {
   close(): Promise<void>;
 }
 
-/** What to do about an error of the browser, in one line. `what`: "the board". */
+/** Advice on an error of the browser, in one line. `what`: "the board". */
 export function adviceOn(error: unknown, what: string): string {
   const name = error instanceof Error ? error.name : "";
   const words = error instanceof Error ? error.message : String(error);

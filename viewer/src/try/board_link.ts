@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
-/** What a link says of a board: its layout (docs/layouts.md) and its baud. */
+/** A link to a board: its layout (docs/layouts.md) and its baud. */
 export interface BoardLink {
   layout: string;
   baud: number | undefined;

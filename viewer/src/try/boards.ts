@@ -219,7 +219,7 @@ export class Boards {
     await board.open(baud);
   }
 
-  /** One after the other. What cannot be written is asked for again, where the board is still there. */
+  /** One after the other. A request that cannot be written is asked for again, where the board is still there. */
   #then(act: () => Promise<void>): void {
     this.#writing = this.#writing.then(act).catch((error: unknown) => setText(this.#words, errorText(error)));
   }

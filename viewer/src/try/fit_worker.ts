@@ -3,7 +3,7 @@
 import { errorText } from "../format";
 import { type Copy, Module } from "./module";
 
-/** What becomes of a fit: the share done so far; at last its outcome, or why there is none. */
+/** The course of a fit: the share done so far; at last its outcome, or why there is none. */
 export type News = { share: number } | { outcome: Uint8Array<ArrayBuffer> } | { failure: string };
 
 function tell(news: News): void {

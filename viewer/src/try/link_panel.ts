@@ -3,7 +3,7 @@
 import { button, element } from "../dom";
 import type { BoardLink } from "./board_link";
 
-/** What a link brings is shown before it is used. */
+/** Shows what a link brings before it is used. */
 export function makeLinkPanel({ layout, baud }: BoardLink, use: () => void): HTMLElement {
   const end = (act: () => void): void => {
     act();

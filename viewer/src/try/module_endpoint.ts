@@ -16,13 +16,13 @@ export type Question =
 export type Answer = { id: number; document?: string | Blob | undefined; failure?: string } | { note: string };
 type Document = Exclude<Answer, { note: string }>;
 
-/** Of the board in the page, for the worker: it is open, or lost; its bytes. Or that somebody will describe its array. */
+/** News of the board for the worker: it is open, or lost; its bytes. Or that somebody will describe its array. */
 export type BoardNews =
   | { board: string; baud: number }
   | { lost: true }
   | { bytes: Uint8Array<ArrayBuffer> }
   | { setup: true };
-/** Of the worker, for the page: how to open the board, what to write to it, how long the worker was asleep [s]. */
+/** Requests of the worker to the page: how to open the board, what to write to it, how long the worker was asleep [s]. */
 export type BoardRequest = { open: number } | { write: Uint8Array<ArrayBuffer> } | { slept: number };
 /** In the place of a message of the server: it is another one from now on. */
 export const SERVER_HAS_CHANGED = null;

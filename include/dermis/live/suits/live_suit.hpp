@@ -98,7 +98,7 @@ class LiveSuit {
 
   /// Once.
   void start();
-  /// In the place of start(), where there is one thread: takes the frames that have come, finds the contacts in all of
+  /// In the place of start(), where there is one thread. Takes the frames that have come, finds the contacts in all of
   /// them, and does not wait. Of a source without readiness(), it takes some at a time; its poll() must not wait.
   void work();
   /// Waits for the threads. Each ends with its present or next frame. So stop a source that may wait long first
