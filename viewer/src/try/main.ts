@@ -9,6 +9,7 @@ import { App } from "../app";
 import { errorText } from "../format";
 import { type BoardLink, boardLinkOf } from "./board_link";
 import { Boards } from "./boards";
+import { makeFileList } from "./file_list";
 import { ModuleEndpoint } from "./module_endpoint";
 import { OpenControls } from "./open_controls";
 
@@ -57,8 +58,13 @@ try {
       "aside",
       { class: "about", "aria-label": "About this page", "data-role": "about" },
       element("p", {}, ABOUT),
-      new Boards(app.stream, app.suit, endpoint, link).element,
-      controls.element,
+      element(
+        "div",
+        { class: "about-acts" },
+        new Boards(app.stream, app.suit, endpoint, link).element,
+        controls.element,
+        makeFileList(endpoint, (line) => setText(note, line)),
+      ),
       note,
     ),
   );

@@ -24,6 +24,8 @@ export type BoardNews =
   | { setup: true };
 /** Requests of the worker to the page: how to open the board, what to write to it, how long the worker was asleep [s]. */
 export type BoardRequest = { open: number } | { write: Uint8Array<ArrayBuffer> } | { slept: number };
+/** The document that lists the files of the page: [path, bytes] of each. */
+export const FILE_LIST = "files-of-this-page.json";
 /** In the place of a message of the server: it is another one from now on. */
 export const SERVER_HAS_CHANGED = null;
 

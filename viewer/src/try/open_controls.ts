@@ -14,7 +14,7 @@ export class OpenControls {
       for (const file of chosen.files ?? []) open(file);
       chosen.value = "";
     });
-    this.#live = button("Back to the live sheet", goLive, { "data-role": "go-live", hidden: true });
+    this.#live = button("Back to what is live", goLive, { "data-role": "go-live", hidden: true });
     this.element = element(
       "span",
       { class: "open-controls" },

@@ -5,7 +5,7 @@ import { keepDropped } from "./dropped_files";
 import { Fits } from "./fits";
 import { blobOf, openFiles, type PageFiles } from "./kept_files";
 import { Module } from "./module";
-import { type Answer, type BoardNews, type Question, SERVER_HAS_CHANGED } from "./module_endpoint";
+import { type Answer, type BoardNews, FILE_LIST, type Question, SERVER_HAS_CHANGED } from "./module_endpoint";
 
 const WORK_MS = 5;
 /** Nobody calls for so long: the page was asleep, or its machine. */
@@ -82,12 +82,21 @@ async function connect(port: MessagePort): Promise<void> {
   send(module);
 }
 
+function fileList(): string {
+  const files = pageFiles.files.all().map(({ path, content }) => [path, content.size()]);
+  return JSON.stringify(files.sort());
+}
+
+async function documentOf(path: string): Promise<string | Blob | undefined> {
+  const module = await begun!;
+  if (path === `/${FILE_LIST}`) return fileList();
+  return module.document(path) ?? (await blobOf(pageFiles.files, module.file(path) ?? path));
+}
+
 async function answer(id: number, path: string): Promise<void> {
   let answered: Answer;
   try {
-    const module = await begun!;
-    const document = module.document(path) ?? (await blobOf(pageFiles.files, module.file(path) ?? path));
-    answered = { id, document };
+    answered = { id, document: await documentOf(path) };
   } catch (error) {
     answered = { id, failure: errorText(error) };
   }
