@@ -177,6 +177,7 @@ describe("a board at the page of site/try", () => {
       await connect(page);
       await page.locator("#array-rows").fill("12");
       await page.locator("#array-cols").fill("10");
+      await page.locator('[data-role=layout-map][width="10"][height="12"]').waitFor(); // of these rows and columns
       await part(page, "use-layout").click();
       await describeArray(page);
       await page.evaluate(() => {
