@@ -8,7 +8,7 @@ import { resolve } from "node:path";
 import { describe, it } from "node:test";
 import { playMat, standInForBluetooth, standInForSerial, standInForUsb } from "./boards.mjs";
 import { assertUnhurt, becomes, eventually, openPage, part } from "./harness.mjs";
-import { browser, url, useSite } from "./try_site.mjs";
+import { site, useSite } from "./try_page.mjs";
 
 useSite();
 
@@ -35,10 +35,10 @@ function mat(frames = 50) {
 
 /** A page with a board that sends those bytes. */
 async function withBoard(bytes, bytesPerSecond, test, { baud = 115200 } = {}) {
-  const context = await browser.newContext({ viewport: { width: 1280, height: 800 } });
+  const context = await site.browser.newContext({ viewport: { width: 1280, height: 800 } });
   try {
     await context.addInitScript(standInForSerial);
-    const page = await openPage(context, url);
+    const page = await openPage(context, site.url);
     await becomes(page, "live");
     await play(page, bytes, bytesPerSecond);
     await page.locator("#board-baud").selectOption(String(baud));
@@ -192,9 +192,9 @@ describe("a board at the page of site/try", () => {
   });
 
   it("is read by the layout of a link, which is shown first", async () => {
-    const context = await browser.newContext();
+    const context = await site.browser.newContext();
     await context.addInitScript(standInForSerial);
-    const page = await openPage(context, `${url}#toml=${encodeURIComponent(LAYOUT)}&baud=2000000`);
+    const page = await openPage(context, `${site.url}#toml=${encodeURIComponent(LAYOUT)}&baud=2000000`);
     await becomes(page, "live");
     await page.getByLabel("The layout", { exact: true }).filter({ hasText: "A5 5A C3" }).waitFor();
     await part(page, "use-link").click();
@@ -210,10 +210,10 @@ describe("a board at the page of site/try", () => {
   });
 
   it("is read without a loss at 2 Mbaud", async () => {
-    const context = await browser.newContext({ viewport: { width: 1280, height: 800 } });
+    const context = await site.browser.newContext({ viewport: { width: 1280, height: 800 } });
     await context.addInitScript(standInForSerial);
     const layout = '[layout]\nrows = 32\ncols = 32\npacket = ["A5 5A C3", "frame u32le", "values u16le"]\n';
-    const page = await openPage(context, `${url}#toml=${encodeURIComponent(layout)}&baud=2000000`);
+    const page = await openPage(context, `${site.url}#toml=${encodeURIComponent(layout)}&baud=2000000`);
     await becomes(page, "live");
     await page.evaluate(() => {
       let frame = 0;
@@ -330,9 +330,9 @@ describe("a board at the page of site/try", () => {
   });
 
   it("is heard by Bluetooth, and again when it is back in reach", async () => {
-    const context = await browser.newContext();
+    const context = await site.browser.newContext();
     await context.addInitScript(standInForBluetooth);
-    const page = await openPage(context, url);
+    const page = await openPage(context, site.url);
     await becomes(page, "live");
     await page.evaluate(
       (text) => (radio.bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0))),
@@ -357,9 +357,9 @@ describe("a board at the page of site/try", () => {
   });
 
   it("is read at USB without a driver, and again when it is chosen again", async () => {
-    const context = await browser.newContext();
+    const context = await site.browser.newContext();
     await context.addInitScript(standInForUsb);
-    const page = await openPage(context, url);
+    const page = await openPage(context, site.url);
     await becomes(page, "live");
     await page.evaluate((text) => {
       usbPort.bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
@@ -386,9 +386,9 @@ describe("a board at the page of site/try", () => {
   });
 
   it("needs another browser where this one has no serial ports, and the page says which", async () => {
-    const context = await browser.newContext();
+    const context = await site.browser.newContext();
     await context.addInitScript(() => Object.defineProperty(Navigator.prototype, "serial", { get: () => undefined }));
-    const page = await openPage(context, url);
+    const page = await openPage(context, site.url);
     await becomes(page, "live");
     await part(page, "no-serial").filter({ hasText: "Chrome, Edge and Opera" }).waitFor();
     assertUnhurt(page);

@@ -5,13 +5,13 @@
 // files that it writes.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { mkdtempSync, renameSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { it } from "node:test";
 import { gzipSync } from "node:zlib";
 import { assertUnhurt, becomes, eventually, openPage, part, readCsv } from "./harness.mjs";
-import { browser, packed, url, useSite } from "./try_site.mjs";
+import { saved, site, useSite } from "./try_page.mjs";
 
 const WEIGHTS = [1, 4, 10];
 const PRESSES = 48;
@@ -22,35 +22,12 @@ const KINDS = ["safetensors", "array.toml", "frames.csv", "loads.csv"];
 
 useSite();
 
-/** In the page: the workers that it begins are at hand. */
-function keepWorker() {
-  window.Worker = class extends window.Worker {
-    constructor(...how) {
-      super(...how);
-      window.dermis = this;
-    }
-  };
-}
-
-/** In the page: a file that dermis wrote, in base 64. */
-async function fileOf(name) {
-  const id = `file ${name}`;
-  const { document } = await new Promise((answered) => {
-    const hear = ({ data }) => {
-      if (data.id !== id) return;
-      window.dermis.removeEventListener("message", hear);
-      answered(data);
-    };
-    window.dermis.addEventListener("message", hear);
-    window.dermis.postMessage({ id, path: `/${name}` });
-  });
-  return btoa(Array.from(document, (byte) => String.fromCharCode(byte)).join(""));
-}
+/** The place of a file of the page, saved as its user does. */
+const savedFile = (page, ending) => saved(page, page.locator(`[data-role=files] li[data-file$='${ending}'] button`));
 
 async function openRehearsal() {
-  const page = await openPage(browser, "about:blank");
-  await page.addInitScript(keepWorker);
-  await page.goto(`${url}?rehearsal#/calibration`);
+  const page = await openPage(site.browser, "about:blank");
+  await page.goto(`${site.url}?rehearsal#/calibration`);
   await becomes(page, "live");
   return page;
 }
@@ -107,9 +84,8 @@ it("leads from a sheet without a model to newtons, and the command makes the sam
   const name = /Saved as (\S+)\.safetensors/.exec(await part(page, "instruction").textContent())[1];
   const folder = mkdtempSync(join(tmpdir(), "dermis-page-"));
   try {
-    for (const kind of KINDS) {
-      writeFileSync(join(folder, kind), Buffer.from(await page.evaluate(fileOf, `${name}.${kind}`), "base64"));
-    }
+    await part(page, "files").locator("summary").click();
+    for (const kind of KINDS) renameSync(await savedFile(page, `/${name}.${kind}`), join(folder, kind));
     const relative = compare(folder);
     console.log(`the page's model beside the command's own: forces ${relative.toExponential(1)} apart, relative`);
     assert.ok(relative < MOST_RELATIVE, `${relative}`);
@@ -146,9 +122,9 @@ it("leaves a fit off at once when it is cancelled, and calibrates again", async 
 });
 
 it("says that a fit could not be done, and saves what was measured", async () => {
-  const worker = [...packed.keys()].find((path) => path.includes("fit_worker"));
-  const whole = packed.get(worker);
-  packed.set(worker, gzipSync("throw new Error('no room')"));
+  const worker = [...site.packed.keys()].find((path) => path.includes("fit_worker"));
+  const whole = site.packed.get(worker);
+  site.packed.set(worker, gzipSync("throw new Error('no room')"));
   const page = await openRehearsal();
   await start(page);
   await reaches(page, 9);
@@ -156,6 +132,6 @@ it("says that a fit could not be done, and saves what was measured", async () =>
   await instruction(page, /^The fit was not done: its worker ended/).waitFor();
   await part(page, "save").click();
   await page.locator("[data-role=problem]", { hasText: /what was measured is in \S+\.frames\.csv/ }).waitFor();
-  packed.set(worker, whole);
+  site.packed.set(worker, whole);
   await page.close();
 });

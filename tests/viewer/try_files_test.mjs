@@ -4,11 +4,11 @@
 // The files of the page of site/try: what is recorded there leaves it as the command's own, and is there again later.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { copyFileSync, writeFileSync } from "node:fs";
+import { writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { it } from "node:test";
 import { assertUnhurt, becomes, openPage, part, readCsv } from "./harness.mjs";
-import { site, useSite } from "./try_page.mjs";
+import { saved, site, useSite } from "./try_page.mjs";
 
 const binary = resolve(process.argv[2]);
 const dermis = (...command) => execFileSync(binary, command, { encoding: "utf8", stdio: ["ignore", "pipe", "pipe"] });
@@ -33,14 +33,6 @@ async function end(page) {
   const told = page.locator("[data-role=notice]", { hasText: /recorded \d+ frames/ });
   await part(page, "begin-recording").click();
   return Number(/recorded (\d+) frames/.exec(await told.textContent())[1]);
-}
-
-/** The place of a copy of what the browser saves. */
-async function saved(page, button) {
-  const [download] = await Promise.all([page.waitForEvent("download"), button.click()]);
-  const place = join(site.folder, download.suggestedFilename());
-  copyFileSync(await download.path(), place);
-  return place;
 }
 
 const row = (page, name) => page.locator(`[data-recording='${name}']`);

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 // The page of site/try, built and given out as a web server does it.
 import { execFileSync } from "node:child_process";
-import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
+import { copyFileSync, existsSync, mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
 import { createServer } from "node:http";
 import { tmpdir } from "node:os";
 import { extname, join } from "node:path";
@@ -31,7 +31,8 @@ function pack(folder) {
 }
 
 function answer(request, response) {
-  const path = request.url === "/" ? "/index.html" : request.url;
+  const { pathname } = new URL(request.url, site.url);
+  const path = pathname === "/" ? "/index.html" : pathname;
   const file = site.isOnline ? site.packed.get(path) : undefined;
   if (file === undefined) return response.writeHead(404).end();
   const type = CONTENT_TYPES[extname(path)] ?? "application/octet-stream";
@@ -70,4 +71,12 @@ export function useSite() {
     server?.close();
     if (site.folder) rmSync(site.folder, { recursive: true, force: true });
   });
+}
+
+/** The place of a copy of what the browser saves. */
+export async function saved(page, button) {
+  const [download] = await Promise.all([page.waitForEvent("download"), button.click()]);
+  const place = join(site.folder, download.suggestedFilename());
+  copyFileSync(await download.path(), place);
+  return place;
 }
