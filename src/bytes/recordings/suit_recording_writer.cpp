@@ -120,7 +120,7 @@ Result<bool> SuitRecordingWriter::Implementation::try_write(std::size_t index, c
   } else {
     array.written.encode(frame, nullptr);
   }
-  const Result<bool> added =
+  Result<bool> added =
       writing_.try_add([&](McapWriter& mcap) { array.written.add_to(mcap); }, writing_.most_chunks());
   const bool is_left_out = added && !*added;
   array.lost += frame.acquisition.lost_before + (is_left_out ? 1 : 0);
