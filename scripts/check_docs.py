@@ -28,7 +28,7 @@ def broken_links(path):
         file = (path.parent / name) if name else path
         if not file.exists():
             yield f"{path.relative_to(ROOT)}: {target} does not exist"
-        elif anchor and anchor not in anchors(file.read_text()):
+        elif anchor and file.suffix == ".md" and anchor not in anchors(file.read_text()):
             yield f"{path.relative_to(ROOT)}: {target} names no heading"
 
 
