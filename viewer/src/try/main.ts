@@ -13,6 +13,11 @@ import { makeFileList } from "./file_list";
 import { ModuleEndpoint } from "./module_endpoint";
 import { OpenControls } from "./open_controls";
 
+declare global {
+  /** Of try.html: the module, and the model of the sheet. */
+  var dermisFiles: Promise<[WebAssembly.Module, ArrayBuffer]>;
+}
+
 function showInstead(text: string): void {
   document.body.replaceChildren(element("p", { role: "alert" }, text));
 }
@@ -36,16 +41,10 @@ async function takeLink(): Promise<BoardLink | undefined> {
 try {
   const link = await takeLink();
   const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
-  const addressOf = (file: string): string => new URL(file, document.baseURI).href;
   const isRehearsal = new URLSearchParams(location.search).has("rehearsal");
   const note = element("p", { role: "status", "data-role": "files-note" });
-  const endpoint = new ModuleEndpoint(
-    worker,
-    addressOf("dermis.wasm"),
-    addressOf("sheet.model"),
-    isRehearsal,
-    showInstead,
-    (words) => setText(note, words),
+  const endpoint = new ModuleEndpoint(worker, globalThis.dermisFiles, isRehearsal, showInstead, (words) =>
+    setText(note, words),
   );
   const app = new App(endpoint);
   const controls = new OpenControls(

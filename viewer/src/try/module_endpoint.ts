@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
+import { errorText } from "../format";
 import type { Endpoint, Socket } from "../stream/endpoint";
 import { saveBlob } from "../take/save_file";
 
 /** The page asks its worker to begin with these files, to take a client, or for a document. */
 export type Question =
-  | { module: string; model: string; isRehearsal: boolean }
+  | { module: WebAssembly.Module; model: ArrayBuffer; isRehearsal: boolean }
   | { port: MessagePort }
   | { id: number; path: string }
   | { opened: File }
@@ -40,13 +41,12 @@ export class ModuleEndpoint implements Endpoint {
   onRequest: (request: BoardRequest) => void = () => undefined;
 
   /**
-   * `module` and `model`: addresses of the files to begin with. `isRehearsal`: with a hand that obeys the guide of a
+   * `files`: the module and the model of a sheet. `isRehearsal`: with a hand that obeys the guide of a
    * calibration. `failed` is told why that could not be, `told` what the user should know of the files of the page.
    */
   constructor(
     worker: Worker,
-    module: string,
-    model: string,
+    files: Promise<[WebAssembly.Module, ArrayBuffer]>,
     isRehearsal: boolean,
     failed: (why: string) => void,
     told: (note: string) => void,
@@ -60,7 +60,10 @@ export class ModuleEndpoint implements Endpoint {
       this.#asked.delete(data.id);
     };
     worker.onerror = ({ message }) => failed(message);
-    this.#ask({ module, model, isRehearsal });
+    files.then(
+      ([module, model]) => this.#ask({ module, model, isRehearsal }),
+      (error) => failed(errorText(error)),
+    );
   }
 
   async fetch(path: string): Promise<Response> {

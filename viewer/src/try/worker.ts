@@ -13,21 +13,18 @@ const SLEEP_MS = 2000;
 const SETTLE_MS = 200;
 
 let client: MessagePort | undefined;
-let begun: Promise<Module> | undefined;
+let resolveBegun: (module: Promise<Module>) => void;
+const begun = new Promise<Module>((resolve) => {
+  resolveBegun = resolve;
+});
 let pageFiles: PageFiles;
 
-async function bytesOf(address: string): Promise<ArrayBuffer> {
-  const response = await fetch(address);
-  if (!response.ok) throw new Error(`${address}: ${response.status}`);
-  return response.arrayBuffer();
-}
-
-async function begin(module: string, model: string, isRehearsal: boolean): Promise<Module> {
-  const [code, modelFile, opened] = await Promise.all([bytesOf(module), bytesOf(model), openFiles()]);
+async function begin(code: WebAssembly.Module, model: ArrayBuffer, isRehearsal: boolean): Promise<Module> {
+  const opened = await openFiles();
   pageFiles = opened;
   if (opened.lost !== undefined) tell({ note: opened.lost });
-  const made = await Module.load(await WebAssembly.compile(code), opened.files, new Fits());
-  made.beginSimulation(new Uint8Array(modelFile), isRehearsal);
+  const made = await Module.load(code, opened.files, new Fits());
+  made.beginSimulation(new Uint8Array(model), isRehearsal);
   let workedMs = performance.now();
   setInterval(() => {
     const sleptMs = performance.now() - workedMs;
@@ -72,7 +69,7 @@ function send(module: Module): void {
 }
 
 async function connect(port: MessagePort): Promise<void> {
-  const module = await begun!;
+  const module = await begun;
   client = port;
   port.onmessage = ({ data }: MessageEvent<string | Uint8Array>) => {
     module.receive(data);
@@ -88,7 +85,7 @@ function fileList(): string {
 }
 
 async function documentOf(path: string): Promise<string | Blob | undefined> {
-  const module = await begun!;
+  const module = await begun;
   if (path === `/${FILE_LIST}`) return fileList();
   return module.document(path) ?? (await blobOf(pageFiles.files, module.file(path) ?? path));
 }
@@ -105,7 +102,7 @@ async function answer(id: number, path: string): Promise<void> {
 
 async function open(file: File): Promise<void> {
   try {
-    const module = await begun!;
+    const module = await begun;
     module.open(await keepDropped(pageFiles.files, file));
   } catch (error) {
     tell({ note: errorText(error) });
@@ -113,11 +110,11 @@ async function open(file: File): Promise<void> {
 }
 
 addEventListener("message", ({ data }: MessageEvent<Question>) => {
-  if ("module" in data) begun = begin(data.module, data.model, data.isRehearsal);
+  if ("module" in data) resolveBegun(begin(data.module, data.model, data.isRehearsal));
   else if ("port" in data)
     connect(data.port).catch(() => undefined); // the question for suit.json tells why
   else if ("id" in data) void answer(data.id, data.path);
   else if ("opened" in data) void open(data.opened);
-  else if ("goLive" in data) void begun?.then((module) => module.goLive());
-  else void begun?.then((module) => hear(module, data));
+  else if ("goLive" in data) void begun.then((module) => module.goLive());
+  else void begun.then((module) => hear(module, data));
 });
