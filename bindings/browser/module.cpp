@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
-// The functions of the module, as viewer/src/page calls them. Bytes of the page lie in room that dermis_room() gives.
+// The functions of the module, as viewer/src/try calls them. Bytes of the page lie in room that dermis_room() gives.
+#include <fmt/core.h>
+
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -45,8 +48,10 @@ struct Module {
   std::unique_ptr<out::serve::Session> session;
   std::unique_ptr<out::serve::ArraySetup> setup;
   std::optional<out::serve::ServedSuit> next;   // in the place of the session
-  std::optional<touch::pipeline::Model> sheet;  // that is simulated
-  std::optional<out::serve::SuitPlace> board;   // that is served where nothing is played; empty: the sheet is
+  std::optional<touch::pipeline::Model> sheet;  // that is simulated where no board is served
+  std::string scene = kContacts;                // of the sheet
+  std::optional<out::serve::SuitPlace> board;   // that was served last
+  FrameShape board_shape;                       // of its array
   std::optional<browser::OpenedArray> array;    // the last that was opened
   std::string recording;                        // that is played; empty: the session is live
   bool is_other = false;                        // than the client was connected to
@@ -68,7 +73,9 @@ std::string text_of(std::size_t size) {
   return {reinterpret_cast<const char*>(module().room.data()), size};
 }
 
-Result<out::serve::ServedSuit> simulated(touch::pipeline::Model model, const std::string& scene) {
+Result<out::serve::ServedSuit> simulated_sheet() {
+  touch::pipeline::Model model = *module().sheet;
+  const std::string& scene = module().scene;
   if (scene == kRehearsal) model = learn::calibration::uncalibrated_model(ArrayDescription(model.array));
   bytes::devices::SourceUri uri;
   uri.text = "sim:" + scene;
@@ -112,6 +119,8 @@ Status serve(Result<out::serve::ServedSuit> suit) {
 void begin_setup() {
   module().session.reset();
   module().setup.reset();
+  module().next.reset();
+  module().recording.clear();
   module().setup = out::serve::ArraySetup::create("", session_options(), {.notice = tell}).value();
   module().is_other = true;
 }
@@ -131,46 +140,66 @@ void change_session(const Suit& suit) {
 void serve_board(out::serve::SuitPlace place) {
   module().board = std::move(place);
   module().recording.clear();
-  change_session([] { return out::serve::open_suit(*module().board, {.notice = tell}); });
+  change_session([] {
+    Result<out::serve::ServedSuit> suit = out::serve::open_suit(*module().board, {.notice = tell});
+    if (suit) module().board_shape = {suit->arrays[0].description.rows, suit->arrays[0].description.cols};
+    return suit;
+  });
 }
 
 /// The board, else the sheet.
 void go_live() {
   if (module().board) return serve_board(*module().board);
   module().recording.clear();
-  change_session([] { return simulated(*module().sheet, kContacts); });
+  change_session(simulated_sheet);
 }
 
-/// Another array for the board that is connected, if one is.
-bool serve_board_as(const std::string& path) {
-  const browser::PagePort& port = browser::page_port();
-  if (!port.is_there() || !module().recording.empty()) return false;
-  const std::string from = module().board ? module().board->from : port.uri();
-  serve_board({.from = from, .model = path});
-  return true;
-}
-
-/// A recording is played; an array is that of the recording, of the board, or of the sheet.
-Status open(const std::string& path) {
-  Module& page = module();
-  if (!browser::is_recording(path)) {
-    Result<browser::OpenedArray> array = browser::open_array(path);
-    if (!array) return array.error();
-    page.array = *std::move(array);
-    if (serve_board_as(path)) return Done{};
+/// The board by another array: that which is being described, else the one that is served.
+Status serve_board_as(const browser::OpenedArray& array) {
+  const Module& page = module();
+  const std::string chosen = page.setup ? page.setup->source() : std::string();
+  if (!page.setup && page.board && array.shape() != page.board_shape) {
+    return bad_input(fmt::format("{}: is of {}x{} taxels, the board's array of {}x{}", array.path, array.shape().rows,
+                                 array.shape().cols, page.board_shape.rows, page.board_shape.cols));
   }
-  const std::string recording = browser::is_recording(path) ? path : page.recording;
-  Result<out::serve::ServedSuit> suit =
-      recording.empty() ? simulated(page.array->model, kContacts) : browser::open_recording(recording, page.array);
+  const std::string served = page.board ? page.board->from : browser::page_port().uri();
+  serve_board({.from = chosen.empty() ? served : chosen, .model = array.path});
+  return Done{};
+}
+
+Status open_recording(const std::string& path) {
+  Result<out::serve::ServedSuit> suit = browser::open_recording(path, module().array);
   if (!suit) return suit.error();
-  page.recording = recording;
+  module().recording = path;
+  module().next = *std::move(suit);
+  return Done{};
+}
+
+/// Of the recording that is played, of the board, or of the sheet.
+Status open_array(const std::string& path) {
+  Module& page = module();
+  Result<browser::OpenedArray> array = browser::open_array(path);
+  if (!array) return array.error();
+  page.array = *std::move(array);
+  if (!page.recording.empty()) return open_recording(page.recording);
+  if (browser::page_port().is_there()) return serve_board_as(*page.array);
+  page.sheet = page.array->model;
+  page.scene = kContacts;
+  Result<out::serve::ServedSuit> suit = simulated_sheet();
+  if (!suit) return suit.error();
   page.next = *std::move(suit);
   return Done{};
 }
 
+/// Once a second at most.
 void tell_dropped() {
+  static std::chrono::steady_clock::time_point told;
+  const auto now = std::chrono::steady_clock::now();
+  if (now - told < std::chrono::seconds(1)) return;
   const std::uint64_t dropped = browser::page_port().take_dropped();
-  if (dropped > 0) tell("this page was too busy: " + std::to_string(dropped) + " bytes of the board are lost");
+  if (dropped == 0) return;
+  told = now;
+  tell("this page was too busy: " + std::to_string(dropped) + " bytes of the board are lost");
 }
 
 int answer_of(const Status& done) {
@@ -204,9 +233,10 @@ DERMIS_EXPORT(dermis_answer_size) std::size_t dermis_answer_size() {
 DERMIS_EXPORT(dermis_begin_simulation) int dermis_begin_simulation(std::size_t size, int is_rehearsal) {
   Result<touch::pipeline::Model> model = bytes::models::model_from_bytes(text_of(size), "the model");
   if (!model) return answer_of(model.error());
-  module().sheet = *model;
+  module().sheet = *std::move(model);
+  module().scene = is_rehearsal != 0 ? kRehearsal : kContacts;
   module().is_other = true;
-  return answer_of(serve(simulated(*std::move(model), is_rehearsal != 0 ? kRehearsal : kContacts)));
+  return answer_of(serve(simulated_sheet()));
 }
 
 /// Ends the recording that is played: the board that was served last is live, else the sheet.
@@ -217,11 +247,13 @@ DERMIS_EXPORT(dermis_go_live) void dermis_go_live() {
 /// Opens the file whose path is in the room: a recording, a model, an array.toml. 0: it cannot, and the answer says
 /// why.
 DERMIS_EXPORT(dermis_open) int dermis_open(std::size_t size) {
-  return answer_of(open(text_of(size)));
+  const std::string path = text_of(size);
+  return answer_of(browser::is_recording(path) ? open_recording(path) : open_array(path));
 }
 
 /// A page on which somebody chooses an array and describes it, as that of `dermis serve` without arguments.
 DERMIS_EXPORT(dermis_begin_setup) void dermis_begin_setup() {
+  module().board.reset();
   begin_setup();
 }
 

@@ -30,27 +30,27 @@ FrameShape shape_of(const ArrayDescription& array) {
   return {array.rows, array.cols};
 }
 
-OpenedArray uncalibrated(const ArrayDescription& array) {
-  return {learn::calibration::uncalibrated_model(array), array};
+OpenedArray uncalibrated(const std::string& path, const ArrayDescription& array) {
+  return {path, learn::calibration::uncalibrated_model(array), array};
 }
 
-Result<OpenedArray> calibrated(Result<touch::pipeline::Model> model) {
+Result<OpenedArray> calibrated(const std::string& path, Result<touch::pipeline::Model> model) {
   if (!model) return model.error();
   ArrayDescription array = model->array;
-  return OpenedArray{*std::move(model), std::move(array)};
+  return OpenedArray{path, *std::move(model), std::move(array)};
 }
 
 /// That the recording holds.
 Result<OpenedArray> recorded_array(const std::string& path, const RecordedArray& recorded) {
   if (!recorded.model_file.empty()) {
-    return calibrated(bytes::models::model_from_bytes(recorded.model_file, path + ": its model"));
+    return calibrated("", bytes::models::model_from_bytes(recorded.model_file, path + ": its model"));
   }
   if (recorded.array_toml.empty()) {
     return bad_input(path + ": does not say what array it is of; open its model or array.toml first");
   }
   Result<ArrayDescription> array = bytes::files::array_from_toml(recorded.array_toml, path);
   if (!array) return array.error();
-  return uncalibrated(*array);
+  return uncalibrated("", *array);
 }
 
 Result<ServedArray> served(const std::string& name, const OpenedArray& array) {
@@ -60,7 +60,8 @@ Result<ServedArray> served(const std::string& name, const OpenedArray& array) {
                      .source = nullptr,
                      .model = std::make_shared<const touch::pipeline::Model>(array.model),
                      .surface = *std::move(surface),
-                     .description = array.description};
+                     .description = array.description,
+                     .model_path = array.path};
 }
 
 Result<std::unique_ptr<FrameSource>> open_table(const std::string& path, FrameShape shape) {
@@ -117,10 +118,10 @@ bool is_recording(const std::string& path) {
 }
 
 Result<OpenedArray> open_array(const std::string& path) {
-  if (!path.ends_with(".toml")) return calibrated(bytes::models::read_model(path));
+  if (!path.ends_with(".toml")) return calibrated(path, bytes::models::read_model(path));
   const Result<ArrayDescription> array = bytes::files::read_array(path);
   if (!array) return array.error();
-  return uncalibrated(*array);
+  return uncalibrated(path, *array);
 }
 
 Result<ServedSuit> open_recording(const std::string& path, const std::optional<OpenedArray>& array) {
@@ -135,7 +136,7 @@ Result<ServedSuit> open_recording(const std::string& path, const std::optional<O
   if (!playback) return playback.error();
   ServedSuit suit;
   for (const RecordedArray& recorded : (*playback)->arrays()) {
-    const bool fits = array && shape_of(array->description) == recorded.shape;
+    const bool fits = array && array->shape() == recorded.shape;
     const Result<OpenedArray> known = fits ? Result<OpenedArray>(*array) : recorded_array(path, recorded);
     if (!known) return known.error();
     Result<ServedArray> one = served(recorded.name, *known);

@@ -12,8 +12,11 @@ namespace dermis::browser {
 
 /// An array that somebody has opened the file of.
 struct OpenedArray {
+  std::string path;              ///< Empty: a recording holds it.
   touch::pipeline::Model model;  ///< Uncalibrated where an array.toml was opened.
   ArrayDescription description;
+
+  [[nodiscard]] FrameShape shape() const { return {description.rows, description.cols}; }
 };
 
 /// Whether a file is a recording (.mcap, .csv, .npy); others describe an array.

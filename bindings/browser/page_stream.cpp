@@ -108,6 +108,8 @@ class PageStream final : public ByteStream {
     return {size, size == 0 && !port_.is_there() ? End::lost : End::none};
   }
   Transferred write(std::span<const std::uint8_t> bytes, Nanos /*timeout*/) override { return {port_.write(bytes)}; }
+  /// Nobody waits for it: all that has come is taken at once.
+  [[nodiscard]] int descriptor() const override { return is_open_ ? 0 : -1; }
   [[nodiscard]] std::string name() const override { return "the board"; }
 
  private:

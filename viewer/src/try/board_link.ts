@@ -76,3 +76,10 @@ async function packedBy(
   }
   return Uint8Array.from(parts);
 }
+
+/** FNV-1a of a text: layouts of other links have other names. */
+export function checksumOf(text: string): string {
+  let hash = 0x811c9dc5;
+  for (const byte of new TextEncoder().encode(text)) hash = Math.imul(hash ^ byte, 0x01000193);
+  return (hash >>> 0).toString(16).padStart(8, "0");
+}

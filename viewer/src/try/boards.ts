@@ -7,7 +7,7 @@ import type { Stream } from "../stream/stream";
 import type { Suit } from "../suit";
 import { BluetoothBoard, bluetoothOf, NORDIC_UART, uuidOf } from "./bluetooth_board";
 import { type Board, type BoardEvents, isNoChoice } from "./board";
-import { type BoardLink, hashOf } from "./board_link";
+import { type BoardLink, checksumOf, hashOf } from "./board_link";
 import { makeLinkPanel } from "./link_panel";
 import type { BoardRequest, ModuleEndpoint } from "./module_endpoint";
 import { SerialBoard, serialOf } from "./serial_board";
@@ -166,7 +166,10 @@ export class Boards {
     await this.#offered("/source/open");
     await this.#stream.callService("/source/open", { port: "board", baud });
     if (this.#wanted !== "")
-      await this.#stream.callService("/layout/use", { name: "link", layout: this.#wanted.split("\n") });
+      await this.#stream.callService("/layout/use", {
+        name: `link-${checksumOf(this.#wanted)}`,
+        layout: this.#wanted.split("\n"),
+      });
     await this.#stream.refresh();
   }
 

@@ -371,6 +371,7 @@ function numberOf(error: unknown): number {
   if (error instanceof DOMException) {
     return error.name === "QuotaExceededError" ? FAILURE.noSpace : FAILURE.inputOrOutput;
   }
+  if (error instanceof RangeError) return FAILURE.noSpace; // of the memory
   throw error;
 }
 

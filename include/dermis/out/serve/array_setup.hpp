@@ -48,6 +48,8 @@ class ArraySetup {
 
   /// In the place of run(), where there is one thread: empty as long as no client has described the array.
   [[nodiscard]] std::optional<DescribedArray> described();
+  /// Of the same thread: the source that is being described, with the layout that was chosen for it; empty: none.
+  [[nodiscard]] std::string source() const;
 
  private:
   class Implementation;

@@ -68,6 +68,8 @@ class ArraySetup::Implementation {
     return {};
   }
 
+  [[nodiscard]] std::string source() const { return name_ ? name_->text : std::string(); }
+
   [[nodiscard]] std::optional<DescribedArray> described() {
     const std::lock_guard lock(mutex_);
     if (described_.model.empty() && described_.suit.empty()) return std::nullopt;
@@ -265,14 +267,12 @@ class ArraySetup::Implementation {
   Result<std::string> wanted_layout(const JsonRequest& request) const {
     const Result<std::optional<std::uint64_t>> place = request.number("place", "that of a proposal");
     if (!place) return place.error();
-    if (!*place) {
-      const Result<std::vector<std::string>> lines = request.texts("layout");
-      if (!lines) return lines.error();
+    if (const Result<std::vector<std::string>> lines = request.texts("layout"); lines && !*place) {
       return fmt::format("{}\n", fmt::join(*lines, "\n"));
     }
     const Result<bytes::proposals::Known> known = known_request(request);
     if (!known) return known.error();
-    return proposed_layout(unread_, *known, **place);
+    return proposed_layout(unread_, *known, place->value_or(0));
   }
 
   /// From now on touch() gives the sent readings; `request` has their shape.
@@ -395,6 +395,10 @@ DescribedArray ArraySetup::run(const std::atomic<bool>& stop) {
 
 std::optional<DescribedArray> ArraySetup::described() {
   return implementation_->described();
+}
+
+std::string ArraySetup::source() const {
+  return implementation_->source();
 }
 
 }  // namespace dermis::out::serve
