@@ -18,7 +18,7 @@ async function removeOthers() {
 
 async function answer(request) {
   const cache = await caches.open(VERSION);
-  return (await cache.match(request.mode === "navigate" ? "index.html" : request)) ?? fetch(request);
+  return (await cache.match(request.mode === "navigate" ? "./" : request)) ?? fetch(request);
 }
 
 addEventListener("install", (event) => event.waitUntil(keep()));

@@ -175,7 +175,7 @@ Status open_recording(const std::string& path) {
   return Done{};
 }
 
-/// Of the recording that is played, of the board, or of the sheet.
+/// An array for the recording that is played, for the board, or for the sheet.
 Status open_array(const std::string& path) {
   Module& page = module();
   Result<browser::OpenedArray> array = browser::open_array(path);

@@ -40,6 +40,7 @@ export class Boards {
   #board: Board | undefined;
   /** When it was unplugged, by performance.now(). */
   #lostMs = -Infinity;
+  #lostName = "";
   #writing: Promise<void> = Promise.resolve();
 
   /** `link`: the page was opened by it. */
@@ -125,6 +126,8 @@ export class Boards {
   }
 
   async #connect(choose: (events: BoardEvents) => Promise<Board>): Promise<void> {
+    if (this.#stream.parameters.value.get("/recording") === true && !this.#isAwaited())
+      return setText(this.#words, "A recording is going on: end it first.");
     try {
       const baud = Number(this.#baud.value);
       const board = await choose(this.#events(() => this.#board === board));
@@ -132,7 +135,8 @@ export class Boards {
       this.#board = board;
       await board.open(baud);
       this.#endpoint.tell({ board: board.name, baud });
-      if (this.#isAwaited()) return this.#tellReturn();
+      if (this.#isAwaited() && board.name === this.#lostName) return this.#tellReturn();
+      this.#lostMs = -Infinity;
       setText(this.#words, "Listening to the board, for 8 s at most \u2026");
       await this.#lookAtIt(baud);
       setText(this.#words, `Connected: ${board.name}.`);
@@ -145,6 +149,7 @@ export class Boards {
     if (this.#board === undefined) return;
     this.#endpoint.tell({ lost: true });
     await this.#board.close();
+    this.#writing = Promise.resolve();
   }
 
   /** It was unplugged, and the module waits for it to come back. */
@@ -170,6 +175,7 @@ export class Boards {
         name: `link-${checksumOf(this.#wanted)}`,
         layout: this.#wanted.split("\n"),
       });
+    this.#wanted = ""; // it is for one board
     await this.#stream.refresh();
   }
 
@@ -191,6 +197,7 @@ export class Boards {
       lost: () => {
         if (!isOurs()) return;
         this.#lostMs = performance.now();
+        this.#lostName = this.#board?.name ?? "";
         this.#endpoint.tell({ lost: true });
         setText(this.#words, "The board is unplugged: this page waits for it for 10 s.");
       },

@@ -6,7 +6,7 @@ const PIECE_BYTES = 1 << 20;
 
 function textOf(error: unknown): string {
   return error instanceof Refused && error.number === FAILURE.noSpace
-    ? "there is no room left for it; remove files of this page, or free the disk"
+    ? "there is no room left for it: free the disk, or remove this site's data in the browser's settings"
     : String(error instanceof Error ? error.message : error);
 }
 

@@ -15,7 +15,8 @@ export function makeFileList(kept: Kept, tell: (line: string) => void): HTMLElem
   const list = element("ul", { class: "file-list" });
   const entry = (path: string, bytes: number): HTMLElement => {
     const name = path.slice(path.lastIndexOf("/") + 1);
-    const save = (): void => void kept.save(path.slice(1), "", name).catch((error) => tell(errorText(error)));
+    const save = (): void =>
+      void kept.save(encodeURIComponent(path.slice(1)), "", name).catch((error) => tell(errorText(error)));
     return element(
       "li",
       { "data-file": path },

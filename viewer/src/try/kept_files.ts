@@ -128,7 +128,7 @@ class Keeper {
       this.#lastName = Math.max(this.#lastName, Number(name));
       const content = await this.#content(opener);
       const head = content.head();
-      if (head === undefined) this.#free.push(content);
+      if (head === undefined) content.keepAs(undefined);
       else kept.push({ ...head, content, modifiedMs: (await content.file()).lastModified });
     }
     kept.sort((one, other) => other.generation - one.generation);
@@ -154,8 +154,13 @@ class Keeper {
     const bytes = new Uint8Array(file.content.size());
     file.content.read(bytes, 0);
     const content = this.take();
-    content.write(bytes, 0);
-    content.keepAs(file.path);
+    try {
+      content.write(bytes, 0);
+      content.keepAs(file.path);
+    } catch (error) {
+      content.keepAs(undefined);
+      throw error;
+    }
     file.content = content;
   }
 
@@ -178,11 +183,12 @@ function addWithFolders(files: Files, path: string, content: Content): File {
 
 /** Holds the lock as long as the page is open. */
 function takeLock(): Promise<boolean> {
-  return new Promise((answer) => {
-    void navigator.locks.request(LOCK, { ifAvailable: true }, (lock) => {
+  return new Promise((answer, refused) => {
+    const held = navigator.locks.request(LOCK, { ifAvailable: true }, (lock) => {
       answer(lock !== null);
       return lock === null ? undefined : new Promise(() => undefined);
     });
+    held.catch(refused);
   });
 }
 

@@ -16,7 +16,7 @@ export function makeLinkPanel({ layout, baud }: BoardLink, use: () => void): HTM
     element(
       "p",
       {},
-      `It says how bytes become readings${baud === undefined ? "" : `, at ${baud} baud`}, and nothing else.`,
+      `It says how bytes become readings${baud === undefined ? "" : `, at ${baud} baud`}, and with start or request what is sent to the board.`,
     ),
     element("pre", { class: "first-bytes link-layout", tabindex: 0, "aria-label": "The layout" }, layout),
     element(

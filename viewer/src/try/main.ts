@@ -14,7 +14,7 @@ import { ModuleEndpoint } from "./module_endpoint";
 import { OpenControls } from "./open_controls";
 
 declare global {
-  /** Of try.html: the module, and the model of the sheet. */
+  /** The module and the model of the sheet, from try.html. */
   var dermisFiles: Promise<[WebAssembly.Module, ArrayBuffer]>;
 }
 
@@ -30,25 +30,33 @@ function keepForOffline(): void {
   navigator.serviceWorker?.register("offline.js").catch(() => undefined);
 }
 
-/** Taken out of the address: views have theirs there. */
-async function takeLink(): Promise<BoardLink | undefined> {
+/** Taken out of the address: views have theirs there. A text: why there is none. */
+async function takeLink(): Promise<BoardLink | string | undefined> {
   const { hash, pathname, search } = window.location;
-  const link = await boardLinkOf(hash);
+  const link = await boardLinkOf(hash).catch(errorText);
   if (link !== undefined) window.history.replaceState(null, "", pathname + search);
   return link;
 }
 
 try {
-  const link = await takeLink();
+  const taken = await takeLink();
+  const link = typeof taken === "string" ? undefined : taken;
   const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
   const isRehearsal = new URLSearchParams(location.search).has("rehearsal");
-  const note = element("p", { role: "status", "data-role": "files-note" });
+  const note = element("p", { role: "status", "data-role": "files-note" }, typeof taken === "string" ? taken : "");
   const endpoint = new ModuleEndpoint(worker, globalThis.dermisFiles, isRehearsal, showInstead, (words) =>
     setText(note, words),
   );
   const app = new App(endpoint);
+  const isRecording = (): boolean => app.stream.parameters.value.get("/recording") === true;
+  app.stream.parameters.follow(() => {
+    if (isRecording()) void navigator.storage?.persist?.().catch(() => undefined);
+  });
   const controls = new OpenControls(
-    (file) => endpoint.openFile(file),
+    (file) => {
+      if (isRecording()) setText(note, "A recording is going on: end it first.");
+      else endpoint.openFile(file);
+    },
     () => endpoint.goLive(),
   );
   app.stream.playback.follow((playback) => controls.showPlayed(playback !== undefined));

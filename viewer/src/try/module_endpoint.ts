@@ -104,7 +104,7 @@ export class ModuleEndpoint implements Endpoint {
       this.#ask({ id, path: `/${path}` });
     });
     if (failure === undefined) return document;
-    this.#failed(failure);
+    if (path === "suit.json") this.#failed(failure);
     throw new Error(failure);
   }
 

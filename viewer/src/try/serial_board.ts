@@ -42,6 +42,7 @@ export class SerialBoard implements Board {
   /** Until it is closed by this page. */
   #isWanted = false;
   #reader: ReadableStreamDefaultReader<Uint8Array<ArrayBuffer>> | undefined;
+  #writer: WritableStreamDefaultWriter<Uint8Array<ArrayBuffer>> | undefined;
   #reading: Promise<void> = Promise.resolve();
   readonly #plugged = (event: Event): void => void this.#come(event.target as Port);
 
@@ -76,10 +77,12 @@ export class SerialBoard implements Board {
 
   async write(bytes: Uint8Array<ArrayBuffer>): Promise<void> {
     const writer = this.#port.writable?.getWriter();
+    this.#writer = writer;
     try {
       await writer?.write(bytes);
     } finally {
       writer?.releaseLock();
+      this.#writer = undefined;
     }
   }
 
@@ -97,6 +100,7 @@ export class SerialBoard implements Board {
 
   async #shut(): Promise<void> {
     this.#isWanted = false;
+    void this.#writer?.abort().catch(() => undefined); // one that waits for the board holds the port
     await this.#reader?.cancel().catch(() => undefined);
     await this.#reading;
     await this.#port.close().catch(() => undefined); // it may be gone

@@ -368,10 +368,9 @@ function direntOf(name: string, next: number, entry: Entry): Uint8Array {
 
 function numberOf(error: unknown): number {
   if (error instanceof Refused) return error.number;
-  if (error instanceof DOMException) {
-    return error.name === "QuotaExceededError" ? FAILURE.noSpace : FAILURE.inputOrOutput;
-  }
-  if (error instanceof RangeError) return FAILURE.noSpace; // of the memory
+  const isFull = error instanceof RangeError || (error as Error).name === "QuotaExceededError"; // memory, or disk
+  if (isFull) return FAILURE.noSpace;
+  if (error instanceof DOMException) return FAILURE.inputOrOutput;
   throw error;
 }
 

@@ -32,7 +32,7 @@ async function begin(code: WebAssembly.Module, model: ArrayBuffer, isRehearsal: 
     const hasChanged = made.work();
     send(made);
     for (let request = made.boardRequest(); request !== undefined; request = made.boardRequest()) postMessage(request);
-    if (hasChanged) leaveClient(opened.lost ?? "");
+    if (hasChanged && client !== undefined) leaveClient(client, opened.lost ?? "");
     workedMs = performance.now();
   }, WORK_MS);
   void keepSettled();
@@ -40,9 +40,9 @@ async function begin(code: WebAssembly.Module, model: ArrayBuffer, isRehearsal: 
 }
 
 /** The server is another one: the client connects anew. */
-function leaveClient(note: string): void {
+function leaveClient(port: MessagePort, note: string): void {
   tell({ note });
-  client?.postMessage(SERVER_HAS_CHANGED);
+  port.postMessage(SERVER_HAS_CHANGED);
   client = undefined;
 }
 
@@ -84,8 +84,9 @@ function fileList(): string {
   return JSON.stringify(files.sort());
 }
 
-async function documentOf(path: string): Promise<string | Blob | undefined> {
+async function documentOf(encoded: string): Promise<string | Blob | undefined> {
   const module = await begun;
+  const path = decodeURIComponent(encoded);
   if (path === `/${FILE_LIST}`) return fileList();
   return module.document(path) ?? (await blobOf(pageFiles.files, module.file(path) ?? path));
 }
@@ -105,16 +106,27 @@ async function open(file: File): Promise<void> {
     const module = await begun;
     module.open(await keepDropped(pageFiles.files, file));
   } catch (error) {
+    if (error instanceof WebAssembly.RuntimeError) throw error;
     tell({ note: errorText(error) });
   }
 }
+
+/** One after the other: a model may be for the table behind it. */
+let opening = Promise.resolve();
+
+/** A module that has ended cannot go on: the page is told why. */
+addEventListener("unhandledrejection", ({ reason }) => {
+  setTimeout(() => {
+    throw reason;
+  });
+});
 
 addEventListener("message", ({ data }: MessageEvent<Question>) => {
   if ("module" in data) resolveBegun(begin(data.module, data.model, data.isRehearsal));
   else if ("port" in data)
     connect(data.port).catch(() => undefined); // the question for suit.json tells why
   else if ("id" in data) void answer(data.id, data.path);
-  else if ("opened" in data) void open(data.opened);
+  else if ("opened" in data) opening = opening.then(() => open(data.opened));
   else if ("goLive" in data) void begun.then((module) => module.goLive());
   else void begun.then((module) => hear(module, data));
 });

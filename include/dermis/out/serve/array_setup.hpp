@@ -48,7 +48,7 @@ class ArraySetup {
 
   /// In the place of run(), where there is one thread: empty as long as no client has described the array.
   [[nodiscard]] std::optional<DescribedArray> described();
-  /// Of the same thread: the source that is being described, with the layout that was chosen for it; empty: none.
+  /// The source that is being described, with its layout; empty: none. For that one thread.
   [[nodiscard]] std::string source() const;
 
  private:

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/out/serve/array_setup.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <chrono>
 #include <functional>
@@ -253,7 +253,7 @@ class ArraySetup::Implementation {
     if (!request) return request.error();
     const Result<std::string> name = request->file_name("name");
     if (!name) return name.error();
-    const Result<std::string> layout = wanted_layout(*request);
+    const Result<std::string> layout = wanted_layout(*request, unread_);
     if (!layout) return layout.error();
     if (Status made = make_array_folder(*name); !made) return made.error();
     const std::string file = *name + "/layout.toml";
@@ -262,17 +262,6 @@ class ArraySetup::Implementation {
     const Result<SourceName> described = SourceName::parse(read_by_layout(from_, file, *array));
     if (!described) return described.error();
     return look_at(*described, *layout);
-  }
-
-  Result<std::string> wanted_layout(const JsonRequest& request) const {
-    const Result<std::optional<std::uint64_t>> place = request.number("place", "that of a proposal");
-    if (!place) return place.error();
-    if (const Result<std::vector<std::string>> lines = request.texts("layout"); lines && !*place) {
-      return fmt::format("{}\n", fmt::join(*lines, "\n"));
-    }
-    const Result<bytes::proposals::Known> known = known_request(request);
-    if (!known) return known.error();
-    return proposed_layout(unread_, *known, place->value_or(0));
   }
 
   /// From now on touch() gives the sent readings; `request` has their shape.

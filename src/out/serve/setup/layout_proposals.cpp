@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "out/serve/setup/layout_proposals.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -90,11 +90,18 @@ std::string layout_proposals(std::span<const std::uint8_t> bytes, const bytes::p
   return json_text(answer);
 }
 
-Result<std::string> proposed_layout(std::span<const std::uint8_t> bytes, const bytes::proposals::Known& known,
-                                    std::uint64_t place) {
-  std::vector<bytes::proposals::Proposal> proposals = bytes::proposals::propose(bytes, known);
-  if (place >= proposals.size()) return bad_input("no such layout reads these bytes");
-  return std::move(proposals[static_cast<std::size_t>(place)].toml);
+Result<std::string> wanted_layout(const JsonRequest& request, std::span<const std::uint8_t> bytes) {
+  const Result<std::optional<std::uint64_t>> place = request.number("place", "that of a proposal");
+  if (!place) return place.error();
+  if (const Result<std::vector<std::string>> lines = request.texts("layout"); lines && !*place) {
+    return fmt::format("{}\n", fmt::join(*lines, "\n"));
+  }
+  const Result<bytes::proposals::Known> known = known_request(request);
+  if (!known) return known.error();
+  std::vector<bytes::proposals::Proposal> proposals = bytes::proposals::propose(bytes, *known);
+  const std::uint64_t number = place->value_or(0);
+  if (number >= proposals.size()) return bad_input("no such layout reads these bytes");
+  return std::move(proposals[static_cast<std::size_t>(number)].toml);
 }
 
 Result<std::string> write_layout(const std::string& toml, const std::string& file) {

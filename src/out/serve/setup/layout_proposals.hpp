@@ -23,9 +23,9 @@ namespace dermis::out::serve {
 /// The bytes are the first 1024, and parts are of these.
 [[nodiscard]] std::string layout_proposals(std::span<const std::uint8_t> bytes, const bytes::proposals::Known& known);
 
-/// The layout at that place, as TOML.
-[[nodiscard]] Result<std::string> proposed_layout(std::span<const std::uint8_t> bytes,
-                                                  const bytes::proposals::Known& known, std::uint64_t place);
+/// The layout that a client chooses, as TOML: {"layout": [line, ...]}, or {"place": 0} among layout_proposals() of
+/// `bytes`, and what it knows.
+[[nodiscard]] Result<std::string> wanted_layout(const JsonRequest& request, std::span<const std::uint8_t> bytes);
 
 /// Writes a layout as `file`, where no other one may be. Returns the name of its first array; empty where it has but
 /// one.
