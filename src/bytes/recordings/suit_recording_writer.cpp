@@ -120,8 +120,7 @@ Result<bool> SuitRecordingWriter::Implementation::try_write(std::size_t index, c
   } else {
     array.written.encode(frame, nullptr);
   }
-  Result<bool> added =
-      writing_.try_add([&](McapWriter& mcap) { array.written.add_to(mcap); }, writing_.most_chunks());
+  Result<bool> added = writing_.try_add([&](McapWriter& mcap) { array.written.add_to(mcap); }, writing_.most_chunks());
   const bool is_left_out = added && !*added;
   array.lost += frame.acquisition.lost_before + (is_left_out ? 1 : 0);
   array.left_out = is_left_out ? array.left_out + frame.acquisition.lost_before + 1 : 0;
