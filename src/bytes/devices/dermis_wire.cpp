@@ -36,13 +36,8 @@ constexpr unsigned kSequenceBits = 32;
 constexpr std::uint32_t kMaxLost = 1'000'000;
 
 std::uint32_t crc_of(Bytes bytes) {
-  static const layouts::ChecksumOf kCrc32({.kind = layouts::Checksum::Kind::crc,
-                                           .polynomial = 0x04C11DB7U,
-                                           .initial = 0xFFFFFFFFU,
-                                           .final_xor = 0xFFFFFFFFU,
-                                           .is_reflected = true},
-                                          32);
-  return kCrc32(bytes);
+  static const layouts::ChecksumOf kCrcOf(layouts::kCrc32, 32);
+  return kCrcOf(bytes);
 }
 
 std::size_t packet_size(const FrameShape& shape) {

@@ -101,7 +101,7 @@ const std::array<KnownChecksum, 12>& known_checksums() {
       {"crc16-xmodem", 16, crc(0x1021, 0, 0, false)},
       {"crc16-modbus", 16, crc(0x8005, 0xFFFF, 0, true)},
       {"crc16-kermit", 16, crc(0x1021, 0, 0, true)},
-      {"crc32", 32, crc(0x04C11DB7, 0xFFFFFFFF, 0xFFFFFFFF, true)},
+      {"crc32", 32, kCrc32},
   }};
   return kAll;
 }

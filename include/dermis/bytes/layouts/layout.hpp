@@ -97,6 +97,13 @@ struct Checksum {
   bool is_negated = false;       ///< Sums: all bytes and the checksum add up to 0.
 };
 
+/// CRC-32 as in zlib, of 32 bits.
+inline constexpr Checksum kCrc32{.kind = Checksum::Kind::crc,
+                                 .polynomial = 0x04C11DB7U,
+                                 .initial = 0xFFFFFFFFU,
+                                 .final_xor = 0xFFFFFFFFU,
+                                 .is_reflected = true};
+
 /// A field of a packet.
 struct PacketField {
   Role role = Role::literal;
