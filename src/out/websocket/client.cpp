@@ -9,6 +9,7 @@ namespace dermis::out::websocket {
 namespace {
 
 constexpr std::size_t kMostSubscriptions = 10'000;
+constexpr std::size_t kMostMoments = 8;  // frames that arrays are sending at once
 constexpr int kErrorLevel = 2;
 
 using Names = std::set<std::string, std::less<>>;
@@ -85,23 +86,30 @@ Status Client::receive(std::span<const std::uint8_t> bytes, bool is_text) {
   return Done{};
 }
 
-void Client::begin_moment() {
-  // Old messages that were dropped meanwhile may leave less than there was.
-  if (takes_pictures_) moment_bytes_ = queue_.binary_bytes() - std::min(moment_begin_, queue_.binary_bytes());
-  moment_begin_ = queue_.binary_bytes();
-  takes_pictures_ = is_asking_ || taken_.is_open(moment_begin_, moment_bytes_);
-}
-
 void Client::publish(ChannelId channel, Nanos log_time, const SharedBytes& bytes, MessageKind kind,
                      ServerStatistics& statistics) {
   const auto subscription = subscription_of_.find(channel);
   if (subscription == subscription_of_.end()) return;
-  if (kind == MessageKind::picture && !takes_pictures_) {
+  if (kind == MessageKind::picture && !takes_picture(channel, log_time)) {
     ++statistics.dropped;
     return;
   }
   statistics.dropped += queue_.push_data(subscription->second, log_time, bytes);
   ++statistics.messages;
+}
+
+/// As its moment was when it began.
+bool Client::takes_picture(ChannelId channel, Nanos time) {
+  const auto known = std::ranges::find(moments_, time, &Moment::time);
+  if (known != moments_.end() && known->first != channel) return known->is_taken;
+  // Old messages that were dropped meanwhile may leave less than there was.
+  const std::uint64_t bytes = queue_.binary_bytes();
+  if (!moments_.empty() && moments_.back().is_taken) moment_bytes_ = bytes - std::min(moment_begin_, bytes);
+  moment_begin_ = bytes;
+  if (known != moments_.end()) moments_.erase(known);
+  if (moments_.size() == kMostMoments) moments_.pop_front();
+  moments_.push_back({time, channel, is_asking_ || taken_.is_open(bytes, moment_bytes_)});
+  return moments_.back().is_taken;
 }
 
 void Client::send_parameters(std::span<const Parameter> all) {

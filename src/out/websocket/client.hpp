@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <optional>
@@ -59,9 +60,8 @@ class Client {
   /// A message of the client, which asks once at most. An error: it does not speak the protocol.
   [[nodiscard]] Status receive(std::span<const std::uint8_t> bytes, bool is_text);
 
-  /// Messages of one moment come: pictures among them are left out where the client is behind.
-  void begin_moment();
-  /// Queues the message where the client has subscribed to the channel; messages and drops are counted on.
+  /// Queues the message where the client has subscribed to the channel; messages and drops are counted on. Where the
+  /// client is behind, pictures are left out: all those of a time, or none.
   void publish(ChannelId channel, Nanos log_time, const SharedBytes& bytes, MessageKind kind,
                ServerStatistics& statistics);
   void send_parameters(std::span<const Parameter> all);
@@ -86,6 +86,14 @@ class Client {
   void ask(Question question);
   void follow(const FollowParameters& request, std::span<const Parameter> all);
 
+  /// Its pictures of one time, which may come piece by piece, and those of other arrays between.
+  struct Moment {
+    Nanos time{};
+    ChannelId first = 0;  // where this channel comes again, a new moment begins
+    bool is_taken = true;
+  };
+  [[nodiscard]] bool takes_picture(ChannelId channel, Nanos time);
+
   const Offer& offer_;
   std::string address_;
   bool is_sdk_;
@@ -98,7 +106,7 @@ class Client {
   std::map<ChannelId, std::uint32_t> subscription_of_;  // by channel; one each
   std::set<std::string, std::less<>> followed_;
   TakenWindow taken_;
-  bool takes_pictures_ = true;      // of the present moment
+  std::deque<Moment> moments_;      // the last few
   std::uint64_t moment_begin_ = 0;  // of queue_.binary_bytes()
   std::uint64_t moment_bytes_ = 0;  // of the last moment whose pictures it took
   bool is_asking_ = false;          // its messages meanwhile are not read

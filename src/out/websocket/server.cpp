@@ -314,7 +314,6 @@ void Server::Implementation::hand_out() {
   const auto sessions = std::vector(connected_.clients.begin(), connected_.clients.end());
   for (const auto& session : sessions) {
     if (session->client() == nullptr) continue;  // its handshake goes on
-    session->client()->begin_moment();
     for (const Published& message : published) {
       session->client()->publish(message.channel, message.log_time, message.bytes, message.kind, handed);
     }
