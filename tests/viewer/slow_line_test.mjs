@@ -97,7 +97,8 @@ for (const [kbits, leastFrames] of [
       line.kbits = kbits;
       const says = (words) => page.locator("[data-role=connection]", { hasText: words }).waitFor({ timeout: SAID_MS });
       await page.waitForTimeout(SETTLE_MS);
-      for (const end = Date.now() + DRAINED_MS; !line.isEmpty() && Date.now() < end; ) await page.waitForTimeout(TICK_MS);
+      for (const end = Date.now() + DRAINED_MS; !line.isEmpty() && Date.now() < end; )
+        await page.waitForTimeout(TICK_MS);
       await page.waitForTimeout(SAID_MS);
       const { typical, oldest, frames, words } = await page.evaluate(watchAges, LOOK_MS);
       console.log(`# ${kbits} kbit/s: typically ${typical} s, at most ${oldest} s, ${frames} frames`);
