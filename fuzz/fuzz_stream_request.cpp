@@ -33,7 +33,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const Question& question : questions) question()(client);
   ServerStatistics statistics;
   const auto bytes = std::make_shared<const std::vector<std::uint8_t>>(10);
-  client.begin_moment();
   for (const MessageKind kind : {MessageKind::event, MessageKind::picture}) {
     for (ChannelId channel = 0; channel < 4; ++channel) client.publish(channel, {}, bytes, kind, statistics);
   }

@@ -134,7 +134,6 @@ void Server::Implementation::publish(ChannelId channel, Nanos log_time, std::spa
 
 void Server::Implementation::hand_out() {
   if (!client_ || published_.empty()) return;
-  client_->begin_moment();
   for (const Published& one : std::exchange(published_, {})) {
     client_->publish(one.channel, one.log_time, one.bytes, one.kind, statistics_);
   }

@@ -3,37 +3,14 @@
 // Usage: node accessibility_test.mjs path/to/dermis
 // axe-core finds nothing serious on any view, light or dark, and the Tab key reaches every control.
 import assert from "node:assert/strict";
-import { readFileSync, writeFileSync } from "node:fs";
-import { createRequire } from "node:module";
+import { writeFileSync } from "node:fs";
 import { describe, it } from "node:test";
+import { findings } from "./faults.mjs";
 import { arrayToml, bench, browser, networkDevice, openPage, shown, useBench, VIEWS } from "./harness.mjs";
 
-const AXE = readFileSync(
-  createRequire(new URL("../npm/package.json", import.meta.url)).resolve("axe-core/axe.min.js"),
-  "utf8",
-);
 const MOST_TABS = 200;
 
 useBench();
-
-/** What axe-core finds serious or critical in the light theme, and of the colours of the dark one, a line each. */
-async function findings(page) {
-  const look = async (colorScheme, options) => {
-    await page.emulateMedia({ colorScheme });
-    await page.locator(`html[data-theme=${colorScheme}]`).waitFor();
-    return page.evaluate(run, options);
-  };
-  await page.evaluate(AXE);
-  return [...(await look("light", {})), ...(await look("dark", { runOnly: ["color-contrast"] }))];
-}
-
-async function run(options) {
-  const { violations } = await globalThis.axe.run(document, { resultTypes: ["violations"], ...options });
-  const grave = violations.filter(({ impact }) => impact === "serious" || impact === "critical");
-  return grave.flatMap(({ id, nodes }) =>
-    nodes.map(({ target, failureSummary }) => `${id}: ${target.join(" ")}: ${failureSummary.split("\n")[1]?.trim()}`),
-  );
-}
 
 const showArray = (command, test) => shown(command, "array", test);
 

@@ -5,6 +5,7 @@
 import assert from "node:assert/strict";
 import { writeFileSync } from "node:fs";
 import { it } from "node:test";
+import { faultsOfBoxes, SIZES } from "./faults.mjs";
 import {
   arrayToml,
   assertUnhurt,
@@ -20,13 +21,6 @@ import {
   WAIT_MS,
 } from "./harness.mjs";
 
-const SIZES = [
-  { width: 390, height: 844 },
-  { width: 768, height: 1024 },
-  { width: 1280, height: 720 },
-  { width: 1440, height: 900 },
-  { width: 1920, height: 1080 },
-];
 const ARRAYS = ["chest", "back", "left_arm", "right_arm", "left_shoulder"];
 const CONTACTS = 12;
 const SIDE = 16;
@@ -72,73 +66,6 @@ base_from_array = {translation_mm = [${180 * index}, 0, 0]}
     device.close();
   };
   return { url: server.url, stop };
-}
-
-/** In the page: what is wrong with its boxes, a line each. */
-function faultsOfBoxes() {
-  const SLACK = 1.5;
-  const style = (target) => getComputedStyle(target);
-  const ancestors = (target) => {
-    const found = [];
-    for (let one = target; one !== null && one !== document.documentElement; one = one.parentElement) found.push(one);
-    return found;
-  };
-  const faults = [];
-  const boxes = [];
-  const words = (target) =>
-    `<${target.tagName.toLowerCase()} ${target.className}> ${(target.value ?? target.textContent).trim().slice(0, 30)}`;
-  /** What is seen of a box; undefined where it is scrolled away. */
-  const seen = (box, owner) => {
-    let { left, top, right, bottom } = box;
-    for (const ancestor of ancestors(owner)) {
-      const { overflowX, overflowY } = style(ancestor);
-      if (overflowX === "visible" && overflowY === "visible") continue;
-      const room = ancestor.getBoundingClientRect();
-      const isCut = right > room.right + SLACK || left < room.left - SLACK;
-      const scrolls = overflowX === "auto" || overflowX === "scroll";
-      const isShortened = ancestors(owner).some((one) => style(one).textOverflow === "ellipsis");
-      if (isCut && !scrolls && !isShortened && ancestor !== document.body) faults.push(`cut: ${words(owner)}`);
-      [left, right] = [Math.max(left, room.left), Math.min(right, room.right)];
-      [top, bottom] = [Math.max(top, room.top), Math.min(bottom, room.bottom)];
-    }
-    return right - left > SLACK && bottom - top > SLACK ? { left, top, right, bottom } : undefined;
-  };
-  const add = (box, owner) => {
-    if (box.width === 0 || box.height === 0) return;
-    const part = seen(box, owner);
-    if (part === undefined) return;
-    if (part.right > innerWidth + SLACK || part.left < -SLACK) faults.push(`beyond the page: ${words(owner)}`);
-    boxes.push({ ...part, owner });
-  };
-  const isLeftOut = (target) =>
-    target.closest(".only-spoken, .messages, .suit-room, .uplot, dialog, option, [hidden]") !== null ||
-    style(target).visibility === "hidden";
-  const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
-  for (let text = texts.nextNode(); text !== null; text = texts.nextNode()) {
-    const owner = text.parentElement;
-    if (text.data.trim() === "" || isLeftOut(owner)) continue;
-    const range = document.createRange();
-    range.selectNodeContents(text);
-    for (const box of range.getClientRects()) add(box, owner);
-  }
-  for (const control of document.querySelectorAll("input, select, button"))
-    if (!isLeftOut(control)) add(control.getBoundingClientRect(), control);
-  boxes.forEach((one, index) => {
-    for (const other of boxes.slice(index + 1)) {
-      if (one.owner.contains(other.owner) || other.owner.contains(one.owner)) continue;
-      const width = Math.min(one.right, other.right) - Math.max(one.left, other.left);
-      const height = Math.min(one.bottom, other.bottom) - Math.max(one.top, other.top);
-      if (width > SLACK && height > SLACK) faults.push(`${words(one.owner)} lies over ${words(other.owner)}`);
-    }
-  });
-  const map = document.querySelector(".map-panel:not([hidden]) .map-plot, .calibration-picture");
-  if (map !== null && Math.min(map.clientWidth, map.clientHeight) < 150)
-    faults.push(`the map has ${map.clientWidth}x${map.clientHeight} px`);
-  const { scrollHeight } = document.documentElement;
-  if (innerWidth > 1000 && scrollHeight > innerHeight) faults.push(`the page is ${scrollHeight} px high`);
-  if (document.documentElement.scrollWidth > innerWidth)
-    faults.push(`the page is ${document.documentElement.scrollWidth} px wide`);
-  return [...new Set(faults)];
 }
 
 /** Before the page: keeps where the labels of contacts are written on the maps since they were drawn anew. */

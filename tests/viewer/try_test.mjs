@@ -4,6 +4,7 @@
 // The page of site/try in a real browser: dermis in a worker, in the place of a server.
 import assert from "node:assert/strict";
 import { describe, it } from "node:test";
+import { faultsOfBoxes, findings, SIZES } from "./faults.mjs";
 import { assertUnhurt, becomes, eventually, openPage, part, tareAnyway } from "./harness.mjs";
 import { change, site, useSite } from "./try_page.mjs";
 
@@ -55,6 +56,23 @@ describe("the page of site/try", () => {
     await part(page, "notice").filter({ hasText: "/stream/rate_hz: must be 1 to 1000" }).waitFor();
     await page.keyboard.press("Escape");
     await tareAnyway(page);
+    assertUnhurt(page);
+    await page.close();
+  });
+
+  it("has panels of its own in which axe-core finds nothing serious and that lie over nothing", async () => {
+    const page = await openPage(site.browser, `${site.url}#/array`);
+    await becomes(page, "live");
+    await page.locator("[data-contact]").first().waitFor();
+    for (const part of await page.locator("[data-role=about] summary").all()) await part.click();
+    const found = {};
+    for (const size of SIZES) {
+      await page.setViewportSize(size);
+      await page.waitForTimeout(400);
+      const lines = [...(await findings(page)), ...(await page.evaluate(faultsOfBoxes))];
+      if (lines.length > 0) found[size.width] = lines;
+    }
+    assert.deepEqual(found, {});
     assertUnhurt(page);
     await page.close();
   });
