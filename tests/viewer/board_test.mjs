@@ -356,6 +356,27 @@ describe("a board at the page of site/try", () => {
     await context.close();
   });
 
+  it("is heard by the characteristic that the user chooses, where several notify", async () => {
+    const context = await site.browser.newContext();
+    await context.addInitScript(standInForBluetooth);
+    const page = await openPage(context, site.url);
+    await becomes(page, "live");
+    await page.evaluate((text) => {
+      radio.addSilent();
+      radio.bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+    }, mat(20).toString("base64"));
+    await page.getByText("Other ways").click();
+    await part(page, "connect-bluetooth").click();
+    await page.getByLabel("Characteristic").selectOption("6e400003-b5a3-f393-e0a9-e50e24dcca9e");
+    await says(page, "Connected: Mat");
+    await page.locator("#array-rows").fill("12");
+    await page.locator("#array-cols").fill("10");
+    await describeArray(page);
+    await isLive(page);
+    assertUnhurt(page);
+    await context.close();
+  });
+
   it("is read at USB without a driver, and again when it is chosen again", async () => {
     const context = await site.browser.newContext();
     await context.addInitScript(standInForUsb);

@@ -225,6 +225,11 @@ export function standInForBluetooth() {
   class Characteristic extends EventTarget {
     value = undefined;
     isNotifying = false;
+    constructor(uuid, notify) {
+      super();
+      this.uuid = uuid;
+      this.properties = { notify, indicate: false };
+    }
     async startNotifications() {
       this.isNotifying = true;
       return this;
@@ -233,16 +238,18 @@ export function standInForBluetooth() {
       radio.heard += new TextDecoder().decode(bytes);
     }
   }
-  const notify = new Characteristic();
-  const characteristics = new Map([
-    ["6e400003-b5a3-f393-e0a9-e50e24dcca9e", notify],
-    ["6e400002-b5a3-f393-e0a9-e50e24dcca9e", new Characteristic()],
-  ]);
-  const found = (map, uuid, what) => {
-    if (!map.has(uuid)) throw failure("NotFoundError", `No ${what} matching UUID ${uuid} found.`);
-    return map.get(uuid);
+  const notify = new Characteristic("6e400003-b5a3-f393-e0a9-e50e24dcca9e", true);
+  const characteristics = [notify, new Characteristic("6e400002-b5a3-f393-e0a9-e50e24dcca9e", false)];
+  const found = (all, uuid, what) => {
+    const one = all.find((candidate) => candidate.uuid === uuid);
+    if (one === undefined) throw failure("NotFoundError", `No ${what} matching UUID ${uuid} found.`);
+    return one;
   };
-  const service = { getCharacteristic: async (uuid) => found(characteristics, uuid, "Characteristics") };
+  const service = {
+    uuid: SERVICE,
+    getCharacteristic: async (uuid) => found(characteristics, uuid, "Characteristics"),
+    getCharacteristics: async () => characteristics,
+  };
   const device = new EventTarget();
   device.name = "Mat";
   device.gatt = {
@@ -253,13 +260,15 @@ export function standInForBluetooth() {
       return device.gatt;
     },
     disconnect: () => radio.cut(),
-    getPrimaryService: async (uuid) => found(new Map([[SERVICE, service]]), uuid, "Services"),
+    getPrimaryService: async (uuid) => found([service], uuid, "Services"),
   };
   const radio = {
     isInReach: true,
     heard: "",
     bytes: new Uint8Array(),
     sent: 0,
+    /** Before that of the bytes the service has a characteristic that never notifies. */
+    addSilent: () => characteristics.unshift(new Characteristic("0000ffe1-0000-1000-8000-00805f9b34fb", true)),
     /** It is out of reach, or was let go. */
     cut() {
       if (!device.gatt.connected) return;

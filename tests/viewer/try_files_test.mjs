@@ -102,6 +102,30 @@ it("tells a second tab that another has the files", async () => {
   await context.close();
 });
 
+it("removes a file that nothing has open, once the user has confirmed it", async () => {
+  const context = await site.browser.newContext();
+  const page = await live(context);
+  page.on("dialog", (dialog) => dialog.accept());
+  await record(page, "old");
+  await page.keyboard.press("Escape");
+  await page.getByText("Files of this page").click();
+  const remove = page.getByRole("button", { name: "Remove old.mcap" });
+  await remove.click();
+  await part(page, "files-note").filter({ hasText: "recordings/old.mcap is in use." }).waitFor();
+  await page.keyboard.press("s");
+  await end(page);
+  await page.keyboard.press("Escape");
+  await remove.click();
+  await remove.waitFor({ state: "detached" });
+  await page.reload();
+  await becomes(page, "live");
+  await page.keyboard.press("s");
+  await part(page, "begin-recording").waitFor();
+  assert.equal(await row(page, "old.mcap").count(), 0);
+  assertUnhurt(page);
+  await context.close();
+});
+
 const open = (page, ...path) => part(page, "chosen-file").setInputFiles(join(site.folder, ...path));
 const told = (page, words) => part(page, "files-note").filter({ hasText: words }).waitFor();
 

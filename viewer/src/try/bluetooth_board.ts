@@ -4,12 +4,15 @@ import { adviceOn, type Board, type BoardEvents } from "./board";
 
 /** The part of Web Bluetooth that is used (https://webbluetoothcg.github.io/web-bluetooth). */
 interface Characteristic extends EventTarget {
+  readonly uuid: string;
+  readonly properties: { readonly notify: boolean; readonly indicate: boolean };
   readonly value: DataView<ArrayBuffer> | undefined;
   startNotifications(): Promise<unknown>;
   writeValueWithoutResponse(bytes: Uint8Array<ArrayBuffer>): Promise<void>;
 }
 interface Service {
   getCharacteristic(uuid: string): Promise<Characteristic>;
+  getCharacteristics(): Promise<Characteristic[]>;
 }
 interface Server {
   connect(): Promise<Server>;
@@ -20,23 +23,13 @@ interface Device extends EventTarget {
   readonly name?: string;
   readonly gatt?: Server;
 }
-interface Bluetooth {
+export interface Bluetooth {
   requestDevice(options: { filters: { services: string[] }[] }): Promise<Device>;
 }
 
-/** Where the bytes are; `write` empty: it cannot be asked. */
-export interface Place {
-  service: string;
-  notify: string;
-  write: string;
-}
-
-/** The UART service of Nordic, which most firmware has. */
-export const NORDIC_UART: Place = {
-  service: "6e400001-b5a3-f393-e0a9-e50e24dcca9e",
-  notify: "6e400003-b5a3-f393-e0a9-e50e24dcca9e",
-  write: "6e400002-b5a3-f393-e0a9-e50e24dcca9e",
-};
+/** The UART service of Nordic, which most firmware has, and its characteristic that takes bytes. */
+export const NORDIC_UART = "6e400001-b5a3-f393-e0a9-e50e24dcca9e";
+const NORDIC_WRITE = "6e400002-b5a3-f393-e0a9-e50e24dcca9e";
 
 const MOST_WRITTEN = 20; // bytes at once, of every device
 const AGAIN_MS = 500;
@@ -52,11 +45,14 @@ export function uuidOf(text: string): string {
   return short === undefined ? word : `0000${short}-0000-1000-8000-00805f9b34fb`;
 }
 
-/** A board that notifies its bytes by Bluetooth. One that is out of reach is connected again when it is back. */
+/** A board that notifies its bytes by Bluetooth; only one with NORDIC_UART can be asked for them. One that is out of reach is connected again when it is back. */
 export class BluetoothBoard implements Board {
   readonly #device: Device;
-  readonly #place: Place;
+  readonly #service: string;
   readonly #events: BoardEvents;
+  #notify: string;
+  /** Characteristics that notify, once it is open. */
+  notifying: string[] = [];
   #asks: Characteristic | undefined;
   /** Until it is closed by this page. */
   #isWanted = false;
@@ -65,17 +61,24 @@ export class BluetoothBoard implements Board {
     if (value !== undefined) this.#events.bytes(new Uint8Array(value.buffer, value.byteOffset, value.byteLength));
   };
 
-  private constructor(device: Device, place: Place, events: BoardEvents) {
+  /** `notify` empty: the first that there is. */
+  private constructor(device: Device, service: string, notify: string, events: BoardEvents) {
     this.#device = device;
-    this.#place = place;
+    this.#service = service;
+    this.#notify = notify;
     this.#events = events;
     device.addEventListener("gattserverdisconnected", () => void this.#lose());
   }
 
   /** Lets the user choose a device that has the service. */
-  static async choose(bluetooth: Bluetooth, place: Place, events: BoardEvents): Promise<BluetoothBoard> {
-    const device = await bluetooth.requestDevice({ filters: [{ services: [place.service] }] });
-    return new BluetoothBoard(device, place, events);
+  static async choose(bluetooth: Bluetooth, service: string, events: BoardEvents): Promise<BluetoothBoard> {
+    const device = await bluetooth.requestDevice({ filters: [{ services: [service] }] });
+    return new BluetoothBoard(device, service, "", events);
+  }
+
+  /** The same device, not open, of which another characteristic is heard. */
+  hearing(notify: string, events: BoardEvents): BluetoothBoard {
+    return new BluetoothBoard(this.#device, this.#service, notify, events);
   }
 
   get name(): string {
@@ -105,9 +108,14 @@ export class BluetoothBoard implements Board {
 
   async #begin(): Promise<void> {
     const server = await this.#device.gatt!.connect();
-    const service = await server.getPrimaryService(this.#place.service);
-    this.#asks = this.#place.write === "" ? undefined : await service.getCharacteristic(this.#place.write);
-    const tells = await service.getCharacteristic(this.#place.notify);
+    const service = await server.getPrimaryService(this.#service);
+    this.#asks = this.#service === NORDIC_UART ? await service.getCharacteristic(NORDIC_WRITE) : undefined;
+    const found = await service.getCharacteristics();
+    const telling = found.filter(({ properties }) => properties.notify || properties.indicate);
+    this.notifying = telling.map(({ uuid }) => uuid);
+    const tells = telling.find(({ uuid }) => uuid === this.#notify) ?? telling[0];
+    if (tells === undefined) throw new Error("no characteristic of this service notifies");
+    this.#notify = tells.uuid;
     tells.addEventListener("characteristicvaluechanged", this.#heard);
     await tells.startNotifications();
   }

@@ -5,7 +5,8 @@ import { errorText } from "../format";
 import { BAUDS, USUAL_BAUD } from "../setup/source_choice";
 import type { Stream } from "../stream/stream";
 import type { Suit } from "../suit";
-import { BluetoothBoard, bluetoothOf, NORDIC_UART, uuidOf } from "./bluetooth_board";
+import { bluetoothOf } from "./bluetooth_board";
+import { makeBluetoothWay } from "./bluetooth_way";
 import { type Board, type BoardEvents, isNoChoice } from "./board";
 import { type BoardLink, checksumOf, hashOf } from "./board_link";
 import { makeLinkPanel } from "./link_panel";
@@ -100,28 +101,14 @@ export class Boards {
   #byOtherWays(): HTMLElement[] {
     const [bluetooth, usb] = [bluetoothOf(navigator), usbOf(navigator)];
     const ways: HTMLElement[] = [];
-    if (bluetooth !== undefined) {
-      const [service, notify] = [uuidField("service", NORDIC_UART.service), uuidField("notify", NORDIC_UART.notify)];
-      const place = (): typeof NORDIC_UART => {
-        const chosen = { service: uuidOf(service.value), notify: uuidOf(notify.value) };
-        return { ...chosen, write: chosen.service === NORDIC_UART.service ? NORDIC_UART.write : "" };
-      };
-      const choose = (events: BoardEvents): Promise<Board> => BluetoothBoard.choose(bluetooth, place(), events);
-      ways.push(
-        button("By Bluetooth", () => void this.#connect(choose), { "data-role": "connect-bluetooth" }),
-        element("label", { for: service.id }, "Service"),
-        service,
-        element("label", { for: notify.id }, "Characteristic"),
-        notify,
-      );
-    }
+    if (bluetooth !== undefined) ways.push(...makeBluetoothWay(bluetooth, (choose) => this.#connect(choose)));
     if (usb !== undefined) {
       const choose = (events: BoardEvents): Promise<Board> => UsbBoard.choose(usb, events);
       ways.push(button("By USB, without a driver", () => void this.#connect(choose), { "data-role": "connect-usb" }));
     }
     if (ways.length === 0) return [];
     return [
-      element("details", {}, element("summary", {}, "Other ways"), element("div", { class: "other-ways" }, ...ways)),
+      element("details", {}, element("summary", {}, "Other ways"), element("div", { class: "setup-row" }, ...ways)),
     ];
   }
 
@@ -233,14 +220,4 @@ export class Boards {
   #then(act: () => Promise<void>): void {
     this.#writing = this.#writing.then(act).catch((error: unknown) => setText(this.#words, errorText(error)));
   }
-}
-
-function uuidField(name: string, value: string): HTMLInputElement {
-  return element("input", {
-    id: `bluetooth-${name}`,
-    class: "field uuid",
-    value,
-    autocomplete: "off",
-    spellcheck: "false",
-  });
 }

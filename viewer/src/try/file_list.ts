@@ -3,25 +3,26 @@
 import { button, element } from "../dom";
 import { errorText } from "../format";
 import { sizeText } from "../take/save_file";
-import { FILE_LIST } from "./module_endpoint";
+import { FILE_LIST, type ModuleEndpoint } from "./module_endpoint";
 
-interface Kept {
-  fetch(path: string): Promise<Response>;
-  save(path: string, token: string, name: string): Promise<void>;
-}
-
-/** The files of the page, each of which can be saved: models, array.toml, recordings. Read when it is opened. */
-export function makeFileList(kept: Kept, tell: (line: string) => void): HTMLElement {
+/** The files of the page, each of which can be saved and removed: models, array.toml, recordings. Read when it is opened. */
+export function makeFileList(kept: ModuleEndpoint, tell: (line: string) => void): HTMLElement {
   const list = element("ul", { class: "file-list" });
   const entry = (path: string, bytes: number): HTMLElement => {
     const name = path.slice(path.lastIndexOf("/") + 1);
     const save = (): void =>
       void kept.save(encodeURIComponent(path.slice(1)), "", name).catch((error) => tell(errorText(error)));
+    const remove = (): void => {
+      if (!window.confirm(`Remove ${name} for good?`)) return;
+      kept.remove(path).then(read, (error) => tell(errorText(error)));
+    };
     return element(
       "li",
       { "data-file": path },
       `${path.slice(1)}, ${sizeText(bytes)} `,
       button("Save", save, { "aria-label": `Save ${name}` }),
+      " ",
+      button("Remove", remove, { "aria-label": `Remove ${name}` }),
     );
   };
   const read = async (): Promise<void> => {

@@ -5,11 +5,12 @@ import { errorText } from "../format";
 import type { Endpoint, Socket } from "../stream/endpoint";
 import { saveBlob } from "../take/save_file";
 
-/** The page asks its worker to begin with these files, to take a client, or for a document. */
+/** The page asks its worker to begin with these files, to take a client, for a document, or to remove a file. */
 export type Question =
   | { module: WebAssembly.Module; model: ArrayBuffer; isRehearsal: boolean }
   | { port: MessagePort }
   | { id: number; path: string }
+  | { id: number; remove: string }
   | { opened: File }
   | { goLive: true }
   | BoardNews;
@@ -77,6 +78,12 @@ export class ModuleEndpoint implements Endpoint {
     saveBlob(new Blob([document]), name);
   }
 
+  /** From the files of the page. Fails where it is in use. */
+  async remove(path: string): Promise<void> {
+    const { failure } = await this.#answer((id) => ({ id, remove: path }));
+    if (failure !== undefined) throw new Error(failure);
+  }
+
   /** Puts a file into the folder of the page, and plays or uses it. */
   openFile(opened: File): void {
     this.#ask({ opened });
@@ -98,14 +105,18 @@ export class ModuleEndpoint implements Endpoint {
   }
 
   async #document(path: string): Promise<string | Blob | undefined> {
-    const id = ++this.#lastId;
-    const { document, failure } = await new Promise<Document>((resolve) => {
-      this.#asked.set(id, resolve);
-      this.#ask({ id, path: `/${path}` });
-    });
+    const { document, failure } = await this.#answer((id) => ({ id, path: `/${path}` }));
     if (failure === undefined) return document;
     if (path === "suit.json") this.#failed(failure);
     throw new Error(failure);
+  }
+
+  #answer(question: (id: number) => Question): Promise<Document> {
+    const id = ++this.#lastId;
+    return new Promise((resolve) => {
+      this.#asked.set(id, resolve);
+      this.#ask(question(id));
+    });
   }
 
   #ask(question: Question, handedOver: Transferable[] = []): void {

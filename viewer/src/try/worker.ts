@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { errorText } from "../format";
 import { keepDropped } from "./dropped_files";
+import { File as PageFile } from "./files";
 import { Fits } from "./fits";
 import { blobOf, openFiles, type PageFiles } from "./kept_files";
 import { Module } from "./module";
@@ -91,10 +92,18 @@ async function documentOf(encoded: string): Promise<string | Blob | undefined> {
   return module.document(path) ?? (await blobOf(pageFiles.files, module.file(path) ?? path));
 }
 
-async function answer(id: number, path: string): Promise<void> {
+/** As long as nothing has it open. */
+async function remove(path: string): Promise<undefined> {
+  await begun;
+  const file = pageFiles.files.find(path);
+  if (file instanceof PageFile && file.opened > 0) throw new Error(`${path.slice(1)} is in use.`);
+  pageFiles.files.remove(path);
+}
+
+async function answer(id: number, document: Promise<string | Blob | undefined>): Promise<void> {
   let answered: Answer;
   try {
-    answered = { id, document: await documentOf(path) };
+    answered = { id, document: await document };
   } catch (error) {
     answered = { id, failure: errorText(error) };
   }
@@ -125,7 +134,8 @@ addEventListener("message", ({ data }: MessageEvent<Question>) => {
   if ("module" in data) resolveBegun(begin(data.module, data.model, data.isRehearsal));
   else if ("port" in data)
     connect(data.port).catch(() => undefined); // the question for suit.json tells why
-  else if ("id" in data) void answer(data.id, data.path);
+  else if ("remove" in data) void answer(data.id, remove(data.remove));
+  else if ("id" in data) void answer(data.id, documentOf(data.path));
   else if ("opened" in data) opening = opening.then(() => open(data.opened));
   else if ("goLive" in data) void begun.then((module) => module.goLive());
   else void begun.then((module) => hear(module, data));
