@@ -21,7 +21,7 @@ export function makeBluetoothWay(
   const characteristic = element("select", { id: "bluetooth-characteristic", class: "field uuid" });
   const characteristics = element(
     "span",
-    { "data-role": "characteristics", hidden: true },
+    { class: "setup-row", "data-role": "characteristics", hidden: true },
     element("label", { for: characteristic.id }, "Characteristic"),
     characteristic,
   );
