@@ -131,6 +131,35 @@ it("stays at a question that shows the bytes and the reason, for ten streams tha
   assert.deepEqual(readdirSync(folder), []);
 });
 
+it("keeps what was typed where the connection begins anew", async () => {
+  const device = await networkDevice(STREAMS[0].say);
+  const server = await serveEmpty("--from", device.uri);
+  try {
+    const page = await openPage(browser, server.url);
+    await part(page, "array-setup").waitFor();
+    for (const [id, value] of [
+      ["array-name", "glove"],
+      ["array-rows", "3"],
+      ["array-cols", "5"],
+    ])
+      await page.locator(`#${id}`).fill(value);
+    await page.locator("[data-role=array-setup] button[type=submit]").click();
+    await part(page, "setup-problem").waitFor();
+    const again = page.waitForResponse((response) => response.url().includes("suit.json"));
+    await part(page, "connection").click();
+    await (await again).finished();
+    await page.waitForTimeout(500);
+    const typed = ["name", "rows", "cols"].map((field) => page.locator(`#array-${field}`).inputValue());
+    assert.deepEqual(await Promise.all(typed), ["glove", "3", "5"]);
+    assert.ok(await part(page, "setup-problem").isVisible());
+    assertUnhurt(page);
+    await page.close();
+  } finally {
+    await server.stop();
+    device.close();
+  }
+});
+
 describe("an array of which nothing is written", { concurrency: true }, () => {
   it("says so where nothing comes, and listens again", async () => {
     let isQuiet = true;

@@ -220,7 +220,12 @@ export function makeArraySetup(stream: Stream, suit: Suit, theme: Theme): HTMLEl
   known.all.follow(() => {
     if (name.value === name.defaultValue) name.value = name.defaultValue = known.freeName();
   });
+  /** Comes again with each connection: what a person has typed stays. */
+  let asked = "";
   suit.description.follow(({ setup }) => {
+    const question = JSON.stringify([setup?.from, setup?.readable, setup?.rows, setup?.cols, setup?.layout]);
+    const isNew = question !== asked;
+    asked = question;
     setHidden(choice, setup?.from !== "");
     setHidden(form, setup === undefined || setup.from === "");
     window.clearTimeout(typing);
@@ -234,14 +239,14 @@ export function makeArraySetup(stream: Stream, suit: Suit, theme: Theme): HTMLEl
     setHidden(again, setup.readable);
     setHidden(leave, !stream.services.value.has("/source/leave"));
     for (const guide of [corners, presses]) setHidden(guide.element, !setup.turnable);
-    rows.value = setup.rows === null ? "" : String(setup.rows);
-    cols.value = setup.cols === null ? "" : String(setup.cols);
-    isSwapped = false;
-    areTyped = false;
-    corners.forget();
-    layouts.forget();
+    if (isNew) {
+      [rows.value, cols.value] = [String(setup.rows ?? ""), String(setup.cols ?? "")];
+      isSwapped = areTyped = false;
+      corners.forget();
+      layouts.forget();
+      setHidden(problem, true);
+    }
     propose();
-    setHidden(problem, true);
     if (known.chosen.value !== undefined) void use(known.chosen.value.file);
     else watch();
   });
