@@ -23,7 +23,8 @@ const KINDS = ["safetensors", "array.toml", "frames.csv", "loads.csv"];
 useSite();
 
 /** The place of a file of the page, saved as its user does. */
-const savedFile = (page, ending) => saved(page, page.locator(`[data-role=files] li[data-file$='${ending}'] button`));
+const savedFile = (page, ending) =>
+  saved(page, page.locator(`[data-role=files] li[data-file$='${ending}']`).getByRole("button", { name: /^Save/ }));
 
 async function openRehearsal() {
   const page = await openPage(site.browser, "about:blank");
