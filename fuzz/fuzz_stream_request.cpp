@@ -33,7 +33,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const Question& question : questions) question()(client);
   ServerStatistics statistics;
   const auto bytes = std::make_shared<const std::vector<std::uint8_t>>(10);
-  for (const MessageKind kind : {MessageKind::event, MessageKind::picture}) {
+  for (const MessageKind kind : {MessageKind::event, MessageKind::picture, MessageKind::piece}) {
     for (ChannelId channel = 0; channel < 4; ++channel) client.publish(channel, {}, bytes, kind, statistics);
   }
   while (!client.queue().empty()) static_cast<void>(client.queue().pop());

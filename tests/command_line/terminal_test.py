@@ -262,7 +262,7 @@ class Terminal(SmallArray):
         ]
         for text in said:
             self.assertNotIn("+-", text)
-            self.assertNotRegex(text.replace("adc_bits", ""), r"\b[a-z]+_[a-z_]+\b")
+            self.assertNotRegex(text.replace("adc_bits", "").replace(str(self.work), ""), r"\b[a-z]+_[a-z_]+\b")
 
 
 if __name__ == "__main__":

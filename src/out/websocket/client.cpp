@@ -90,7 +90,9 @@ void Client::publish(ChannelId channel, Nanos log_time, const SharedBytes& bytes
                      ServerStatistics& statistics) {
   const auto subscription = subscription_of_.find(channel);
   if (subscription == subscription_of_.end()) return;
-  if (kind == MessageKind::picture && !takes_picture(channel, log_time)) {
+  const bool is_taken =
+      kind == MessageKind::event || (kind == MessageKind::picture ? takes_picture() : takes_piece(channel, log_time));
+  if (!is_taken) {
     ++statistics.dropped;
     return;
   }
@@ -98,18 +100,26 @@ void Client::publish(ChannelId channel, Nanos log_time, const SharedBytes& bytes
   ++statistics.messages;
 }
 
-/// As its moment was when it began.
-bool Client::takes_picture(ChannelId channel, Nanos time) {
+/// As the first piece of its time. Where that comes again, the picture does: in a recording that is shown once more.
+bool Client::takes_piece(ChannelId channel, Nanos time) {
   const auto known = std::ranges::find(moments_, time, &Moment::time);
-  if (known != moments_.end() && known->first != channel) return known->is_taken;
+  if (known == moments_.end()) {
+    if (moments_.size() == kMostMoments) moments_.pop_front();
+    moments_.push_back({time, channel, takes_picture()});
+    return moments_.back().is_taken;
+  }
+  const bool goes_on = known->is_taken && time == moments_.back().time;  // with another array of the same time
+  if (known->first == channel && !goes_on) known->is_taken = takes_picture();
+  return known->is_taken;
+}
+
+bool Client::takes_picture() {
   // Old messages that were dropped meanwhile may leave less than there was.
   const std::uint64_t bytes = queue_.binary_bytes();
-  if (!moments_.empty() && moments_.back().is_taken) moment_bytes_ = bytes - std::min(moment_begin_, bytes);
-  moment_begin_ = bytes;
-  if (known != moments_.end()) moments_.erase(known);
-  if (moments_.size() == kMostMoments) moments_.pop_front();
-  moments_.push_back({time, channel, is_asking_ || taken_.is_open(bytes, moment_bytes_)});
-  return moments_.back().is_taken;
+  if (has_taken_) picture_bytes_ = bytes - std::min(picture_begin_, bytes);
+  picture_begin_ = bytes;
+  has_taken_ = is_asking_ || taken_.is_open(bytes, picture_bytes_);
+  return has_taken_;
 }
 
 void Client::send_parameters(std::span<const Parameter> all) {

@@ -61,7 +61,7 @@ class Client {
   [[nodiscard]] Status receive(std::span<const std::uint8_t> bytes, bool is_text);
 
   /// Queues the message where the client has subscribed to the channel; messages and drops are counted on. Where the
-  /// client is behind, pictures are left out: all those of a time, or none.
+  /// client is behind, pictures are left out, and pieces: all those of a time, or none.
   void publish(ChannelId channel, Nanos log_time, const SharedBytes& bytes, MessageKind kind,
                ServerStatistics& statistics);
   void send_parameters(std::span<const Parameter> all);
@@ -86,13 +86,14 @@ class Client {
   void ask(Question question);
   void follow(const FollowParameters& request, std::span<const Parameter> all);
 
-  /// Its pictures of one time, which may come piece by piece, and those of other arrays between.
+  /// The pieces of one time, between which those of other arrays may come.
   struct Moment {
     Nanos time{};
-    ChannelId first = 0;  // where this channel comes again, a new moment begins
+    ChannelId first = 0;
     bool is_taken = true;
   };
-  [[nodiscard]] bool takes_picture(ChannelId channel, Nanos time);
+  [[nodiscard]] bool takes_piece(ChannelId channel, Nanos time);
+  [[nodiscard]] bool takes_picture();
 
   const Offer& offer_;
   std::string address_;
@@ -106,10 +107,11 @@ class Client {
   std::map<ChannelId, std::uint32_t> subscription_of_;  // by channel; one each
   std::set<std::string, std::less<>> followed_;
   TakenWindow taken_;
-  std::deque<Moment> moments_;      // the last few
-  std::uint64_t moment_begin_ = 0;  // of queue_.binary_bytes()
-  std::uint64_t moment_bytes_ = 0;  // of the last moment whose pictures it took
-  bool is_asking_ = false;          // its messages meanwhile are not read
+  std::deque<Moment> moments_;       // the last few
+  bool has_taken_ = true;            // the last picture
+  std::uint64_t picture_begin_ = 0;  // of queue_.binary_bytes()
+  std::uint64_t picture_bytes_ = 0;  // of the last picture that it took
+  bool is_asking_ = false;           // its messages meanwhile are not read
 };
 
 }  // namespace dermis::out::websocket

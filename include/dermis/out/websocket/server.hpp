@@ -52,6 +52,7 @@ using ChannelId = std::uint32_t;
 enum class MessageKind : std::uint8_t {
   event,    ///< Says what happened: who is behind gets it all the same.
   picture,  ///< How it is now: who is behind is better served by the next one.
+  piece,    ///< A part of a picture: who is behind gets all pieces of a time or none.
 };
 
 /// The value of a parameter; monostate: not set.

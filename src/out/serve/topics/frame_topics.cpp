@@ -141,7 +141,7 @@ void FrameTopics::hear_played(Array& array, const live::suits::ArrayResult& resu
   }
   if (played.contacts.empty() && shape) return publish_contacts(array, result, true);
   if (played.contacts.empty() || !contacts_topic_.is_wanted()) return;
-  contacts_topic_.publish(result.raw.time, played.contacts, Ends::both, MessageKind::picture);
+  contacts_topic_.publish(result.raw.time, played.contacts, Ends::both, MessageKind::piece);
 }
 
 /// Until somebody who looks on tares, or takes another model.
@@ -166,7 +166,7 @@ void FrameTopics::publish_images(Array& array, const live::suits::ArrayResult& r
   const Nanos time = result.raw.time;
   if (array.raw.is_wanted(ends_of(is_due)) && result.raw.counts.size() == taxels) {
     bytes::ros_messages::encode_image(result.raw, array.shape, frame_id, array.message);
-    array.raw.publish(time, array.message, ends_of(is_due), MessageKind::picture);
+    array.raw.publish(time, array.message, ends_of(is_due), MessageKind::piece);
   }
   publish_values(array, array.force, result.force.newtons, result.force.time);
   publish_values(array, array.force_sigma, result.force.sigma_newtons, result.force.time);
@@ -176,11 +176,11 @@ void FrameTopics::publish_images(Array& array, const live::suits::ArrayResult& r
                           result.conductance.taxels.size() == taxels;
   if (array.conductance.is_wanted() && has_taxels) {
     bytes::ros_messages::encode_conductance_grid(result.conductance, array.shape, array.pitch, frame_id, array.message);
-    array.conductance.publish(time, array.message, Ends::both, MessageKind::picture);
+    array.conductance.publish(time, array.message, Ends::both, MessageKind::piece);
   }
   if (array.force_grid.is_wanted()) {
     bytes::ros_messages::encode_grid(result.force, array.shape, array.pitch, frame_id, array.message);
-    array.force_grid.publish(time, array.message, Ends::both, MessageKind::picture);
+    array.force_grid.publish(time, array.message, Ends::both, MessageKind::piece);
   }
 }
 
@@ -197,7 +197,7 @@ void FrameTopics::publish_contacts(Array& array, const live::suits::ArrayResult&
   if (is_wanted || topics_.has_dds()) array.contacts.take(result);
   if (!is_wanted) return;
   array.contacts.encode(result, array.message);
-  contacts_topic_.publish(result.raw.time, array.message, ends, MessageKind::picture);
+  contacts_topic_.publish(result.raw.time, array.message, ends, MessageKind::piece);
 }
 
 void FrameTopics::publish_wrench(Array& array, const live::suits::ArrayResult& result) {
