@@ -71,6 +71,29 @@ async function describeArray(page, name = "mat") {
   await eventually(page, () => document.querySelector("[data-view=array]")?.dataset.stamp !== undefined);
 }
 
+/** A page beside a board that notifies its bytes by Bluetooth. */
+async function withRadio(test) {
+  const context = await site.browser.newContext();
+  await context.addInitScript(standInForBluetooth);
+  const page = await openPage(context, site.url);
+  await becomes(page, "live");
+  await page.evaluate(
+    (text) => (radio.bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0))),
+    mat(20).toString("base64"),
+  );
+  await page.getByText("Other ways").click();
+  await test(page);
+  assertUnhurt(page);
+  await context.close();
+}
+
+async function describeRadio(page) {
+  await says(page, "Connected: Mat");
+  await page.locator("#array-rows").fill("12");
+  await page.locator("#array-cols").fill("10");
+  await describeArray(page);
+}
+
 const stampOf = (page) => page.evaluate(() => document.querySelector("[data-view=array]").dataset.stamp);
 
 async function isLive(page) {
@@ -330,51 +353,28 @@ describe("a board at the page of site/try", () => {
   });
 
   it("is heard by Bluetooth, and again when it is back in reach", async () => {
-    const context = await site.browser.newContext();
-    await context.addInitScript(standInForBluetooth);
-    const page = await openPage(context, site.url);
-    await becomes(page, "live");
-    await page.evaluate(
-      (text) => (radio.bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0))),
-      mat(20).toString("base64"),
-    );
-    await page.getByText("Other ways").click();
-    await part(page, "connect-bluetooth").click();
-    await says(page, "Connected: Mat");
-    await page.locator("#array-rows").fill("12");
-    await page.locator("#array-cols").fill("10");
-    await describeArray(page);
-    await page.evaluate(() => {
-      radio.isInReach = false;
-      radio.cut();
+    await withRadio(async (page) => {
+      await part(page, "connect-bluetooth").click();
+      await describeRadio(page);
+      await page.evaluate(() => {
+        radio.isInReach = false;
+        radio.cut();
+      });
+      await says(page, "The board is unplugged");
+      await page.evaluate(() => (radio.isInReach = true));
+      await says(page, "The board is back");
+      await isLive(page);
     });
-    await says(page, "The board is unplugged");
-    await page.evaluate(() => (radio.isInReach = true));
-    await says(page, "The board is back");
-    await isLive(page);
-    assertUnhurt(page);
-    await context.close();
   });
 
   it("is heard by the characteristic that the user chooses, where several notify", async () => {
-    const context = await site.browser.newContext();
-    await context.addInitScript(standInForBluetooth);
-    const page = await openPage(context, site.url);
-    await becomes(page, "live");
-    await page.evaluate((text) => {
-      radio.addSilent();
-      radio.bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-    }, mat(20).toString("base64"));
-    await page.getByText("Other ways").click();
-    await part(page, "connect-bluetooth").click();
-    await page.getByLabel("Characteristic").selectOption("6e400003-b5a3-f393-e0a9-e50e24dcca9e");
-    await says(page, "Connected: Mat");
-    await page.locator("#array-rows").fill("12");
-    await page.locator("#array-cols").fill("10");
-    await describeArray(page);
-    await isLive(page);
-    assertUnhurt(page);
-    await context.close();
+    await withRadio(async (page) => {
+      await page.evaluate(() => radio.addSilent());
+      await part(page, "connect-bluetooth").click();
+      await page.getByLabel("Characteristic").selectOption("6e400003-b5a3-f393-e0a9-e50e24dcca9e");
+      await describeRadio(page);
+      await isLive(page);
+    });
   });
 
   it("is read at USB without a driver, and again when it is chosen again", async () => {

@@ -98,6 +98,18 @@ async function serialDevice(say) {
   return { uri: `serial://${name}`, close };
 }
 
+/** An array of 3x5 taxels, of which the bytes are not. */
+async function describeInVain(page, name) {
+  for (const [id, value] of [
+    ["array-name", name],
+    ["array-rows", "3"],
+    ["array-cols", "5"],
+  ])
+    await page.locator(`#${id}`).fill(value);
+  await page.locator("[data-role=array-setup] button[type=submit]").click();
+  await part(page, "setup-problem").waitFor();
+}
+
 async function endsAtTheQuestion({ name, say, reason, terminal }) {
   const device = await (terminal === true ? serialDevice(say) : networkDevice(say));
   const server = await serveEmpty("--from", device.uri);
@@ -106,14 +118,7 @@ async function endsAtTheQuestion({ name, say, reason, terminal }) {
     await part(page, "array-setup").waitFor();
     assert.match(await part(page, "found").textContent(), reason, name);
     assert.match(await part(page, "first-bytes").textContent(), /^00 {2}([0-9a-f]{2} ){7}/, name);
-    for (const [id, value] of [
-      ["array-name", name.replaceAll(" ", "_")],
-      ["array-rows", "3"],
-      ["array-cols", "5"],
-    ])
-      await page.locator(`#${id}`).fill(value);
-    await page.locator("[data-role=array-setup] button[type=submit]").click();
-    await part(page, "setup-problem").waitFor();
+    await describeInVain(page, name.replaceAll(" ", "_"));
     assert.notEqual(await part(page, "setup-problem").textContent(), "", name);
     assert.ok(await part(page, "array-setup").isVisible(), name);
     assert.ok(await page.locator("main").isHidden(), `${name}: a map`);
@@ -137,14 +142,7 @@ it("keeps what was typed where the connection begins anew", async () => {
   try {
     const page = await openPage(browser, server.url);
     await part(page, "array-setup").waitFor();
-    for (const [id, value] of [
-      ["array-name", "glove"],
-      ["array-rows", "3"],
-      ["array-cols", "5"],
-    ])
-      await page.locator(`#${id}`).fill(value);
-    await page.locator("[data-role=array-setup] button[type=submit]").click();
-    await part(page, "setup-problem").waitFor();
+    await describeInVain(page, "glove");
     const again = page.waitForResponse((response) => response.url().includes("suit.json"));
     await part(page, "connection").click();
     await (await again).finished();
